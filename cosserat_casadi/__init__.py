@@ -1,0 +1,37 @@
+"""Cosserat rods as CasADi models: a scene enters as text and flows, stage by stage, to a solved rod.
+
+scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Functions} ─ solve ─▶ Solution
+Scene ─ solve_scene ─▶ Solution at the coarsest discretisation within tolerance
+"""
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError, SolveError
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.result import result, write_result
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.solve.accuracy import solve_scene
+from cosserat_casadi.solve.outcome import Outcome
+from cosserat_casadi.solve.solution import Solution
+from cosserat_casadi.solve.solve import solve
+
+__all__ = [
+    "CosseratError",
+    "Discretisation",
+    "Model",
+    "Outcome",
+    "Problem",
+    "Scene",
+    "SceneError",
+    "Solution",
+    "SolveError",
+    "build",
+    "discretise",
+    "parse_scene",
+    "read_scene",
+    "result",
+    "scene_from_dict",
+    "solve",
+    "solve_scene",
+    "write_result",
+]

@@ -1,0 +1,138 @@
+"""The command line: solve a scene, check a scene."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+from cosserat_casadi import report
+from cosserat_casadi.errors import CosseratError, SceneError
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.model.build import build
+from cosserat_casadi.result import result_text
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.solve.accuracy import solve_scene
+from cosserat_casadi.solve.solution import Solution
+
+REFUSED = 2
+"""Exit code: the input is refused, nothing was written."""
+
+NOT_FOUND = 3
+"""Exit code: no equilibrium was found; the result file says so."""
+
+INTERRUPTED = 130
+"""Exit code: stopped by the user."""
+
+app = typer.Typer(
+    help="Cosserat rods: from a scene file to the deformed rod.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_show_locals=False,
+)
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).", show_default=False)]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a value of the scene, such as push.force=[0.2,0,0]."),
+]
+
+
+@app.command()
+def solve(
+    scene: SceneFile,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the result file (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+) -> None:
+    """Find the equilibrium of a scene. Exit codes: 0 solved, 2 scene refused, 3 no equilibrium found."""
+    _check_outputs(output, plot)
+    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())))
+    if output is not None:
+        write_atomically(output, result_text(solution).encode())
+    if plot is not None:
+        _draw(solution, plot)
+    if as_json:
+        sys.stdout.write(result_text(solution))
+    else:
+        report.print_solution(Console(), solution, [p for p in (output, plot) if p is not None])
+    if not solution.converged:
+        raise typer.Exit(NOT_FOUND)
+
+
+@app.command()
+def check(scene: SceneFile, settings: Settings = None) -> None:
+    """Validate a scene, say which effects were chosen and what the model will cost."""
+    read = read_scene(scene, tuple(settings or ()))
+    report.print_check(Console(), build(read))
+
+
+def main() -> None:
+    """Entry point: errors become sentences and exit codes."""
+    sys.exit(run(app))
+
+
+def run(command: Callable[..., None]) -> int:
+    """Run a command; 2 for refused input with the reasons on standard error."""
+    console = Console(stderr=True)
+    try:
+        outcome = command(standalone_mode=False)
+    except SceneError as error:
+        report.print_refusal(console, error)
+        return REFUSED
+    except CosseratError as error:
+        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        return REFUSED
+    except KeyboardInterrupt:
+        console.print("Stopped. Files that were not finished were not written.")
+        return INTERRUPTED
+    except typer.Exit as stop:
+        return stop.exit_code
+    except typer.Abort:
+        return INTERRUPTED
+    except Exception as error:
+        if hasattr(error, "format_message") and hasattr(error, "exit_code"):
+            console.print(f"[bold red]Error:[/] {error.format_message()}", highlight=False)
+            return int(error.exit_code)
+        raise
+    return outcome if isinstance(outcome, int) else 0
+
+
+def _check_outputs(output: Path | None, plot: Path | None) -> None:
+    """Refuse what cannot be written before spending time on the solve."""
+    if output is not None:
+        check_writable(output, "--output")
+    if plot is not None:
+        from cosserat_casadi.plot import check_plot_path
+
+        check_writable(plot, "--plot")
+        check_plot_path(plot)
+
+
+def _draw(solution: Solution, path: Path) -> None:
+    from cosserat_casadi.plot import save_plot
+
+    save_plot(solution, path)
+
+
+def _solve_with_progress(scene: Scene) -> Solution:
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("Building the model", total=1.0)
+        return solve_scene(
+            scene,
+            progress=lambda share: bar.update(task, completed=share),
+            report=lambda stage: bar.update(task, description=f"Solving: {stage}", completed=0.0),
+        )

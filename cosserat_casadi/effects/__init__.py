@@ -1,0 +1,1 @@
+"""What acts on rods: one file an effect, and the registry."""

@@ -1,0 +1,89 @@
+"""What an effect is: a word of the scene format turned into wrenches on a rod."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.wrenches import Wrench
+
+
+@dataclass(frozen=True)
+class Site:
+    """The rod that an effect meets.
+
+    Attributes:
+        rod: what it is made of.
+        grid: its nodes.
+        base_R_world: 3×3, turns world coordinates into those of the rod's base frame.
+    """
+
+    rod: RodProperties
+    grid: Grid
+    base_R_world: Matrix
+
+    def placed(self, vector: Matrix | None, *, follower: bool) -> Matrix | None:
+        """Coordinates in which the mechanics want a vector: base frame if dead, section frame if follower."""
+        return vector if vector is None or follower else self.base_R_world @ vector
+
+
+class Effect(ABC):
+    """One kind of load. A member is one file and one line of the registry.
+
+    Attributes:
+        kind: the word of the scene format.
+        magnitudes: fields that may stay free at run time: the model's inputs.
+    """
+
+    kind: ClassVar[str]
+    magnitudes: ClassVar[tuple[str, ...]]
+
+    @abstractmethod
+    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+        """Wrenches on one rod.
+
+        Args:
+            load: the load as the scene has it.
+            site: the rod it acts on.
+            values: each magnitude as a 3×k matrix, symbolic or numeric; None where it is zero for good.
+        """
+
+    def acts_on(self, load: Any, rod: str) -> bool:
+        """Whether the load acts on the rod of this name."""
+        return bool(load.rod == rod)
+
+    def breaks(self, load: Any) -> tuple[float, ...]:
+        """Abscissae at which the rod's fields jump, so that its elements must end there."""
+        return ()
+
+    def has_potential(self, load: Any, values: Mapping[str, FloatArray], rod: RodProperties) -> bool:
+        """Whether these values derive from a potential, so that stability is the sign of an eigenvalue.
+
+        A force of fixed direction does. A moment of fixed direction does only where the rod turns about one axis.
+        """
+        forces = not np.any(values.get("force", 0.0))
+        moments = not np.any(values.get("moment", 0.0))
+        dead = getattr(load, "frame", "world") == "world"
+        return (dead or forces) and (moments or (dead and len(rod.turning_axes) < 2))
+
+
+def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:
+    """Three components, each a number or a list of Legendre coefficients, as one (3, k) array."""
+    rows = [np.atleast_1d(np.asarray(component, dtype=float)) for component in vector]
+    matrix = np.zeros((len(rows), max(len(row) for row in rows)))
+    for i, row in enumerate(rows):
+        matrix[i, : len(row)] = row
+    return matrix
+
+
+def constant(values: FloatArray) -> Matrix | None:
+    """A baked-in magnitude: None where it is zero, so that it adds no instruction."""
+    return ca.sparsify(ca.DM(values)) if np.any(values) else None

@@ -1,0 +1,30 @@
+"""Weight: linear density times acceleration, a dead force per length; f̄ of report (1.17)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, final
+
+from cosserat_casadi.effects.effect import Effect, Site
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.wrenches import LineWrench, Wrench
+
+
+@final
+class Gravity(Effect):
+    """A uniform field of acceleration (m/s²) on the rods it names, or on all."""
+
+    kind = "gravity"
+    magnitudes = ("acceleration",)
+
+    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+        """The rod's weight per length, N/m."""
+        acceleration = site.placed(values["acceleration"], follower=False)
+        if acceleration is None or site.rod.linear_density is None:
+            return []
+        profile = site.rod.linear_density(site.grid.nodes)[None, :]
+        return [LineWrench(acceleration, None, profile, follower=False)]
+
+    def acts_on(self, load: Any, rod: str) -> bool:
+        """Every rod, unless the load names some."""
+        return load.rods is None or rod in load.rods

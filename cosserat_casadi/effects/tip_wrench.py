@@ -1,0 +1,25 @@
+"""Force and moment on the tip section: F₊ of report (1.29)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, final
+
+from cosserat_casadi.effects.effect import Effect, Site
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.wrenches import PointWrench, Wrench
+
+
+@final
+class TipWrench(Effect):
+    """A force (N) and a moment (N m) at X = 1, dead or follower."""
+
+    kind = "tip_wrench"
+    magnitudes = ("force", "moment")
+
+    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+        """The wrench on the tip section."""
+        follower = load.frame == "body"
+        force = site.placed(values["force"], follower=follower)
+        moment = site.placed(values["moment"], follower=follower)
+        return [PointWrench(1.0, force, moment, follower)]

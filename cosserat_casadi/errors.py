@@ -1,0 +1,44 @@
+"""The errors this package raises, each with the place, the fault and the remedy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One fault in an input.
+
+    Attributes:
+        where: path of the offending key, such as ``rods[0].section.radius``.
+        problem: what is wrong, with the offending value.
+        remedy: what to do about it; empty when the problem says it already.
+    """
+
+    where: str
+    problem: str
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        sentence = f"{self.where}: {self.problem}" if self.where else self.problem
+        return f"{sentence} ({self.remedy})" if self.remedy else sentence
+
+
+class CosseratError(Exception):
+    """Root of the errors of this package."""
+
+
+class SceneError(CosseratError):
+    """A scene, or a value given for one of its inputs, was refused.
+
+    Attributes:
+        problems: every fault found, in the order of the file.
+    """
+
+    def __init__(self, *problems: Problem) -> None:
+        self.problems = problems
+        super().__init__("\n".join(str(problem) for problem in problems))
+
+
+class SolveError(CosseratError):
+    """No equilibrium was found and the caller asked for an exception."""

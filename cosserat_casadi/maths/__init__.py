@@ -1,0 +1,1 @@
+"""Mathematics without rods: rotations, rigid motions, Chebyshev matrices, the permuted system."""

@@ -1,0 +1,133 @@
+"""The model of a scene: named CasADi functions, ready to solve, export or embed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model import functions
+from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
+from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.model.system import Frame, frame
+from cosserat_casadi.rod.discretisation import Discretisation
+
+
+@dataclass(frozen=True)
+class Model:
+    """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
+
+    ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of its supports;
+    all are without unit. Every function is exact for the discrete model and can be differentiated again.
+
+    Attributes:
+        frame: the scene with its constant matrices.
+    """
+
+    frame: Frame
+
+    @property
+    def scene(self) -> scenes.Scene:
+        """The scene this is a model of."""
+        return self.frame.scene
+
+    @property
+    def inputs(self) -> InputLayout:
+        """Names, order and default values of the inputs."""
+        return self.frame.layout
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.frame.size
+
+    @property
+    def discretisation(self) -> dict[str, Discretisation]:
+        """Modes, nodes and element ends of every rod."""
+        return {name: basis.discretisation for name, basis in self.frame.bases.items()}
+
+    @cached_property
+    def residual(self) -> ca.Function:
+        """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
+        return functions.residual(self.frame)
+
+    @cached_property
+    def jacobian(self) -> ca.Function:
+        """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
+        return functions.jacobian(self.frame)
+
+    @cached_property
+    def input_jacobian(self) -> ca.Function:
+        """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
+        return functions.input_jacobian(self.frame)
+
+    @cached_property
+    def homotopy(self) -> ca.Function:
+        """(x, inputs, factor) ↦ (jacobian, residual, factor_derivative) of the scene at a load factor."""
+        return functions.homotopy(self.frame)
+
+    @cached_property
+    def igm(self) -> dict[str, ca.Function]:
+        """For each rod (q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment)."""
+        return {rod: functions.igm(self.frame, rod) for rod in self.frame.bases}
+
+    @cached_property
+    def tip(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
+        return {rod: functions.tip(self.frame, rod) for rod in self.frame.bases}
+
+    @cached_property
+    def shape(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs, X) ↦ (position, quaternion) at any abscissa: the interpolant itself."""
+        return {rod: functions.shape(self.frame, rod) for rod in self.frame.bases}
+
+    @cached_property
+    def fields(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs) ↦ position, quaternion, internal wrench at the nodes and the base wrench."""
+        return {rod: functions.fields(self.frame, rod) for rod in self.frame.bases}
+
+    @cached_property
+    def energy(self) -> ca.Function:
+        """(x, inputs) ↦ elastic energy of all rods, J."""
+        return functions.energy(self.frame)
+
+    def operations(self, function: ca.Function) -> int:
+        """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
+        return functions.operations(function)
+
+    def has_potential(self, inputs: FloatArray) -> bool:
+        """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
+        values = load_values(self.scene, self.inputs, inputs)
+        return all(
+            EFFECTS[load.kind].has_potential(load, values[load.name], basis.rod)
+            for load in self.scene.loads
+            for basis in self.frame.bases.values()
+            if EFFECTS[load.kind].acts_on(load, basis.rod.name)
+        )
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked inputs from the scene's values and new ones by name."""
+        return self.inputs.pack(values)
+
+    def unloaded(self) -> FloatArray:
+        """Unknowns of the unloaded scene, shape (size,)."""
+        return np.zeros(self.size)
+
+
+def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | None = None) -> Model:
+    """The model of a scene.
+
+    Args:
+        scene: a validated scene.
+        discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
+            :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
+    """
+    chosen = discretise(scene) if discretisation is None else discretisation
+    return Model(frame(scene, input_layout(scene), chosen))

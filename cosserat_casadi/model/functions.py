@@ -1,0 +1,167 @@
+"""The named functions of a model, one maker each."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.system import Arguments, Frame, System, rod_wrenches
+from cosserat_casadi.rod import kinematics
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.statics import Statics
+
+
+def _arguments(frame: Frame) -> Arguments:
+    return Arguments(ca.MX.sym("x", frame.size), ca.MX.sym("inputs", frame.layout.size))
+
+
+def residual(frame: Frame) -> ca.Function:
+    """(x, inputs) ↦ residual."""
+    a = _arguments(frame)
+    return ca.Function("residual", [a.x, a.inputs], [System(frame, a).residual], ["x", "inputs"], ["residual"])
+
+
+def jacobian(frame: Frame) -> ca.Function:
+    """(x, inputs) ↦ (jacobian, residual)."""
+    a = _arguments(frame)
+    system = System(frame, a)
+    outputs = [system.jacobian, system.residual]
+    return ca.Function("jacobian", [a.x, a.inputs], outputs, ["x", "inputs"], ["jacobian", "residual"])
+
+
+def input_jacobian(frame: Frame) -> ca.Function:
+    """(x, inputs) ↦ ∂ residual / ∂ inputs."""
+    a = _arguments(frame)
+    derivative = ca.jacobian(System(frame, a).residual, a.inputs)
+    return ca.Function("input_jacobian", [a.x, a.inputs], [derivative], ["x", "inputs"], ["input_jacobian"])
+
+
+def homotopy(frame: Frame) -> ca.Function:
+    """(x, inputs, factor) ↦ (jacobian, residual, factor_derivative)."""
+    symbols = _arguments(frame)
+    a = Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
+    system = System(frame, a)
+    outputs = [system.jacobian, system.residual, ca.jacobian(system.residual, a.factor)]
+    names = ["jacobian", "residual", "factor_derivative"]
+    return ca.Function("homotopy", [a.x, a.inputs, a.factor], outputs, ["x", "inputs", "factor"], names)
+
+
+def igm(frame: Frame, rod: str) -> ca.Function:
+    """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
+
+    Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
+    forces in units of EI/ℓ. Wrenches of supports are unknowns of the scene, not loads, and are left out.
+    """
+    basis = frame.bases[rod]
+    q, inputs = ca.MX.sym("q", basis.size), ca.MX.sym("inputs", frame.layout.size)
+    position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
+    rotation = quaternion_to_matrix(quaternion)
+    wrenches = rod_wrenches(frame, rod, rotation.T, Arguments(q, inputs))
+    balance = InverseGeometricModel(Statics(kinematics.shape(basis, q), wrenches))
+    outputs = [
+        balance.generalised_force,
+        rotation @ balance.statics.base_force,
+        rotation @ balance.statics.base_moment,
+    ]
+    return ca.Function(
+        f"igm_{rod}",
+        [q, position, quaternion, inputs],
+        outputs,
+        ["q", "base_position", "base_quaternion", "inputs"],
+        ["generalised_force", "base_force", "base_moment"],
+    )
+
+
+def tip(frame: Frame, rod: str) -> ca.Function:
+    """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
+    a = _arguments(frame)
+    pose, base = System(frame, a).tip(rod), frame.base(rod)
+    quaternion = quaternion_product(ca.MX(base.quaternion), pose.quaternion)
+    position = base.position + rotate(ca.MX(base.quaternion), pose.position)
+    outputs = [position, quaternion, quaternion_to_matrix(quaternion)]
+    names = ["position", "quaternion", "rotation"]
+    return ca.Function(f"tip_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+
+
+def shape(frame: Frame, rod: str) -> ca.Function:
+    """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame.
+
+    The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and exact
+    derivatives with respect to X too.
+    """
+    a, X = _arguments(frame), ca.MX.sym("X")
+    place = System(frame, a).rods[rod].shape
+    row = _interpolation_row(frame, rod, X)
+    base = frame.base(rod)
+    position = base.position + rotate(ca.MX(base.quaternion), place.position @ row)
+    local = place.quaternion @ row
+    quaternion = quaternion_product(ca.MX(base.quaternion), local / ca.sqrt(ca.sumsqr(local)))
+    names = ["position", "quaternion"]
+    return ca.Function(f"shape_{rod}", [a.x, a.inputs, X], [position, quaternion], ["x", "inputs", "X"], names)
+
+
+def fields(frame: Frame, rod: str) -> ca.Function:
+    """(x, inputs) ↦ fields at the nodes, world frame but for the internal wrench, which is in the section's."""
+    a = _arguments(frame)
+    balance = System(frame, a).rods[rod]
+    base = frame.base(rod)
+    count = frame.bases[rod].grid.size
+    turn = ca.repmat(base.quaternion, 1, count)
+    rotation = quaternion_to_matrix(base.quaternion)
+    outputs = [
+        ca.repmat(base.position, 1, count) + rotation @ balance.shape.position,
+        quaternion_product(ca.MX(turn), ca.densify(balance.shape.quaternion)),
+        balance.statics.internal_wrench(),
+        rotation @ balance.statics.base_force,
+        rotation @ balance.statics.base_moment,
+    ]
+    names = ["position", "quaternion", "internal_wrench", "base_force", "base_moment"]
+    return ca.Function(f"fields_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+
+
+def energy(frame: Frame) -> ca.Function:
+    """(x, inputs) ↦ elastic energy, J."""
+    a = _arguments(frame)
+    return ca.Function("energy", [a.x, a.inputs], [System(frame, a).energy()], ["x", "inputs"], ["energy"])
+
+
+def operations(function: ca.Function) -> int:
+    """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted."""
+    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    outputs = ca.cse(list(function.call(symbols)))
+    scalar = ca.Function("scalar", symbols, outputs)
+    used = sum(
+        scalar.instruction_id(i) in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST) for i in range(scalar.n_instructions())
+    )
+    return int(scalar.n_instructions() - used)
+
+
+def _interpolation_row(frame: Frame, rod: str, X: Matrix) -> Matrix:
+    """Weights of the nodal values at X, M×1: Chebyshev series of the element that holds X."""
+    grid = frame.bases[rod].grid
+    to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
+    rows = []
+    for e in range(grid.elements):
+        a, b = grid.breaks[e], grid.breaks[e + 1]
+        polynomials = _chebyshev_row(grid.intervals, (X - a) / (b - a))
+        row = ca.DM(to_coefficients).T @ polynomials
+        rows.append(row if grid.elements == 1 else _inside(grid.breaks, e, X) * row)
+    return ca.vertcat(*rows)
+
+
+def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix:
+    """1 where X lies in the element, which owns its tip-side end, else 0."""
+    above = breaks[element] < X if element else 1
+    below = breaks[element + 1] >= X if element + 2 < len(breaks) else 1
+    return above * below
+
+
+def _chebyshev_row(degree: int, X: Matrix) -> Matrix:
+    x = 2 * X - 1
+    values = [ca.MX(1.0), x]
+    for _ in range(degree - 1):
+        values.append(2 * x * values[-1] - values[-2])
+    return ca.vertcat(*values[: degree + 1])

@@ -1,0 +1,99 @@
+"""What stays free at run time: the model's inputs, their order and their values in the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.effect import coefficients
+from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class InputLayout:
+    """The inputs of a model, stacked into one vector.
+
+    Attributes:
+        names: ``load.field`` in the order of the vector.
+        defaults: the scene's value of each, shape (3, k): column k holds the k-th Legendre coefficient.
+    """
+
+    names: tuple[str, ...]
+    defaults: tuple[FloatArray, ...]
+
+    @property
+    def size(self) -> int:
+        """Entries of the stacked vector."""
+        return sum(value.size for value in self.defaults)
+
+    @property
+    def slices(self) -> dict[str, slice]:
+        """Where each input stands in the stacked vector, column after column."""
+        ends = np.cumsum([0, *[value.size for value in self.defaults]])
+        return {n: slice(int(a), int(b)) for n, a, b in zip(self.names, ends, ends[1:], strict=False)}
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked vector, from the scene's values and those given here.
+
+        Args:
+            values: new values by name; (3,) for a vector, (3, k) for Legendre coefficients.
+
+        Returns:
+            shape (size,), SI units.
+
+        Raises:
+            SceneError: a name is unknown, or a value has another shape or is not finite.
+        """
+        given = dict(values or {})
+        problems = [
+            Problem(name, "is not an input of this model", f"its inputs are {', '.join(self.names) or 'none'}")
+            for name in given
+            if name not in self.names
+        ]
+        parts = []
+        for name, default in zip(self.names, self.defaults, strict=True):
+            value = np.asarray(given.get(name, default), dtype=float)
+            if value.size != default.size:
+                problems.append(Problem(name, f"must have {default.size} numbers, got {value.size}"))
+            elif not np.all(np.isfinite(value)):
+                problems.append(Problem(name, f"must be finite, got {value.tolist()}"))
+            parts.append(value.ravel(order="F"))
+        if problems:
+            raise SceneError(*problems)
+        return np.concatenate([np.zeros(0), *parts])
+
+    def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
+        """Values by name from the stacked vector, each shaped as its default."""
+        return {
+            name: stacked[place].reshape(default.shape, order="F")
+            for (name, place), default in zip(self.slices.items(), self.defaults, strict=True)
+        }
+
+
+def magnitude(load: scenes.Load, field: str) -> FloatArray:
+    """A magnitude of a load as the scene has it, shape (3, k); zero where it is left out."""
+    value = getattr(load, field, None)
+    return np.zeros((3, 1)) if value is None else coefficients(value)
+
+
+def input_layout(scene: scenes.Scene) -> InputLayout:
+    """The inputs a scene asks for, by default every load's magnitudes."""
+    loads = {load.name: load for load in scene.loads}
+    names = scene.input_names()
+    defaults = [magnitude(loads[n.split(".")[0]], n.split(".")[1]) for n in names]
+    return InputLayout(names, tuple(defaults))
+
+
+def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:
+    """Numeric magnitudes of every load for given inputs, by load name and field."""
+    free = layout.unpack(inputs)
+    return {
+        load.name: {f: free.get(f"{load.name}.{f}", magnitude(load, f)) for f in EFFECTS[load.kind].magnitudes}
+        for load in scene.loads
+    }

@@ -1,0 +1,52 @@
+"""Modes, nodes and element ends of every rod of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.rod.discretisation import Discretisation
+
+DEFAULT_MODES = 6
+"""Polynomials per strain component where neither the scene nor the tolerance says."""
+
+
+def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
+    """Abscissae at which a rod is cut: its ends and the sections at which a load makes a jump."""
+    cuts = {0.0, 1.0}
+    for load in scene.loads:
+        effect = EFFECTS[load.kind]
+        if effect.acts_on(load, rod):
+            cuts.update(effect.breaks(load))
+    return tuple(sorted(cuts))
+
+
+def nodes_for(modes: int) -> int:
+    """Chebyshev intervals that resolve the shape of a rod whose strain has so many modes."""
+    return 2 * modes + 2
+
+
+def discretise(
+    scene: scenes.Scene,
+    modes: int | Sequence[int] | None = None,
+    nodes: int | None = None,
+    transport: str = "magnus6",
+) -> dict[str, Discretisation]:
+    """A discretisation for every rod: what is given here, else what the scene fixes, else a default.
+
+    Args:
+        scene: the scene.
+        modes: polynomials per component and element, one number or one for each admitted strain.
+        nodes: Chebyshev intervals per element.
+        transport: integration method of the rotation.
+    """
+    modes = scene.accuracy.modes if modes is None else modes
+    nodes = scene.accuracy.nodes if nodes is None else nodes
+    chosen = DEFAULT_MODES if modes is None else modes
+    found = {}
+    for rod in scene.rods:
+        per_component = (chosen,) * len(rod.admitted) if isinstance(chosen, int) else tuple(chosen)
+        count = nodes if nodes is not None else nodes_for(max(per_component))
+        found[rod.name] = Discretisation(per_component, count, element_ends(scene, rod.name), transport)
+    return found

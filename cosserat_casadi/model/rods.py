@@ -1,0 +1,95 @@
+"""A rod of the scene as the record the mechanics reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.rotation import quaternion_from_tangent
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod import section
+from cosserat_casadi.rod.properties import STRAINS, RodProperties
+
+Field = Callable[[FloatArray], FloatArray]
+
+
+def rod_properties(rod: scenes.Rod) -> RodProperties:
+    """Stiffness, density and unloaded strain of a rod of the scene."""
+    return RodProperties(
+        name=rod.name,
+        length=rod.length,
+        admitted=rod.admitted,
+        basis=rod.basis,
+        hooke=_hooke(rod),
+        intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
+        linear_density=_linear_density(rod),
+    )
+
+
+def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
+    """World position (3,) and quaternion (4,) of the rod's base."""
+    position = np.asarray(rod.base.position, dtype=float)
+    if rod.base.tangent is not None:
+        return position, quaternion_from_tangent(rod.base.tangent)
+    return position, np.asarray(rod.base.quaternion, dtype=float)
+
+
+def _coefficients(component: float | Sequence[float]) -> tuple[float, ...]:
+    values = np.atleast_1d(np.asarray(component, dtype=float))
+    return tuple(float(v) for v in values)
+
+
+def _linear(value: float | Sequence[float]) -> Field:
+    """A size along the rod: constant, or linear from base to tip."""
+    base, tip = (value, value) if isinstance(value, int | float) else value
+    return lambda X: base + (tip - base) * X
+
+
+def _hooke(rod: scenes.Rod) -> Field:
+    if rod.stiffness is not None:
+        return _direct(rod.stiffness)
+    assert rod.material is not None
+    assert rod.section is not None
+    material, correction = rod.material, rod.section.shear_correction
+    shape = _section_shape(rod.section)
+    shear_modulus = material.shear_modulus
+    if shear_modulus is None:
+        assert material.poisson_ratio is not None
+        shear_modulus = material.youngs_modulus / (2 * (1 + material.poisson_ratio))
+    return lambda X: section.hooke(shape(X), material.youngs_modulus, shear_modulus, correction)
+
+
+def _direct(stiffness: scenes.Stiffness) -> Field:
+    """Stiffnesses as given; one that is not admitted, and so not given, is not a number."""
+    fields = [getattr(stiffness, name) for name in STRAINS]
+    linear = [_linear(np.nan if field is None else field) for field in fields]
+    return lambda X: np.stack([np.broadcast_to(f(X), X.shape) for f in linear], axis=-1)
+
+
+def _section_shape(
+    shape: scenes.Circle | scenes.Annulus | scenes.Rectangle,
+) -> Callable[[FloatArray], section.SectionShape]:
+    if isinstance(shape, scenes.Circle):
+        radius = _linear(shape.radius)
+        return lambda X: section.circle(_array(radius, X))
+    if isinstance(shape, scenes.Annulus):
+        outer, inner = _linear(shape.outer_radius), _linear(shape.inner_radius)
+        return lambda X: section.annulus(_array(outer, X), _array(inner, X))
+    width, height = _linear(shape.width), _linear(shape.height)
+    return lambda X: section.rectangle(_array(width, X), _array(height, X))
+
+
+def _array(field: Field, X: FloatArray) -> FloatArray:
+    return np.broadcast_to(field(X), X.shape)
+
+
+def _linear_density(rod: scenes.Rod) -> Field | None:
+    if rod.linear_density is not None:
+        given = _linear(rod.linear_density)
+        return lambda X: _array(given, X)
+    if rod.material is None or rod.section is None or rod.material.density is None:
+        return None
+    density, shape = rod.material.density, _section_shape(rod.section)
+    return lambda X: density * shape(X).area

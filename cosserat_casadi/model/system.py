@@ -1,0 +1,210 @@
+"""The equations of a scene as expressions: rods side by side, coupled by the wrenches of supports.
+
+Unknowns x: the strain coordinates of every rod, then the multipliers of every support. A single rod is the case of
+one; what couples rods adds rows and columns, never instructions to the rods themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.effect import Site, constant
+from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
+from cosserat_casadi.effects.support import Hold, Pose
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.inputs import InputLayout, magnitude
+from cosserat_casadi.model.rods import base_pose, rod_properties
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.tangent import Tangent
+from cosserat_casadi.rod.wrenches import Wrench
+
+
+@dataclass(frozen=True)
+class Arguments:
+    """Symbols, or numbers, that a system is written in.
+
+    Attributes:
+        x: unknowns.
+        inputs: stacked inputs.
+        factor: 0 is the unloaded scene, 1 the scene itself; between them loads are scaled and supports yield.
+    """
+
+    x: Matrix
+    inputs: Matrix
+    factor: Matrix | float = 1.0
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A scene with everything that does not depend on the unknowns settled.
+
+    Attributes:
+        scene: the scene.
+        layout: its inputs.
+        bases: the constant matrices of each rod.
+    """
+
+    scene: scenes.Scene
+    layout: InputLayout
+    bases: dict[str, StrainBasis]
+
+    @cached_property
+    def holds(self) -> list[tuple[scenes.Support, Hold]]:
+        """Supports, each as the scene and as the mechanics have it."""
+        return [(support, self.hold(support)) for support in self.scene.supports]
+
+    @cached_property
+    def rod_slices(self) -> dict[str, slice]:
+        """Where each rod's coordinates stand in x."""
+        ends = np.cumsum([0, *[basis.size for basis in self.bases.values()]])
+        return {n: slice(int(a), int(b)) for n, a, b in zip(self.bases, ends, ends[1:], strict=False)}
+
+    @cached_property
+    def strain_size(self) -> int:
+        """Number of strain coordinates of all rods."""
+        return sum(basis.size for basis in self.bases.values())
+
+    @cached_property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.strain_size + sum(hold.size for _, hold in self.holds)
+
+    def base(self, rod: str) -> Pose:
+        """World pose of a rod's base."""
+        position, quaternion = base_pose(next(r for r in self.scene.rods if r.name == rod))
+        return Pose(ca.DM(position), ca.DM(quaternion))
+
+    def hold(self, support: scenes.Support) -> Hold:
+        """The support as the mechanics see it."""
+        basis, kind = self.bases[support.rod], SUPPORTS[support.kind]
+        return Hold(basis.rod, basis.energy_unit, kind.turns, kind.target(support, self.base(support.rod)))
+
+
+def frame(scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]) -> Frame:
+    """Constant matrices of every rod of a scene."""
+    bases = {rod.name: StrainBasis(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
+    return Frame(scene, layout, bases)
+
+
+@dataclass(frozen=True)
+class System:
+    """The equations of a scene in given arguments.
+
+    Attributes:
+        frame: what is constant.
+        arguments: what they are written in.
+    """
+
+    frame: Frame
+    arguments: Arguments
+
+    @cached_property
+    def rods(self) -> dict[str, InverseGeometricModel]:
+        """Balance of every rod, in its base frame."""
+        return {name: self._rod(name) for name in self.frame.bases}
+
+    @cached_property
+    def tangents(self) -> dict[str, Tangent]:
+        """Variations of every rod's fields."""
+        return {name: Tangent(igm) for name, igm in self.rods.items()}
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """Residuals of the rods, then the gaps of the supports; zero in equilibrium, without unit."""
+        gaps = [self._closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
+        return ca.vertcat(*[igm.residual for igm in self.rods.values()], *gaps)
+
+    @cached_property
+    def jacobian(self) -> Matrix:
+        """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
+        if any(b.discretisation.transport == "permuted" for b in self.frame.bases.values()):
+            return ca.jacobian(self.residual, self.arguments.x)
+        blocks = ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
+        if not self._holds:
+            return blocks
+        right, below = zip(*[self._hold_columns(s, hold) for s, hold, _ in self._holds], strict=True)
+        size = sum(column.shape[1] for column in right)
+        yielding = type(blocks)(size, size)
+        if not self._whole:
+            yielding = (1 - self.arguments.factor) * ca.MX.eye(size)
+        return ca.blockcat([[blocks, ca.horzcat(*right)], [ca.vertcat(*below), yielding]])
+
+    def tip(self, rod: str) -> Pose:
+        """Pose of a rod's tip in its base frame."""
+        place = self.rods[rod].shape
+        return Pose(place.position_at(-1), place.quaternion[:, -1])
+
+    def energy(self) -> Matrix:
+        """Elastic energy of all rods, J."""
+        return ca.sum1(ca.vertcat(*[igm.energy for igm in self.rods.values()]))
+
+    @property
+    def _whole(self) -> bool:
+        """Whether the equations are those of the scene itself, not of a point on the way to it."""
+        return isinstance(self.arguments.factor, float) and self.arguments.factor == 1.0
+
+    def _closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
+        """A support on the way to the scene: a spring between the tip and its target, from limp to rigid."""
+        factor = self.arguments.factor
+        return gap if self._whole else factor * gap + (1 - factor) * multipliers
+
+    @cached_property
+    def _holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
+        found, start = [], self.frame.strain_size
+        for support, hold in self.frame.holds:
+            found.append((support, hold, self.arguments.x[start : start + hold.size]))
+            start += hold.size
+        return found
+
+    def _hold_columns(self, support: scenes.Support, hold: Hold) -> tuple[Matrix, Matrix]:
+        tangent, columns = self.tangents[support.rod], self.frame.rod_slices[support.rod]
+        moved, turned = tangent.position(-1), tangent.rotation_of(-1)
+        before, after = columns.start, self.frame.strain_size - columns.stop
+        force = hold.force_variation(moved, turned)
+        gap = hold.gap_variation(self.tip(support.rod), moved, turned)
+        gap = gap if self._whole else self.arguments.factor * gap
+        pad = type(force)
+        column = ca.vertcat(pad(before, hold.size), force, pad(after, hold.size))
+        row = ca.horzcat(pad(hold.size, before), gap, pad(hold.size, after))
+        return column, row
+
+    def _rod(self, name: str) -> InverseGeometricModel:
+        basis = self.frame.bases[name]
+        q = self.arguments.x[self.frame.rod_slices[name]]
+        rotation = quaternion_to_matrix(self.frame.base(name).quaternion)
+        wrenches = rod_wrenches(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
+        wrenches += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        return InverseGeometricModel(Statics(shape(basis, q), wrenches))
+
+
+def rod_wrenches(frame: Frame, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Wrench]:
+    """Wrenches of the scene's loads on one rod, in its base frame."""
+    basis = frame.bases[rod]
+    site = Site(basis.rod, basis.grid, base_R_world)
+    found: list[Wrench] = []
+    for load in frame.scene.loads:
+        effect = EFFECTS[load.kind]
+        if effect.acts_on(load, rod):
+            values = {field: _value(frame.layout, load, field, arguments) for field in effect.magnitudes}
+            found.extend(effect.wrenches(load, site, values))
+    return found
+
+
+def _value(layout: InputLayout, load: scenes.Load, field: str, arguments: Arguments) -> Matrix | None:
+    place = layout.slices.get(f"{load.name}.{field}")
+    default = magnitude(load, field)
+    value = constant(default) if place is None else ca.reshape(arguments.inputs[place], *default.shape)
+    if value is None or (isinstance(arguments.factor, float) and arguments.factor == 1.0):
+        return value
+    return arguments.factor * value

@@ -1,0 +1,119 @@
+"""What the command line shows a person: tables and sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.price import price, price_of_load
+from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.solve.solution import Solution
+
+
+def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
+    """Outcome, table of rods, and the files that were written."""
+    console.print(f"[bold]{escape(solution.model.scene.title or 'Untitled scene')}[/]", highlight=False)
+    colour = "green" if solution.converged else "red"
+    console.print(f"[bold {colour}]{escape(solution.message)}[/]", highlight=False)
+    console.print(_rod_table(solution))
+    console.print(_figures(solution), highlight=False)
+    for path in written:
+        console.print(f"wrote {escape(str(path))}", highlight=False)
+
+
+def print_check(console: Console, model: Model) -> None:
+    """What a valid scene holds, and what its model costs."""
+    console.print(f"[bold]{escape(model.scene.title or 'Untitled scene')}[/]: the scene is valid.", highlight=False)
+    console.print(_discretisation_table(model))
+    if model.scene.loads:
+        console.print(_load_table(model))
+    if model.scene.supports:
+        console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in model.scene.supports))
+    with console.status("Counting operations"):
+        cost = price(model)
+    console.print(
+        f"Model of {model.size} unknowns in scalar operations: IGM {cost.igm:,}, residual {cost.residual:,}, "
+        f"residual and Jacobian {cost.jacobian:,}.",
+        highlight=False,
+    )
+    if model.scene.accuracy.modes is None:
+        console.print(
+            f"The solve picks modes and nodes for a tolerance of {model.scene.accuracy.tolerance:g}; "
+            "the figures are for the default ones.",
+            highlight=False,
+        )
+
+
+def print_refusal(console: Console, error: SceneError) -> None:
+    """Every reason for which an input is refused."""
+    count = len(error.problems)
+    console.print(f"[bold red]Refused:[/] {count} problem{'s' if count != 1 else ''}.", highlight=False)
+    for problem in error.problems:
+        console.print(f"  {escape(str(problem))}", highlight=False, soft_wrap=True)
+
+
+def _rod_table(solution: Solution) -> Table:
+    table = Table()
+    for heading in ("rod", "quantity"):
+        table.add_column(heading)
+    for axis in ("x", "y", "z"):
+        table.add_column(axis, justify="right")
+    for name in solution.model.frame.bases:
+        tip, base = solution.tip(name), solution.base_wrench(name)
+        table.add_row(escape(name), "tip position, m", *_digits(tip.position[0]))
+        table.add_row("", "tip tangent", *_digits(tip.rotation[0][:, 2]))
+        table.add_row("", "clamp force on the rod, N", *_digits(base.force))
+        table.add_row("", "clamp moment about the base, N m", *_digits(base.moment), end_section=True)
+    return table
+
+
+def _figures(solution: Solution) -> str:
+    parts = [f"residual {solution.residual_norm:.1e}", f"{solution.iterations} iterations"]
+    if solution.error_estimate is not None:
+        parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
+    if solution.shape_error_estimate is not None:
+        parts.append(f"over the whole shape {solution.shape_error_estimate:.1e}")
+    for name, d in solution.model.discretisation.items():
+        elements = f" in {d.elements} elements" if d.elements > 1 else ""
+        parts.append(f"{name}: modes {list(d.modes)}, {d.nodes} intervals{elements}")
+    stability = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
+    if solution.converged:
+        parts.append(stability[solution.stable])
+    return escape("; ".join(parts))
+
+
+def _discretisation_table(model: Model) -> Table:
+    table = Table()
+    for heading in ("rod", "strains", "modes", "intervals", "elements", "rotation by"):
+        table.add_column(heading)
+    for name, d in model.discretisation.items():
+        strains = ", ".join(STRAINS[i] for i in model.frame.bases[name].rod.admitted)
+        modes, nodes = ", ".join(map(str, d.modes)), str(d.nodes)
+        table.add_row(escape(name), strains, modes, nodes, str(d.elements), d.transport)
+    return table
+
+
+def _load_table(model: Model) -> Table:
+    table = Table()
+    for heading in ("load", "kind", "free inputs"):
+        table.add_column(heading)
+    table.add_column("adds to the residual", justify="right")
+    for load in model.scene.loads:
+        free = [n.split(".")[1] for n in model.inputs.names if n.startswith(f"{load.name}.")]
+        cost = price_of_load(model.scene, load.name)
+        table.add_row(escape(load.name), load.kind, ", ".join(free) or "none", f"{cost:,} operations")
+    return table
+
+
+def _digits(vector: FloatArray) -> list[str]:
+    """Six digits; what is zero beside the largest entry is shown as zero."""
+    largest = float(np.abs(vector).max())
+    return ["0" if abs(v) <= 1e-14 * max(largest, 1e-300) else f"{v:.6g}" for v in vector]

@@ -1,0 +1,1 @@
+"""One Cosserat rod: sections, strain, kinematics, statics."""

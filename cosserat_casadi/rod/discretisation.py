@@ -1,0 +1,46 @@
+"""How finely a rod is resolved: data that a user fixes or a tuner chooses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cosserat_casadi.maths.grid import Grid
+
+TRANSPORTS = ("magnus4", "magnus6", "magnus8", "permuted")
+"""Ways to integrate the rotation: three product-of-exponentials methods and the literal system of chapter 3."""
+
+
+@dataclass(frozen=True)
+class Discretisation:
+    """Polynomials and grid of one rod.
+
+    Attributes:
+        modes: number of polynomials per admitted strain and element, degrees 0 … n − 1.
+        nodes: Chebyshev intervals per element.
+        breaks: element ends on [0, 1]; a point load must sit on one.
+        transport: one of TRANSPORTS.
+    """
+
+    modes: tuple[int, ...]
+    nodes: int
+    breaks: tuple[float, ...] = (0.0, 1.0)
+    transport: str = "magnus6"
+
+    def __post_init__(self) -> None:
+        if self.transport not in TRANSPORTS:
+            raise ValueError(f"transport is one of {TRANSPORTS}, got {self.transport!r}")
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.breaks) - 1
+
+    @property
+    def unknowns(self) -> int:
+        """Number of strain coordinates q of the rod."""
+        return self.elements * sum(self.modes)
+
+    @property
+    def grid(self) -> Grid:
+        """The grid the rod's fields live on."""
+        return Grid(self.breaks, self.nodes)

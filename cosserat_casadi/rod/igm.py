@@ -1,0 +1,95 @@
+"""Inverse Geometric Model: strain coordinates and loads ↦ generalised force and base wrench, report (2.18)–(2.20).
+
+The residual K_εε q + Q_ad is divided by EI/ℓ, so it is without unit and of the size of F ℓ²/EI.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.blocks import stack
+from cosserat_casadi.maths.rotation import dot
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.transport import interval_kernels, interval_turns, turn_matrix
+
+
+@dataclass(frozen=True)
+class InverseGeometricModel:
+    """Balance of one rod.
+
+    Attributes:
+        statics: the rod's shape and internal wrench.
+    """
+
+    statics: Statics
+
+    @property
+    def shape(self) -> Shape:
+        """The rod's shape."""
+        return self.statics.shape
+
+    @cached_property
+    def generalised_force(self) -> Matrix:
+        """Q_ad / (EI/ℓ), n×1: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
+        if self.shape.basis.discretisation.transport == "permuted":
+            return self._weighted_force()
+        return self._transposed_force()
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
+        return ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q + self.generalised_force
+
+    @cached_property
+    def energy(self) -> Matrix:
+        """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
+        basis = self.shape.basis
+        return basis.energy_unit / 2 * ca.bilin(ca.sparsify(ca.DM(basis.stiffness)), self.shape.q, self.shape.q)
+
+    @cached_property
+    def body_moment(self) -> Matrix | None:
+        """Internal moment of each interval in the frame of the section at its beginning, 3×(intervals)."""
+        moment = self.statics.interval_moment
+        if moment is None:
+            return None
+        return ca.vertcat(*[ca.sum1(d[:, :-1] * moment) for d in self.shape.section_directors])
+
+    def _transposed_force(self) -> Matrix:
+        """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""
+        basis, moment = self.shape.basis, self.body_moment
+        force: Matrix = ca.DM.zeros(basis.size, 1)
+        if moment is not None and basis.rod.turning_axes:
+            kernel = interval_kernels(basis).pull.map(moment.shape[1])
+            pulled = stack(kernel(interval_turns(basis, self.shape.q), moment))
+            force = force - ca.sparsify(ca.DM(turn_matrix(basis) / basis.energy_unit)).T @ pulled
+        return force + self._linear_force(self.statics.force_covector)
+
+    def _linear_force(self, covector: Matrix | None) -> Matrix:
+        """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
+        basis = self.shape.basis
+        parts: list[Matrix] = [ca.DM.zeros(basis.size, 1)[: basis.size - self._linear_size()]]
+        for c in basis.rod.admitted:
+            if c < 3:
+                continue
+            if covector is None:
+                parts.append(ca.DM.zeros(basis.at_nodes[c].shape[1], 1))
+                continue
+            share = dot(self.shape.directors[c - 3], covector).T
+            weight = ca.DM(basis.at_nodes[c] * (-basis.rod.length / basis.energy_unit))
+            parts.append(weight.T @ share)
+        return ca.vertcat(*parts)
+
+    def _linear_size(self) -> int:
+        basis = self.shape.basis
+        return sum(basis.at_nodes[c].shape[1] for c in basis.rod.admitted if c >= 3)
+
+    def _weighted_force(self) -> Matrix:
+        """Literal quadrature of report (2.16), from the internal wrench at the nodes."""
+        basis, wrench = self.shape.basis, self.statics.internal_wrench()
+        factor = -basis.rod.length / basis.energy_unit * basis.grid.weights
+        return ca.vertcat(*[ca.DM(basis.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in basis.rod.admitted])

@@ -1,0 +1,62 @@
+"""What a rod is made of, as numbers: the one record that the mechanics reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import legendre
+
+Array = npt.NDArray[np.float64]
+
+STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
+"""Names of the six strain components, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
+
+
+@dataclass(frozen=True)
+class RodProperties:
+    """A rod in its unloaded state.
+
+    Attributes:
+        name: the rod's name.
+        length: undeformed length ℓ, m.
+        admitted: indices of the admitted strains, ascending: the columns of B in report (2.1).
+        basis: "legendre" or "chebyshev", the polynomials of report (2.4).
+        hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6), N m² and N; rows of strains that are not
+            admitted are not read.
+        intrinsic: ξ⁰ as six tuples of Legendre coefficients in 2X − 1: three of 1/m, three without unit.
+        linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None when nothing weighs the rod.
+    """
+
+    name: str
+    length: float
+    admitted: tuple[int, ...]
+    basis: str
+    hooke: Callable[[Array], Array]
+    intrinsic: tuple[tuple[float, ...], ...]
+    linear_density: Callable[[Array], Array] | None = None
+
+    def intrinsic_strain(self, X: Array) -> Array:
+        """ξ⁰ at abscissae X, shape (len(X), 6)."""
+        columns = [legendre.legval(2 * X - 1, np.asarray(c)) for c in self.intrinsic]
+        return np.stack([np.broadcast_to(c, X.shape) for c in columns], axis=-1)
+
+    @property
+    def bending_stiffness(self) -> float:
+        """EI that makes the model dimensionless, N m²: mean of the smallest bending or torsion stiffness.
+
+        A rod that admits neither takes H ℓ² of its softest linear strain.
+        """
+        x, weights = legendre.leggauss(8)
+        mean = (weights / 2) @ self.hooke((x + 1) / 2)
+        angular = [mean[i] for i in self.admitted if i < 3]
+        linear = [mean[i] * self.length**2 for i in self.admitted if i >= 3]
+        return float(min(angular or linear))
+
+    @property
+    def turning_axes(self) -> tuple[int, ...]:
+        """Local axes about which the rod can turn along its length, unloaded or not."""
+        bent = {i for i in range(3) if any(c != 0.0 for c in self.intrinsic[i])}
+        return tuple(sorted(bent | {i for i in self.admitted if i < 3}))

@@ -1,0 +1,89 @@
+"""Areas and second moments of cross-sections, and the Hooke tensor they give: report (1.20), (1.21).
+
+The section lies in the local x–y plane; z is the tangent. Every argument may be an array over abscissae.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SectionShape:
+    """Geometry of a section.
+
+    Attributes:
+        area: A, m².
+        second_moment_x: I_xx = ∫ y² dA, m⁴: resists bending about local x.
+        second_moment_y: I_yy = ∫ x² dA, m⁴: resists bending about local y.
+        torsion_constant: J, m⁴, of Saint-Venant's problem; I_xx + I_yy only for circles and annuli.
+    """
+
+    area: Array
+    second_moment_x: Array
+    second_moment_y: Array
+    torsion_constant: Array
+
+
+def circle(radius: Array) -> SectionShape:
+    """Solid circle of the given radius (m)."""
+    return annulus(radius, np.zeros_like(radius))
+
+
+def annulus(outer_radius: Array, inner_radius: Array) -> SectionShape:
+    """Circular tube between two radii (m)."""
+    second_moment = np.pi / 4 * (outer_radius**4 - inner_radius**4)
+    return SectionShape(
+        area=np.pi * (outer_radius**2 - inner_radius**2),
+        second_moment_x=second_moment,
+        second_moment_y=second_moment,
+        torsion_constant=2 * second_moment,
+    )
+
+
+def rectangle(width: Array, height: Array) -> SectionShape:
+    """Solid rectangle, ``width`` along local x and ``height`` along local y (m)."""
+    return SectionShape(
+        area=width * height,
+        second_moment_x=width * height**3 / 12,
+        second_moment_y=height * width**3 / 12,
+        torsion_constant=_rectangle_torsion_constant(width, height),
+    )
+
+
+def _rectangle_torsion_constant(width: Array, height: Array) -> Array:
+    """Saint-Venant's series J = a b³ [1/3 − (64/π⁵)(b/a) Σ tanh(nπa/2b)/n⁵] over odd n, with a ≥ b.
+
+    tanh is 1 to rounding from n = 13 on for every a ≥ b, so the rest of the series is a constant: 31 ζ(5)/32 is
+    the sum of 1/n⁵, and only the deficits 1 − tanh are summed.
+    """
+    a, b = np.maximum(width, height), np.minimum(width, height)
+    n = np.arange(1, 27, 2)
+    all_odd = 31 / 32 * 1.0369277551433699
+    deficit = ((1 - np.tanh(n * np.pi / 2 * (a / b)[..., None])) / n**5).sum(axis=-1)
+    result: Array = a * b**3 * (1 / 3 - 64 / np.pi**5 * (b / a) * (all_odd - deficit))
+    return result
+
+
+def hooke(shape: SectionShape, youngs_modulus: float, shear_modulus: float, shear_correction: float) -> Array:
+    """Diagonal of the Hooke tensor (EI_xx, EI_yy, GJ, kGA, kGA, EA), report (1.21).
+
+    Args:
+        shape: the sections.
+        youngs_modulus: E, Pa.
+        shear_modulus: G, Pa.
+        shear_correction: k, factor on the shear stiffnesses.
+
+    Returns:
+        shape (len, 6): N m² for the first three columns, N for the others.
+    """
+    shear = shear_correction * shear_modulus * shape.area
+    bending_x = youngs_modulus * shape.second_moment_x
+    bending_y = youngs_modulus * shape.second_moment_y
+    torsion = shear_modulus * shape.torsion_constant
+    return np.stack([bending_x, bending_y, torsion, shear, shear, youngs_modulus * shape.area], axis=-1)

@@ -1,0 +1,48 @@
+"""Wrenches that act on a rod: the two records in which every effect speaks to the mechanics.
+
+Coordinates are those of the rod's base frame for a dead wrench and those of the loaded section for a follower.
+A part that does not exist is None and costs nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+
+@dataclass(frozen=True)
+class PointWrench:
+    """Force and moment on one section.
+
+    Attributes:
+        at: abscissa X of the section, a break of the rod's grid.
+        force: 3×1, N, or None.
+        moment: 3×1, N m, or None.
+        follower: whether the wrench turns with the section.
+    """
+
+    at: float
+    force: Matrix | None
+    moment: Matrix | None
+    follower: bool
+
+
+@dataclass(frozen=True)
+class LineWrench:
+    """Force and moment per metre of undeformed length: coefficients times known profiles.
+
+    Attributes:
+        force: 3×k coefficients, N/m, or None.
+        moment: 3×k coefficients, N, or None.
+        profiles: values of the k profiles at the nodes, shape (k, M), without unit.
+        follower: whether the wrench turns with the sections.
+    """
+
+    force: Matrix | None
+    moment: Matrix | None
+    profiles: FloatArray
+    follower: bool
+
+
+Wrench = PointWrench | LineWrench

@@ -1,0 +1,30 @@
+"""The JSON schema of the scene file, for editors: made from the records that read it.
+
+``python -m cosserat_casadi.scene.json_schema`` writes the committed copy, ``scene.schema.json``.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.scene.schema import Scene
+
+COMMITTED = Path(__file__).with_name("scene.schema.json")
+"""The copy that editors are pointed at."""
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """The schema of a scene file, JSON Schema 2020-12."""
+    schema = Scene.model_json_schema(by_alias=True)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def schema_text() -> str:
+    """The schema as it is committed: keys sorted, two spaces, a newline at the end."""
+    return json.dumps(scene_json_schema(), indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+if __name__ == "__main__":
+    COMMITTED.write_text(schema_text(), encoding="utf-8")

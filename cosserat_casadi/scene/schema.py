@@ -1,0 +1,841 @@
+"""The words of a scene: frozen records with units and ranges, and the rules that hold between them.
+
+A record either holds what its fields promise or does not exist. The rules between keys and between tables
+(`conflicts`) look at what the file says, not at validated records, so they are told together with the faults of
+single values and all faults of a file come at once.
+
+The local z axis of a section is the rod's tangent; strains are ordered K_x, K_y, K_z, Γ_x, Γ_y, Γ_z.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    ModelWrapValidatorHandler,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
+"""Names of the six strains, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
+
+PRESETS: dict[str, tuple[int, ...]] = {"planar": (1,), "kirchhoff": (0, 1, 2), "reissner": (0, 1, 2, 3, 4, 5)}
+"""Indices of the strains that the named rod theories admit."""
+
+NOT_YET = "is part of the scene format but this version cannot solve it yet"
+"""What is said of words that the format knows and this version does not."""
+
+Path = tuple[str | int, ...]
+Quadruple = tuple[float, float, float, float]
+Triple = tuple[float, float, float]
+RecordType = TypeVar("RecordType", bound="Record")
+Chosen = TypeVar("Chosen")
+
+
+# Faults
+
+
+class Fault(NamedTuple):
+    """One fault at a path of the scene.
+
+    Attributes:
+        path: keys and indices from the record that is checked.
+        problem: what is wrong.
+        remedy: what to do about it; empty when the problem says it already.
+    """
+
+    path: Path
+    problem: str
+    remedy: str = ""
+
+
+def shown(value: object) -> str:
+    """A value of the file as it is quoted in a message: short, in the words of TOML."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return repr(value if len(value) <= 60 else value[:57] + "...")
+    if isinstance(value, int):
+        return str(value) if abs(value) < 10**30 else "a whole number beyond all range"
+    if isinstance(value, float):
+        return repr(float(value))
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}"
+    if isinstance(value, Mapping | BaseModel):
+        return "a table"
+    return f"a {type(value).__name__}"
+
+
+def _refusal(faults: Iterable[Fault], others: ValidationError | None = None) -> ValidationError:
+    """The faults, together with those that pydantic found, as the exception that pydantic passes on."""
+    lines = [] if others is None else [_line(error) for error in others.errors(include_url=False)]
+    for path, problem, remedy in faults:
+        told = PydanticCustomError("refused", "{problem}", {"problem": problem, "remedy": remedy})
+        lines.append(InitErrorDetails(type=told, loc=path, input=None))
+    return ValidationError.from_exception_data("scene", lines)
+
+
+def _line(error: Any) -> InitErrorDetails:
+    told, context = error["type"], error.get("ctx", {})
+    if told == "refused":
+        told = PydanticCustomError("refused", "{problem}", context)
+    return InitErrorDetails(type=told, loc=error["loc"], input=error["input"], ctx=context)
+
+
+def _plain(value: Any) -> Any:
+    """Records as the tables they were read from, and without what is not given."""
+    if isinstance(value, BaseModel):
+        value = value.model_dump(by_alias=True, exclude_unset=True)
+    if isinstance(value, Mapping):
+        return {key: _plain(entry) for key, entry in value.items() if entry is not None}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    return value
+
+
+class Record(BaseModel):
+    """A table of the scene: frozen, without unknown keys, every number finite."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """Faults of keys against each other, in a table whose values may be faulty too."""
+        yield from ()
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _every_fault_at_once(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        faults = list(cls.conflicts(_plain(given))) if isinstance(given, Mapping) else []
+        try:
+            record = handler(given)
+        except ValidationError as refused:
+            raise _refusal(faults, refused) from None
+        if faults:
+            raise _refusal(faults)
+        return record
+
+
+# Numbers, vectors and choices
+
+
+def _listed(count: int, what: str) -> BeforeValidator:
+    """Lists of one length only, said in one sentence instead of one for each missing entry."""
+
+    def check(value: Any) -> Any:
+        if not isinstance(value, list | tuple):
+            raise _refusal([Fault((), f"must be a list of {what}, got {shown(value)}")])
+        if len(value) != count:
+            raise _refusal([Fault((), f"must be a list of {what}, got {len(value)}")])
+        return value
+
+    return BeforeValidator(check)
+
+
+def _one_or_list(value: Any) -> str:
+    return "⟨list⟩" if isinstance(value, list | tuple) else "⟨one⟩"
+
+
+def _word(key: str, known: Sequence[str], not_yet: Sequence[str] = ()) -> BeforeValidator:
+    """The key that says which kind of table this is, checked before the table itself."""
+    choices = ", ".join(repr(word) for word in known)
+
+    def check(value: Any) -> Any:
+        if isinstance(value, BaseModel):
+            return value
+        if not isinstance(value, Mapping):
+            raise _refusal([Fault((), f"must be a table, got {shown(value)}")])
+        word = value.get(key)
+        if word is None:
+            raise _refusal([Fault((key,), "missing", f"one of {choices}")])
+        if word in not_yet:
+            raise _refusal([Fault((key,), f"{word!r} {NOT_YET}")])
+        if word not in known:
+            raise _refusal([Fault((key,), f"must be one of {choices}, got {shown(word)}")])
+        return value
+
+    return BeforeValidator(check)
+
+
+def _by(key: str) -> Callable[[Any], str]:
+    def tag(value: Any) -> str:
+        return f"⟨{value[key] if isinstance(value, Mapping) else getattr(value, key, None)}⟩"
+
+    return tag
+
+
+def _unit_quaternion(value: Quadruple) -> Quadruple:
+    norm = math.hypot(*value)
+    if abs(norm - 1.0) > 1e-6:
+        raise _refusal([Fault((), f"must have norm 1, got norm {norm:.9g}", "divide it by its norm; order w, x, y, z")])
+    w, x, y, z = value
+    return (w / norm, x / norm, y / norm, z / norm)
+
+
+def _direction(value: Triple) -> Triple:
+    largest = max(map(abs, value))
+    if largest == 0.0:
+        raise _refusal([Fault((), "must not be zero", "a direction, such as [1, 0, 0]")])
+    x, y, z = (component / largest for component in value)
+    norm = math.hypot(x, y, z)
+    return (x / norm, y / norm, z / norm)
+
+
+def _without_repetition(value: tuple[str, ...]) -> tuple[str, ...]:
+    if faults := list(_repeated(value)):
+        raise _refusal(faults)
+    return value
+
+
+def _repeated(entries: Sequence[Any]) -> Iterator[Fault]:
+    seen: set[str] = set()
+    for i, entry in enumerate(entries):
+        if isinstance(entry, str) and entry in seen:
+            yield Fault((i,), f"{shown(entry)} is listed twice")
+        elif isinstance(entry, str):
+            seen.add(entry)
+
+
+def _exactly_one(value: Any) -> Any:
+    if type(value) is not int or value != 1:
+        raise _refusal([Fault((), f"must be 1, got {shown(value)}", "this version reads schema = 1")])
+    return value
+
+
+def _loaded_section(value: float) -> float:
+    if not 0.0 < value <= 1.0:
+        remedy = "a wrench on the base goes straight into the clamp: leave it out" if value == 0.0 else ""
+        raise _refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
+    return value
+
+
+def _not_yet(value: Any) -> Any:
+    if isinstance(value, list | tuple) and not value:
+        return value
+    raise _refusal([Fault((), NOT_YET)])
+
+
+def _starts_in_the_world(value: Any) -> Any:
+    if isinstance(value, Mapping) and ("rod" in value or "at" in value):
+        raise _refusal([Fault((), "a rod that starts on another rod is not available in this version")])
+    return value
+
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0)]
+Whole = Annotated[int, Field(strict=True)]
+Vector = Annotated[tuple[Number, Number, Number], _listed(3, "3 numbers")]
+Quaternion = Annotated[tuple[Number, Number, Number, Number], _listed(4, "4 numbers"), AfterValidator(_unit_quaternion)]
+Direction = Annotated[Vector, AfterValidator(_direction)]
+Size = Annotated[
+    Annotated[Positive, Tag("⟨one⟩")]
+    | Annotated[tuple[Positive, Positive], _listed(2, "2 numbers, base and tip"), Tag("⟨list⟩")],
+    Discriminator(_one_or_list),
+]
+SizeOrZero = Annotated[
+    Annotated[Number, Field(ge=0), Tag("⟨one⟩")]
+    | Annotated[
+        tuple[Annotated[Number, Field(ge=0)], Annotated[Number, Field(ge=0)]],
+        _listed(2, "2 numbers, base and tip"),
+        Tag("⟨list⟩"),
+    ],
+    Discriminator(_one_or_list),
+]
+Component = Annotated[
+    Annotated[Number, Tag("⟨one⟩")] | Annotated[tuple[Number, ...], Field(min_length=1), Tag("⟨list⟩")],
+    Discriminator(_one_or_list),
+]
+Polynomials = Annotated[tuple[Component, Component, Component], _listed(3, "3 components")]
+Unavailable = Annotated[tuple[()], BeforeValidator(_not_yet)]
+StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
+StrainChoice = Annotated[
+    Annotated[Literal["planar", "kirchhoff", "reissner"], Tag("⟨one⟩")]
+    | Annotated[tuple[StrainName, ...], Field(min_length=1), AfterValidator(_without_repetition), Tag("⟨list⟩")],
+    Discriminator(_one_or_list),
+]
+Modes = Annotated[Whole, Field(ge=1, le=200)]
+ModesChoice = Annotated[
+    Annotated[Modes, Tag("⟨one⟩")] | Annotated[tuple[Modes, ...], Field(min_length=1), Tag("⟨list⟩")],
+    Discriminator(_one_or_list),
+]
+
+
+# Accuracy
+
+
+class Accuracy(Record):
+    """How exact the result is to be, or with what it is computed."""
+
+    tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] = Field(
+        1e-6, description="wanted pose error relative to the rod length, without unit"
+    )
+    modes: ModesChoice | None = Field(
+        None, description="polynomial modes per strain component, a whole number or a list of one per admitted strain"
+    )
+    nodes: Annotated[Whole, Field(ge=2, le=1000)] | None = Field(
+        None, description="intervals of the Chebyshev grid, a whole number"
+    )
+
+
+# Rods
+
+
+class Material(Record):
+    """An isotropic linear elastic material."""
+
+    youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
+    poisson_ratio: Annotated[Number, Field(gt=-1, le=0.5)] | None = Field(
+        None, description="Poisson's ratio, without unit; instead of shear_modulus"
+    )
+    shear_modulus: Positive | None = Field(None, description="shear modulus G, Pa; instead of poisson_ratio")
+    density: Positive | None = Field(None, description="density, kg/m³; needed where gravity acts")
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """Poisson's ratio and the shear modulus say the same."""
+        if "poisson_ratio" in given and "shear_modulus" in given:
+            yield Fault(("shear_modulus",), "stands beside poisson_ratio", "give one of the two")
+        if "poisson_ratio" not in given and "shear_modulus" not in given:
+            yield Fault(("poisson_ratio",), "missing", "give poisson_ratio or shear_modulus, Pa")
+
+
+class _Section(Record):
+    shear_correction: Positive = Field(
+        1.0, description="k in the shear stiffness k G A, without unit; 1 as in report (1.21)"
+    )
+
+
+class Circle(_Section):
+    """A solid circular cross-section."""
+
+    shape: Literal["circle"] = Field(description="solid circle")
+    radius: Size = Field(description="radius, m; a list of two goes linearly from base to tip")
+
+
+class Annulus(_Section):
+    """A circular tube."""
+
+    shape: Literal["annulus"] = Field(description="circular tube")
+    outer_radius: Size = Field(description="outer radius, m; a list of two goes linearly from base to tip")
+    inner_radius: SizeOrZero = Field(description="inner radius, m; a list of two goes linearly from base to tip")
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """The bore fits into the tube at both ends."""
+        outer, inner = _ends(given.get("outer_radius")), _ends(given.get("inner_radius"))
+        for bore, wall in zip(inner, outer, strict=False):
+            if bore >= wall:
+                problem = f"must be < outer_radius at both ends, got {shown(bore)} in {shown(wall)}"
+                yield Fault(("inner_radius",), problem)
+                return
+
+
+class Rectangle(_Section):
+    """A solid rectangular cross-section."""
+
+    shape: Literal["rectangle"] = Field(description="solid rectangle")
+    width: Size = Field(description="width along local x, m; a list of two goes linearly from base to tip")
+    height: Size = Field(description="height along local y, m; a list of two goes linearly from base to tip")
+
+
+Section = Annotated[
+    Annotated[Circle, Tag("⟨circle⟩")]
+    | Annotated[Annulus, Tag("⟨annulus⟩")]
+    | Annotated[Rectangle, Tag("⟨rectangle⟩")],
+    Discriminator(_by("shape")),
+    _word("shape", ("circle", "annulus", "rectangle")),
+]
+
+
+class Stiffness(Record):
+    """Diagonal of the Hooke tensor, each constant or linear from base to tip."""
+
+    bending_x: Size | None = Field(None, description="bending stiffness about local x, N m²")
+    bending_y: Size | None = Field(None, description="bending stiffness about local y, N m²")
+    torsion: Size | None = Field(None, description="torsional stiffness, N m²")
+    shear_x: Size | None = Field(None, description="shear stiffness along local x, N")
+    shear_y: Size | None = Field(None, description="shear stiffness along local y, N")
+    extension: Size | None = Field(None, description="axial stiffness, N")
+
+
+class Intrinsic(Record):
+    """Strains of the unloaded rod, ξ⁰."""
+
+    curvature: Polynomials = Field(
+        (0.0, 0.0, 0.0), description="K_x, K_y, K_z, 1/m; a component may list Legendre coefficients in 2X − 1"
+    )
+    tangent: Polynomials = Field(
+        (0.0, 0.0, 1.0),
+        description="Γ_x, Γ_y, Γ_z, without unit; a component may list Legendre coefficients in 2X − 1",
+    )
+
+
+class Base(Record):
+    """World pose of the section X = 0."""
+
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the base, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the base w, x, y, z, of norm 1, without unit"
+    )
+    tangent: Direction | None = Field(
+        None,
+        description="direction of the base's z axis, without unit; the shortest rotation of z, instead of quaternion",
+    )
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """A tangent says the orientation already."""
+        if "tangent" in given and "quaternion" in given:
+            yield Fault(("tangent",), "stands beside quaternion", "give one of the two")
+
+
+class Rod(Record):
+    """An elastic rod, held at its base."""
+
+    name: Name = Field(description="name of the rod, a letter, then letters, digits and underscores")
+    length: Positive = Field(description="undeformed length, m")
+    strain: StrainChoice = Field(
+        description="admitted strains: 'planar' (bending in the local x–z plane), 'kirchhoff' (bending and torsion), "
+        "'reissner' (all six), or a list out of bending_x, bending_y, torsion, shear_x, shear_y, extension"
+    )
+    basis: Literal["legendre", "chebyshev"] = Field("legendre", description="polynomials that the strains are made of")
+    material: Material | None = Field(None, description="what the rod is made of; with section")
+    section: Section | None = Field(None, description="its cross-section; with material")
+    stiffness: Stiffness | None = Field(None, description="stiffnesses, N m² and N; instead of material and section")
+    linear_density: Size | None = Field(
+        None, description="mass per length, kg/m, with stiffness; a list of two goes linearly from base to tip"
+    )
+    intrinsic: Intrinsic = Field(Intrinsic(), description="strains of the unloaded rod, 1/m and without unit")
+    base: Annotated[Base, BeforeValidator(_starts_in_the_world)] = Field(
+        Base(), description="world pose of the base, m"
+    )
+
+    @property
+    def admitted(self) -> tuple[int, ...]:
+        """Indices of the admitted strains, ascending, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
+        return _admitted(self.strain)
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """The elasticity is said once, and for every admitted strain."""
+        yield from _elasticity_said_once(given)
+        stiffness = given.get("stiffness")
+        if isinstance(stiffness, Mapping):
+            for name in (STRAINS[index] for index in _admitted(given.get("strain"))):
+                if name not in stiffness:
+                    yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
+
+
+def _elasticity_said_once(rod: Mapping[str, Any]) -> Iterator[Fault]:
+    made = [key for key in ("material", "section") if key in rod]
+    direct = [key for key in ("stiffness", "linear_density") if key in rod]
+    if made and direct:
+        remedy = "give material and section, or stiffness and linear_density"
+        yield Fault((direct[0],), f"stands beside {' and '.join(made)}", remedy)
+    elif made == ["material"]:
+        yield Fault(("section",), "missing", "a material needs a section")
+    elif made == ["section"]:
+        yield Fault(("material",), "missing", "a section needs a material")
+    elif not made and "stiffness" not in rod:
+        yield Fault(("material",), "missing", "give material and section, or stiffness")
+
+
+def _admitted(strain: Any) -> tuple[int, ...]:
+    """Indices of the strains that a strain entry admits; none where it is faulty."""
+    if isinstance(strain, str):
+        return PRESETS.get(strain, ())
+    names = strain if isinstance(strain, list | tuple) else ()
+    return tuple(index for index, name in enumerate(STRAINS) if name in names)
+
+
+def _ends(value: Any) -> tuple[float, ...]:
+    """Values of a size at base and tip; none where it is faulty."""
+    ends = value if isinstance(value, list | tuple) else (value, value)
+    sound = all(isinstance(end, int | float) and not isinstance(end, bool) for end in ends)
+    return tuple(ends) if sound and len(ends) == 2 else ()
+
+
+# Loads
+
+
+class Gravity(Record):
+    """A uniform field of acceleration."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("acceleration",)
+
+    name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
+    kind: Literal["gravity"] = Field(description="weight of the rods")
+    acceleration: Vector = Field(description="acceleration in world axes, m/s²")
+    rods: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_without_repetition)] | None = Field(
+        None, description="names of the rods that it acts on; all when left out"
+    )
+
+
+class _Wrench(Record):
+    magnitudes: ClassVar[tuple[str, ...]] = ("force", "moment")
+
+    name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
+    rod: str = Field(description="name of the rod that it acts on")
+    frame: Literal["world", "body"] = Field(
+        "world", description="axes of force and moment: 'world' is a dead load, 'body' follows the section"
+    )
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """A wrench has a force or a moment."""
+        if "force" not in given and "moment" not in given:
+            yield Fault(("force",), "missing", "give force, moment or both")
+
+
+class TipWrench(_Wrench):
+    """A force and a moment on the tip section."""
+
+    kind: Literal["tip_wrench"] = Field(description="force and moment on the tip")
+    force: Vector = Field((0.0, 0.0, 0.0), description="force, N")
+    moment: Vector = Field((0.0, 0.0, 0.0), description="moment, N m")
+
+
+class PointWrench(_Wrench):
+    """A force and a moment on one section."""
+
+    kind: Literal["point_wrench"] = Field(description="force and moment on one section")
+    at: Annotated[
+        Number,
+        AfterValidator(_loaded_section),
+        Field(json_schema_extra={"exclusiveMinimum": 0, "maximum": 1}),
+    ] = Field(description="abscissa X of the section relative to the length, without unit, above 0 and at most 1")
+    force: Vector = Field((0.0, 0.0, 0.0), description="force, N")
+    moment: Vector = Field((0.0, 0.0, 0.0), description="moment, N m")
+
+
+class DistributedWrench(_Wrench):
+    """A force and a moment per length."""
+
+    kind: Literal["distributed_wrench"] = Field(description="force and moment per length")
+    force: Polynomials = Field(
+        (0.0, 0.0, 0.0),
+        description="force per length, N/m; a component may list Legendre coefficients in 2X − 1",
+    )
+    moment: Polynomials = Field(
+        (0.0, 0.0, 0.0),
+        description="moment per length, N m/m; a component may list Legendre coefficients in 2X − 1",
+    )
+
+
+Load = Annotated[
+    Annotated[Gravity, Tag("⟨gravity⟩")]
+    | Annotated[TipWrench, Tag("⟨tip_wrench⟩")]
+    | Annotated[PointWrench, Tag("⟨point_wrench⟩")]
+    | Annotated[DistributedWrench, Tag("⟨distributed_wrench⟩")],
+    Discriminator(_by("kind")),
+    _word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench"), ("body_wrench",)),
+]
+
+MAGNITUDES: dict[str, tuple[str, ...]] = {
+    "gravity": Gravity.magnitudes,
+    "tip_wrench": TipWrench.magnitudes,
+    "point_wrench": PointWrench.magnitudes,
+    "distributed_wrench": DistributedWrench.magnitudes,
+}
+"""Fields of each kind of load that may stay free at run time."""
+
+
+# Supports
+
+
+class _Support(Record):
+    name: Name | None = Field(None, description="name of the support, a letter, then letters, digits and underscores")
+    rod: str = Field(description="name of the rod whose tip it holds")
+    position: Vector = Field(description="prescribed position of the tip in world axes, m")
+
+
+class ClampedSupport(_Support):
+    """Position and orientation of a tip are prescribed."""
+
+    kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
+    quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
+
+
+class PinnedSupport(_Support):
+    """The position of a tip is prescribed, its moment is free."""
+
+    kind: Literal["pinned"] = Field(description="position of the tip prescribed, moment free")
+
+
+Support = Annotated[
+    Annotated[ClampedSupport, Tag("⟨clamped⟩")] | Annotated[PinnedSupport, Tag("⟨pinned⟩")],
+    Discriminator(_by("kind")),
+    _word("kind", ("clamped", "pinned")),
+]
+SUPPORTS: dict[str, type[ClampedSupport] | type[PinnedSupport]] = {"clamped": ClampedSupport, "pinned": PinnedSupport}
+"""The record of each kind of support."""
+
+
+# The scene
+
+
+class Scene(Record):
+    """Rods, and what acts on them. SI units, right-handed world axes."""
+
+    schema_version: Annotated[Literal[1], BeforeValidator(_exactly_one)] = Field(
+        alias="schema", description="version of the scene format: 1"
+    )
+    title: str = Field("", description="one line about the scene")
+    inputs: Annotated[tuple[str, ...], AfterValidator(_without_repetition)] | None = Field(
+        None, description="'load.field' of what stays free at run time; every magnitude of every load when left out"
+    )
+    accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
+    rods: Annotated[tuple[Rod, ...], Field(min_length=1)] = Field(description="the rods, at least one")
+    loads: tuple[Load, ...] = Field((), description="what acts on the rods")
+    supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
+    actuators: Unavailable = Field((), description="tendons and chambers; not in this version")
+    bodies: Unavailable = Field((), description="rigid bodies that rods carry; not in this version")
+    joints: Unavailable = Field((), description="joints between rods and bodies; not in this version")
+    targets: Unavailable = Field((), description="prescribed motions; not in this version")
+
+    def input_names(self) -> tuple[str, ...]:
+        """Names ``load.field`` of what stays free at run time.
+
+        Returns:
+            the names that the scene lists, or else every magnitude that it gives, in the order of the file.
+        """
+        if self.inputs is not None:
+            return self.inputs
+        return tuple(
+            f"{load.name}.{field}" for load in self.loads for field in load.magnitudes if field in load.model_fields_set
+        )
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """Tables that contradict each other, or name what is not there."""
+        for key in ("rods", "loads", "supports"):
+            yield from _repeated_names(given, key)
+        yield from _dangling_names(given)
+        yield from _weightless_rods(given)
+        yield from _overlapping_supports(given)
+        yield from _unreachable_supports(given)
+        yield from _miscounted_modes(given)
+        yield from _inputs_that_are_not(given)
+
+
+Tables = list[tuple[int, Mapping[str, Any]]]
+
+
+def _tables(given: Mapping[str, Any], key: str) -> Tables:
+    """The tables of an array with their indices, without what is not a table."""
+    entries = given.get(key)
+    if not isinstance(entries, list):
+        return []
+    return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
+
+
+def _named(tables: Tables) -> dict[str, tuple[int, Mapping[str, Any]]]:
+    """The first table of every name."""
+    found: dict[str, tuple[int, Mapping[str, Any]]] = {}
+    for i, table in tables:
+        if isinstance(name := table.get("name"), str):
+            found.setdefault(name, (i, table))
+    return found
+
+
+def _listing(names: Iterable[str], what: str) -> str:
+    """A remedy that lists the known names, the first few of many."""
+    known = list(names)
+    return f"{what}: {', '.join(known[:12])}{', …' if len(known) > 12 else ''}" if known else f"there are no {what}"
+
+
+def _repeated_names(given: Mapping[str, Any], key: str) -> Iterator[Fault]:
+    tables = _tables(given, key)
+    named = _named(tables)
+    for i, table in tables:
+        name = table.get("name")
+        if isinstance(name, str) and named[name][0] != i:
+            yield Fault((key, i, "name"), f"{shown(name)} is already the name of {key}[{named[name][0]}]")
+
+
+def _references(given: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
+    """Every place that names a rod, with the name."""
+    for i, load in _tables(given, "loads"):
+        kind = load.get("kind")
+        if kind == "gravity" and isinstance(load.get("rods"), list):
+            yield from ((("loads", i, "rods", j), name) for j, name in enumerate(load["rods"]))
+        elif kind in ("tip_wrench", "point_wrench", "distributed_wrench"):
+            yield ("loads", i, "rod"), load.get("rod")
+    for i, support in _tables(given, "supports"):
+        yield ("supports", i, "rod"), support.get("rod")
+
+
+def _dangling_names(given: Mapping[str, Any]) -> Iterator[Fault]:
+    rods = _named(_tables(given, "rods"))
+    if not rods:  # there is a fault in the rods already; every reference would dangle
+        return
+    for path, name in _references(given):
+        if isinstance(name, str) and name not in rods:
+            yield Fault(path, f"no rod is named {shown(name)}", _listing(rods, "rods"))
+
+
+def _weightless_rods(given: Mapping[str, Any]) -> Iterator[Fault]:
+    everywhere, named = _gravity(given)
+    for i, rod in _tables(given, "rods"):
+        name = rod.get("name")
+        gravity = everywhere or (named.get(name) if isinstance(name, str) else None)
+        if gravity is None:
+            continue
+        made = rod.get("material")
+        if "stiffness" in rod and "linear_density" not in rod:
+            remedy = f"{gravity} acts on this rod: give its mass per length, kg/m"
+            yield Fault(("rods", i, "linear_density"), "missing", remedy)
+        elif "stiffness" not in rod and isinstance(made, Mapping) and "density" not in made:
+            remedy = f"{gravity} acts on this rod: give its density, kg/m³"
+            yield Fault(("rods", i, "material", "density"), "missing", remedy)
+
+
+def _gravity(given: Mapping[str, Any]) -> tuple[str | None, dict[str, str]]:
+    """The load that weighs every rod, if any, and those that weigh the rods they name."""
+    everywhere: str | None = None
+    named: dict[str, str] = {}
+    for i, load in _tables(given, "loads"):
+        if load.get("kind") == "gravity" and "rods" not in load:
+            everywhere = everywhere or f"loads[{i}]"
+        elif load.get("kind") == "gravity" and isinstance(load["rods"], list):
+            named.update({name: f"loads[{i}]" for name in load["rods"] if isinstance(name, str)})
+    return everywhere, named
+
+
+def _overlapping_supports(given: Mapping[str, Any]) -> Iterator[Fault]:
+    first: dict[str, int] = {}
+    for i, support in _tables(given, "supports"):
+        name = support.get("rod")
+        if isinstance(name, str) and first.setdefault(name, i) != i:
+            problem = f"overlapping supports: supports[{first[name]}] holds the tip of {shown(name)} already"
+            yield Fault(("supports", i, "rod"), problem, "one support for each tip")
+
+
+def _miscounted_modes(given: Mapping[str, Any]) -> Iterator[Fault]:
+    accuracy = given.get("accuracy")
+    modes = accuracy.get("modes") if isinstance(accuracy, Mapping) else None
+    if not isinstance(modes, list):
+        return
+    for i, rod in _tables(given, "rods"):
+        admitted = len(_admitted(rod.get("strain")))
+        if admitted and modes and admitted != len(modes):
+            problem = f"must have one entry per strain of every rod, got {len(modes)} where rods[{i}] admits {admitted}"
+            yield Fault(("accuracy", "modes"), problem, "give one number for all")
+            return
+
+
+def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
+    loads = _named(_tables(given, "loads"))
+    refused = _named(_tables(given, "actuators"))
+    entries = given.get("inputs")
+    for i, entry in enumerate(entries if isinstance(entries, list) else []):
+        if not isinstance(entry, str):
+            continue
+        name, _, field = entry.partition(".")
+        if not field:
+            yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
+        elif name in loads:
+            yield from (Fault(("inputs", i), *told) for told in _no_magnitude(name, loads[name][1], field))
+        elif name not in refused:
+            yield Fault(("inputs", i), f"no load is named {shown(name)}", _listing(loads, "loads"))
+
+
+def _no_magnitude(name: str, load: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:
+    fields = _choice(MAGNITUDES, load.get("kind"))
+    if fields is not None and field not in fields:
+        yield f"load {shown(name)} has no magnitude {shown(field)}", _listing(fields, "magnitudes")
+
+
+def _choice(choices: Mapping[str, Chosen], word: Any) -> Chosen | None:
+    return choices.get(word) if isinstance(word, str) else None
+
+
+def _unreachable_supports(given: Mapping[str, Any]) -> Iterator[Fault]:
+    rods = _named(_tables(given, "rods"))
+    for i, table in _tables(given, "supports"):
+        model = _choice(SUPPORTS, table.get("kind"))
+        name = table.get("rod")
+        if model is None or not isinstance(name, str) or name not in rods:
+            continue
+        rod, support = _sound(Rod, rods[name][1]), _sound(model, table)
+        if rod is not None and support is not None:
+            for path, problem, remedy in _out_of_reach(rod, support):
+                yield Fault(("supports", i, *path), f"unreachable combination: {problem}", remedy)
+
+
+def _sound(model: type[RecordType], table: Mapping[str, Any]) -> RecordType | None:
+    try:
+        return model.model_validate(table)
+    except ValidationError:
+        return None
+
+
+def _out_of_reach(rod: Rod, support: ClampedSupport | PinnedSupport) -> Iterator[Fault]:
+    distance = math.dist(support.position, rod.base.position)
+    keeps_its_length = not set(rod.admitted) & {3, 4, 5} and _is_constant(rod.intrinsic.tangent, (0.0, 0.0, 1.0))
+    if keeps_its_length and distance > rod.length * (1 + 1e-9):
+        problem = f"{distance:.9g} m from the base of a rod of {rod.length:.9g} m"
+        yield Fault(("position",), problem, "admit extension, or move the support")
+    if _stays_in_its_plane(rod):
+        yield from _out_of_plane(rod, support)
+
+
+def _is_constant(vector: Sequence[float | tuple[float, ...]], wanted: Sequence[float]) -> bool:
+    rows = [entry if isinstance(entry, tuple) else (entry,) for entry in vector]
+    return all(row[0] == value and not any(row[1:]) for row, value in zip(rows, wanted, strict=True))
+
+
+def _stays_in_its_plane(rod: Rod) -> bool:
+    """Whether nothing turns or shears the rod out of the local x–z plane of its base."""
+    (bent_x, _, bent_z), (_, sheared_y, _) = rod.intrinsic.curvature, rod.intrinsic.tangent
+    return set(rod.admitted) <= {1, 3, 5} and _is_constant((bent_x, bent_z, sheared_y), (0.0, 0.0, 0.0))
+
+
+def _out_of_plane(rod: Rod, support: ClampedSupport | PinnedSupport) -> Iterator[Fault]:
+    base_Q_world = _conjugate(_base_orientation(rod.base))
+    x, y, z = (a - b for a, b in zip(support.position, rod.base.position, strict=True))
+    offset = _product(_product(base_Q_world, (0.0, x, y, z)), _conjugate(base_Q_world))[2]
+    remedy = "a planar rod stays in the local x–z plane of its base"
+    if not abs(offset) <= 1e-9 * rod.length:
+        yield Fault(("position",), f"{offset:.3g} m outside the plane of the rod", remedy)
+    if isinstance(support, ClampedSupport):
+        _, turn_x, _, turn_z = _product(base_Q_world, support.quaternion)
+        if not math.hypot(turn_x, turn_z) <= 1e-6:  # the slack that the norm of a quaternion has
+            yield Fault(("quaternion",), "turned out of the plane of the rod", remedy)
+
+
+def _base_orientation(base: Base) -> Quadruple:
+    """World orientation of the base: its quaternion, or the shortest rotation of z to its tangent."""
+    if base.tangent is None:
+        return base.quaternion
+    x, y, z = base.tangent
+    across = math.hypot(x, y)
+    if across == 0.0:  # no shortest rotation leads from z to −z: by convention the half turn about x
+        return (1.0, 0.0, 0.0, 0.0) if z > 0 else (0.0, 1.0, 0.0, 0.0)
+    half = math.atan2(across, z) / 2
+    return (math.cos(half), -y / across * math.sin(half), x / across * math.sin(half), 0.0)
+
+
+def _conjugate(q: Quadruple) -> Quadruple:
+    return (q[0], -q[1], -q[2], -q[3])
+
+
+def _product(a: Quadruple, b: Quadruple) -> Quadruple:
+    return (
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    )

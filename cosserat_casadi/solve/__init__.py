@@ -1,0 +1,1 @@
+"""Solving: outcomes, globalised Newton, load continuation, stability, accuracy."""

@@ -1,0 +1,140 @@
+"""What a solve found, with everything one may ask of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solve.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Poses of k sections in the world frame.
+
+    Attributes:
+        position: shape (k, 3), m.
+        rotation: world_R_section, shape (k, 3, 3).
+        quaternion: world_Q_section, w x y z, shape (k, 4).
+    """
+
+    position: FloatArray
+    rotation: FloatArray
+    quaternion: FloatArray
+
+
+@dataclass(frozen=True)
+class BaseWrench:
+    """What the clamp exerts on the rod, world frame, about the base point.
+
+    Attributes:
+        force: shape (3,), N.
+        moment: shape (3,), N m.
+    """
+
+    force: FloatArray
+    moment: FloatArray
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The end of a solve; an equilibrium only where ``converged`` says so.
+
+    Attributes:
+        model: the model that was solved.
+        inputs: stacked inputs it was solved for, shape (model.inputs.size,).
+        x: unknowns, shape (model.size,).
+        outcome: how the solve ended.
+        message: a sentence for the user.
+        residual_norm: relative norm of the dimensionless residual at x, computed again at the end.
+        iterations: Newton iterations, all load steps together.
+        load_factor: share of the loads that was reached, 1 unless the load stalled.
+        smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
+        stable: whether every admissible variation costs energy; None where that has no meaning.
+        error_estimate: estimated pose error of the tips relative to the rod length; None if not estimated.
+        shape_error_estimate: the same over all sections, those between nodes included.
+    """
+
+    model: Model
+    inputs: FloatArray
+    x: FloatArray
+    outcome: Outcome
+    message: str
+    residual_norm: float
+    iterations: int
+    load_factor: float = 1.0
+    smallest_eigenvalue: float | None = None
+    stable: bool | None = None
+    error_estimate: float | None = None
+    shape_error_estimate: float | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether x is an equilibrium to the solver's tolerance."""
+        return self.outcome is Outcome.CONVERGED
+
+    def tip(self, rod: str | None = None) -> Pose:
+        """Pose of a rod's tip."""
+        return self.pose(np.array([1.0]), rod)
+
+    def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
+        """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
+
+        Args:
+            X: shape (k,).
+            rod: name of the rod; may be left out where there is one.
+        """
+        name = self._name(rod)
+        matrix = self._interpolation(X, name)
+        nodal = self._fields(name)
+        position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
+        quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
+        return Pose(position, _rotations(quaternion), quaternion)
+
+    def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
+        """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
+        name = self._name(rod)
+        basis, columns = self.model.frame.bases[name], self.model.frame.rod_slices[name]
+        strain: FloatArray = basis.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float))).full().T
+        return strain
+
+    def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
+        """Internal wrench Λ = [M; N] in the sections' frames at abscissae X, shape (k, 6), N m and N."""
+        name = self._name(rod)
+        wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
+        return wrench
+
+    def base_wrench(self, rod: str | None = None) -> BaseWrench:
+        """Force and moment of the clamp on a rod."""
+        nodal = self._fields(self._name(rod))
+        return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
+
+    def _fields(self, rod: str) -> list[FloatArray]:
+        return [field.full() for field in self.model.fields[rod](self.x, self.inputs)]
+
+    def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
+        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+        return self.model.frame.bases[rod].grid.interpolation_matrix(abscissae)
+
+    def _name(self, rod: str | None) -> str:
+        names = list(self.model.frame.bases)
+        if rod is None and len(names) == 1:
+            return names[0]
+        if rod not in names:
+            raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
+        return rod
+
+
+def _rotations(q: FloatArray) -> FloatArray:
+    """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
+    w, x, y, z = q.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)

@@ -1,0 +1,200 @@
+"""Solve a model: by load continuation, or by CasADi's own solvers, judged by one test of our own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import SolveError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solve.continuation import ContinuationSettings, PathEquations, Progress, follow
+from cosserat_casadi.solve.newton import relative_norm
+from cosserat_casadi.solve.outcome import Outcome
+from cosserat_casadi.solve.solution import Solution
+from cosserat_casadi.solve.stability import second_variation
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where a method stopped, before it is judged."""
+
+    x: FloatArray
+    outcome: Outcome
+    iterations: int
+    load_factor: float = 1.0
+
+
+def solve(
+    model: Model,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    start: Solution | None = None,
+    method: str = "continuation",
+    settings: ContinuationSettings | None = None,
+    progress: Progress | None = None,
+    raise_on_failure: bool = False,
+) -> Solution:
+    """Equilibrium of a model.
+
+    Args:
+        model: what to solve.
+        values: inputs by name; those not named keep the scene's values.
+        start: a solution of the same model to start from; by default the unloaded rod. Continuation then follows
+            the inputs from those of the start to the wanted ones.
+        method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
+            at the full load and may find another branch, or none.
+        settings: limits of the continuation.
+        progress: told the share of the path that is done.
+        raise_on_failure: raise instead of returning what did not converge.
+
+    Raises:
+        SceneError: a value is refused.
+        SolveError: no equilibrium was found and ``raise_on_failure`` is set.
+        ValueError: unknown method, or a start of another model.
+    """
+    inputs = model.pack(values)
+    if start is not None and len(start.x) != model.size:
+        raise ValueError(f"the start has {len(start.x)} unknowns, the model {model.size}")
+    if method not in _METHODS:
+        raise ValueError(f"method is one of {', '.join(_METHODS)}, got {method!r}")
+    limits = settings or ContinuationSettings()
+    end = _METHODS[method](model, inputs, start, limits, progress)
+    solution = judge(model, inputs, end.x, end.outcome, end.iterations, end.load_factor, limits.newton.tolerance)
+    if raise_on_failure and not solution.converged:
+        raise SolveError(solution.message)
+    return solution
+
+
+def judge(
+    model: Model,
+    inputs: FloatArray,
+    x: FloatArray,
+    outcome: Outcome,
+    iterations: int,
+    load_factor: float,
+    tolerance: float,
+) -> Solution:
+    """The solution that a method's end amounts to: the residual is computed again, the method's word is not taken."""
+    residual = model.residual(x, inputs).full()[:, 0] if model.size else np.zeros(0)
+    norm = relative_norm(residual, x)
+    if load_factor == 1.0:
+        outcome = _verdict(outcome, norm, tolerance)
+    message = outcome.value if load_factor == 1.0 else f"{outcome.value} Load factor reached: {load_factor:.6g}."
+    bare = Solution(model, inputs, x, outcome, message, norm, iterations, load_factor)
+    return _with_stability(bare) if bare.converged else bare
+
+
+def _verdict(outcome: Outcome, norm: float, tolerance: float) -> Outcome:
+    if not np.isfinite(norm):
+        return Outcome.NOT_FINITE
+    if norm <= tolerance:
+        return Outcome.CONVERGED
+    return Outcome.MAX_ITERATIONS if outcome is Outcome.CONVERGED else outcome
+
+
+def _with_stability(solution: Solution) -> Solution:
+    model = solution.model
+    if not model.has_potential(solution.inputs):
+        return solution
+    jacobian = model.jacobian(solution.x, solution.inputs)[0].full()
+    test = second_variation(jacobian, model.frame.strain_size)
+    notes = {
+        (True, False): "",
+        (False, False): " It is unstable.",
+        (False, True): " It is neutral: some variation costs no energy.",
+    }
+    return replace(
+        solution,
+        smallest_eigenvalue=test.smallest_eigenvalue,
+        stable=test.stable,
+        message=solution.message + notes[test.stable, test.neutral],
+    )
+
+
+def _continuation(
+    model: Model,
+    inputs: FloatArray,
+    start: Solution | None,
+    limits: ContinuationSettings,
+    progress: Progress | None,
+) -> _End:
+    if start is None:
+        first, equations = model.unloaded(), _load_path(model, inputs)
+    else:
+        first, equations = start.x, _input_path(model, start.inputs, inputs)
+    result = follow(equations, first, limits, progress)
+    return _End(result.x, result.outcome, result.iterations, result.reached)
+
+
+def _load_path(model: Model, inputs: FloatArray) -> PathEquations:
+    def equations(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        jacobian, residual, derivative = model.homotopy(x, inputs, t)
+        return jacobian.full(), residual.full()[:, 0], derivative.full()[:, 0]
+
+    return equations
+
+
+def _input_path(model: Model, before: FloatArray, after: FloatArray) -> PathEquations:
+    change = after - before
+
+    def equations(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        inputs = before + t * change
+        jacobian, residual = model.jacobian(x, inputs)
+        derivative = model.input_jacobian(x, inputs).full() @ change
+        return jacobian.full(), residual.full()[:, 0], derivative
+
+    return equations
+
+
+def _rootfinder(
+    model: Model,
+    inputs: FloatArray,
+    start: Solution | None,
+    limits: ContinuationSettings,
+    progress: Progress | None,
+) -> _End:
+    options = {
+        "abstol": limits.newton.tolerance,
+        "max_iter": limits.newton.iterations,
+        "error_on_fail": False,
+        "jacobian_function": model.jacobian,
+    }
+    finder = ca.rootfinder("finder", "newton", model.residual, options)
+    x = finder(model.unloaded() if start is None else start.x, inputs).full()[:, 0]
+    return _End(x, Outcome.MAX_ITERATIONS, int(finder.stats()["iter_count"]))
+
+
+def _nlpsol(
+    model: Model,
+    inputs: FloatArray,
+    start: Solution | None,
+    limits: ContinuationSettings,
+    progress: Progress | None,
+) -> _End:
+    x, p = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    problem = {"x": x, "p": p, "f": ca.MX(0), "g": model.residual(x, p)}
+    options = {
+        "print_time": False,
+        "error_on_fail": False,
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "tol": limits.newton.tolerance,
+            "constr_viol_tol": limits.newton.tolerance,
+        },
+    }
+    solver = ca.nlpsol("solver", "ipopt", problem, options)
+    found = solver(x0=model.unloaded() if start is None else start.x, p=inputs, lbg=0, ubg=0)
+    return _End(found["x"].full()[:, 0], Outcome.MAX_ITERATIONS, int(solver.stats()["iter_count"]))
+
+
+_METHODS: dict[str, Callable[[Model, FloatArray, Solution | None, ContinuationSettings, Progress | None], _End]] = {
+    "continuation": _continuation,
+    "rootfinder": _rootfinder,
+    "nlpsol": _nlpsol,
+}

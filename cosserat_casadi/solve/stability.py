@@ -1,0 +1,50 @@
+"""Stability of an equilibrium under loads that derive from a potential: the sign of the second variation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Second variation of the energy, in units of EI/ℓ, over the admissible variations.
+
+    Attributes:
+        smallest_eigenvalue: smallest eigenvalue of the symmetric part of the scaled Jacobian.
+        neutral: whether that eigenvalue is zero to rounding.
+    """
+
+    smallest_eigenvalue: float
+    neutral: bool
+
+    @property
+    def stable(self) -> bool:
+        """Whether every admissible variation costs energy."""
+        return self.smallest_eigenvalue > 0.0 and not self.neutral
+
+
+def second_variation(jacobian: FloatArray, strains: int) -> Stability:
+    """Eigenvalue test of an equilibrium.
+
+    Args:
+        jacobian: of the whole system at the equilibrium, (n + m)×(n + m).
+        strains: n, number of strain coordinates; the m rows below hold the linearised supports, and only
+            variations in their null space are admissible.
+    """
+    hessian = jacobian[:strains, :strains]
+    constraints = jacobian[strains:, :strains]
+    if len(constraints):
+        _, singular, basis = np.linalg.svd(constraints)
+        rank = int(np.sum(singular > 1e-12 * singular[0]))
+        free = basis[rank:].T
+        hessian = free.T @ hessian @ free
+    if not hessian.size:
+        return Stability(np.inf, neutral=False)
+    eigenvalues = np.linalg.eigvalsh((hessian + hessian.T) / 2)
+    scale = max(1.0, float(np.abs(eigenvalues).max()))
+    smallest = float(eigenvalues[0])
+    return Stability(smallest, neutral=abs(smallest) <= 1e-10 * scale)
