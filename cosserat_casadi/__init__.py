@@ -7,13 +7,13 @@ Scene ─ solve_scene ─▶ Solution at the coarsest discretisation within tole
 from cosserat_casadi.errors import CosseratError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import discretise
-from cosserat_casadi.result import result, write_result
+from cosserat_casadi.result_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.solve.accuracy import solve_scene
-from cosserat_casadi.solve.outcome import Outcome
-from cosserat_casadi.solve.solution import Solution
-from cosserat_casadi.solve.solve import solve
+from cosserat_casadi.solver.accuracy import solve_scene
+from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solve import solve
 
 __all__ = [
     "CosseratError",

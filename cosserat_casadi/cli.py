@@ -15,10 +15,10 @@ from cosserat_casadi import report
 from cosserat_casadi.errors import CosseratError, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import build
-from cosserat_casadi.result import result_text
+from cosserat_casadi.result_file import result_text
 from cosserat_casadi.scene import Scene, read_scene
-from cosserat_casadi.solve.accuracy import solve_scene
-from cosserat_casadi.solve.solution import Solution
+from cosserat_casadi.solver.accuracy import solve_scene
+from cosserat_casadi.solver.solution import Solution
 
 REFUSED = 2
 """Exit code: the input is refused, nothing was written."""
@@ -78,7 +78,7 @@ def main() -> None:
     sys.exit(run(app))
 
 
-def run(command: Callable[..., None]) -> int:
+def run(command: Callable[..., object]) -> int:
     """Run a command; 2 for refused input with the reasons on standard error."""
     console = Console(stderr=True)
     try:

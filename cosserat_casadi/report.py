@@ -15,7 +15,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.price import price, price_of_load
 from cosserat_casadi.rod.properties import STRAINS
-from cosserat_casadi.solve.solution import Solution
+from cosserat_casadi.solver.solution import Solution
 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:

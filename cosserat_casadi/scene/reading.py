@@ -332,8 +332,6 @@ def _sentence(kind: str, error: Any) -> str:
     context, got = error.get("ctx", {}), shown(error["input"])
     if kind == "missing":
         return "missing"
-    if kind == "too_short":
-        return "must have at least one entry"
     if kind == "literal_error":
         return f"must be one of {context['expected'].replace(' or ', ', ')}, got {got}"
     if kind in _BOUNDS:
@@ -397,4 +395,4 @@ def _suffix(parts: schema.Path) -> str:
 def _key(key: str) -> str:
     """A key as TOML writes it, shortened."""
     short = key if len(key) <= 60 else key[:57] + "..."
-    return short if re.fullmatch(r"[\w-]+", short) else json.dumps(short, ensure_ascii=False)
+    return short if re.fullmatch(r"[\w-]+", short) else json.dumps(short)

@@ -20,12 +20,15 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
     Tag,
     ValidationError,
     model_validator,
 )
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
 """Names of the six strains, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
@@ -143,6 +146,21 @@ def _listed(count: int, what: str) -> BeforeValidator:
     return BeforeValidator(check)
 
 
+class _NotEmpty:
+    """Lists with an entry: pydantic's own bound does not count entries that are faulty."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(self._check, handler(source))
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return {**handler(core), "minItems": 1}
+
+    def _check(self, value: Any) -> Any:
+        if isinstance(value, list | tuple) and not value:
+            raise _refusal([Fault((), "must have at least one entry")])
+        return value
+
+
 def _one_or_list(value: Any) -> str:
     return "⟨list⟩" if isinstance(value, list | tuple) else "⟨one⟩"
 
@@ -254,7 +272,7 @@ SizeOrZero = Annotated[
     Discriminator(_one_or_list),
 ]
 Component = Annotated[
-    Annotated[Number, Tag("⟨one⟩")] | Annotated[tuple[Number, ...], Field(min_length=1), Tag("⟨list⟩")],
+    Annotated[Number, Tag("⟨one⟩")] | Annotated[tuple[Number, ...], _NotEmpty(), Tag("⟨list⟩")],
     Discriminator(_one_or_list),
 ]
 Polynomials = Annotated[tuple[Component, Component, Component], _listed(3, "3 components")]
@@ -262,12 +280,12 @@ Unavailable = Annotated[tuple[()], BeforeValidator(_not_yet)]
 StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
 StrainChoice = Annotated[
     Annotated[Literal["planar", "kirchhoff", "reissner"], Tag("⟨one⟩")]
-    | Annotated[tuple[StrainName, ...], Field(min_length=1), AfterValidator(_without_repetition), Tag("⟨list⟩")],
+    | Annotated[tuple[StrainName, ...], _NotEmpty(), AfterValidator(_without_repetition), Tag("⟨list⟩")],
     Discriminator(_one_or_list),
 ]
 Modes = Annotated[Whole, Field(ge=1, le=200)]
 ModesChoice = Annotated[
-    Annotated[Modes, Tag("⟨one⟩")] | Annotated[tuple[Modes, ...], Field(min_length=1), Tag("⟨list⟩")],
+    Annotated[Modes, Tag("⟨one⟩")] | Annotated[tuple[Modes, ...], _NotEmpty(), Tag("⟨list⟩")],
     Discriminator(_one_or_list),
 ]
 
@@ -478,7 +496,7 @@ class Gravity(Record):
     name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
     kind: Literal["gravity"] = Field(description="weight of the rods")
     acceleration: Vector = Field(description="acceleration in world axes, m/s²")
-    rods: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_without_repetition)] | None = Field(
+    rods: Annotated[tuple[str, ...], _NotEmpty(), AfterValidator(_without_repetition)] | None = Field(
         None, description="names of the rods that it acts on; all when left out"
     )
 
@@ -597,7 +615,7 @@ class Scene(Record):
         None, description="'load.field' of what stays free at run time; every magnitude of every load when left out"
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
-    rods: Annotated[tuple[Rod, ...], Field(min_length=1)] = Field(description="the rods, at least one")
+    rods: Annotated[tuple[Rod, ...], _NotEmpty()] = Field(description="the rods, at least one")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: Unavailable = Field((), description="tendons and chambers; not in this version")
@@ -652,7 +670,7 @@ def _named(tables: Tables) -> dict[str, tuple[int, Mapping[str, Any]]]:
 
 def _listing(names: Iterable[str], what: str) -> str:
     """A remedy that lists the known names, the first few of many."""
-    known = list(names)
+    known = [name if name.isprintable() else repr(name) for name in names]
     return f"{what}: {', '.join(known[:12])}{', …' if len(known) > 12 else ''}" if known else f"there are no {what}"
 
 
@@ -809,7 +827,7 @@ def _out_of_plane(rod: Rod, support: ClampedSupport | PinnedSupport) -> Iterator
     offset = _product(_product(base_Q_world, (0.0, x, y, z)), _conjugate(base_Q_world))[2]
     remedy = "a planar rod stays in the local x–z plane of its base"
     if not abs(offset) <= 1e-9 * rod.length:
-        yield Fault(("position",), f"{offset:.3g} m outside the plane of the rod", remedy)
+        yield Fault(("position",), f"{abs(offset):.3g} m outside the plane of the rod", remedy)
     if isinstance(support, ClampedSupport):
         _, turn_x, _, turn_z = _product(base_Q_world, support.quaternion)
         if not math.hypot(turn_x, turn_z) <= 1e-6:  # the slack that the norm of a quaternion has

@@ -211,10 +211,7 @@ def test_quadrature_of_polynomials(N):
 
 
 def test_quadrature_of_the_exponential_converges_spectrally():
-    errors = [
-        abs(cheb.quadrature_weights(N) @ np.exp(4 * cheb.nodes(N)) - np.expm1(4) / 4)
-        for N in (4, 6, 8, 10, 12)
-    ]
+    errors = [abs(cheb.quadrature_weights(N) @ np.exp(4 * cheb.nodes(N)) - np.expm1(4) / 4) for N in (4, 6, 8, 10, 12)]
     ratios = np.array(errors[1:]) / errors[:-1]
     assert np.all(ratios < 0.004)
     assert errors[-1] < 1e-10
@@ -271,9 +268,7 @@ def test_collocation_matrix_integrates_one_degree_less(N):
 @pytest.mark.parametrize("n", [1, 2, 3, 10, 40])
 def test_polynomials_vs_numpy(n):
     X = np.linspace(0, 1, 23)
-    assert_allclose(
-        cheb.chebyshev_polynomials(n, X), npc.chebvander(2 * X - 1, n - 1), rtol=1e-12, atol=1e-13
-    )
+    assert_allclose(cheb.chebyshev_polynomials(n, X), npc.chebvander(2 * X - 1, n - 1), rtol=1e-12, atol=1e-13)
     assert_allclose(cheb.legendre_polynomials(n, X), npl.legvander(2 * X - 1, n - 1), rtol=1e-12, atol=1e-13)
 
 
@@ -300,9 +295,7 @@ def test_no_polynomial_is_refused(build):
 def test_coefficients_and_values_are_inverse(N):
     coefficients = normal(N + 1, 2)
     values = cheb.chebyshev_values(coefficients)
-    assert_allclose(
-        values, npc.chebval(2 * cheb.nodes(N) - 1, coefficients).T, rtol=0, atol=1e-14 * (N + N**2 / 4)
-    )
+    assert_allclose(values, npc.chebval(2 * cheb.nodes(N) - 1, coefficients).T, rtol=0, atol=1e-14 * (N + N**2 / 4))
     assert_allclose(cheb.chebyshev_coefficients(values), coefficients, rtol=0, atol=1e-15 * (N + 10))
 
 

@@ -90,9 +90,7 @@ def test_hat_is_the_cross_product_and_vee_undoes_it():
     v, u = normal(2, 3)
     assert_allclose(full(rotation.hat(ca.DM(v))) @ u, np.cross(v, u), rtol=1e-14, atol=1e-15)
     assert_allclose(full(rotation.vee(rotation.hat(ca.DM(v)))).ravel(), v, rtol=1e-15, atol=1e-16)
-    assert_allclose(
-        full(rotation.vee(rotation.hat(ca.DM(v)) + ca.DM.eye(3))).ravel(), v, rtol=1e-15, atol=1e-16
-    )
+    assert_allclose(full(rotation.vee(rotation.hat(ca.DM(v)) + ca.DM.eye(3))).ravel(), v, rtol=1e-15, atol=1e-16)
 
 
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
@@ -237,9 +235,7 @@ def test_quaternion_log_at_the_identity_vs_its_series(symbol, casadi_derivatives
 def test_quaternion_log_takes_the_short_way_and_ignores_length():
     q = scipy_quaternion(2.0 * AXIS)
     for factor in (1.0, -1.0, 3.5, -0.2):
-        assert_allclose(
-            full(rotation.quaternion_log(ca.DM(factor * q))).ravel(), 2.0 * AXIS, rtol=1e-14, atol=1e-15
-        )
+        assert_allclose(full(rotation.quaternion_log(ca.DM(factor * q))).ravel(), 2.0 * AXIS, rtol=1e-14, atol=1e-15)
     half_turn = full(rotation.quaternion_log(ca.DM([0, 0, -1, 0]))).ravel()
     assert_allclose(half_turn, [0, -np.pi, 0], rtol=1e-15, atol=1e-16)
 
@@ -329,9 +325,7 @@ def test_left_tangent_is_the_rate_of_the_exponential(v):
 @by_name(SHORT)
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
 def test_rotation_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_derivatives):
-    value, jacobian, hessian = casadi_derivatives(
-        lambda x: rotation.rotation_log(rotation.rotation_exp(x)), v, symbol
-    )
+    value, jacobian, hessian = casadi_derivatives(lambda x: rotation.rotation_log(rotation.rotation_exp(x)), v, symbol)
     assert_allclose(value, v, rtol=1e-13, atol=1e-22)
     assert_allclose(jacobian, np.eye(3), rtol=1e-12, atol=1e-12)
     assert_allclose(hessian, np.zeros((3, 3, 3)), rtol=0, atol=1e-11)
@@ -347,9 +341,7 @@ def test_rotation_log_on_exact_half_turns(axis, casadi_derivatives):
         casadi_derivatives(lambda x: rotation.rotation_log(ca.reshape(x, 3, 3)), flat, symbol)
 
 
-@pytest.mark.parametrize(
-    ("u", "accuracy"), [(0.0, 0.0), (1e-12, 1.2e-16), (0.3, 2e-16), (1.0, 3e-16), (2.5, 1e-13)]
-)
+@pytest.mark.parametrize(("u", "accuracy"), [(0.0, 0.0), (1e-12, 1.2e-16), (0.3, 2e-16), (1.0, 3e-16), (2.5, 1e-13)])
 def test_half_angle_series(u, accuracy):
     cosine, sine = (float(value) for value in rotation.half_angle_series(ca.DM(u)))
     root = np.sqrt(u)

@@ -19,11 +19,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.rod.strain import StrainBasis
-from cosserat_casadi.solve.continuation import ContinuationSettings, Progress
-from cosserat_casadi.solve.newton import newton
-from cosserat_casadi.solve.outcome import Outcome
-from cosserat_casadi.solve.solution import Pose, Solution
-from cosserat_casadi.solve.solve import judge, solve
+from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
+from cosserat_casadi.solver.newton import newton
+from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.solution import Pose, Solution
+from cosserat_casadi.solver.solve import judge, solve
 
 LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
 """Modes per strain component and element, rung by rung."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solve.newton import NewtonResult, NewtonSettings, newton, newton_step
-from cosserat_casadi.solve.outcome import Outcome
+from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, newton, newton_step
+from cosserat_casadi.solver.outcome import Outcome
 
 PathEquations = Callable[[FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
 """(x, t) ↦ (Jacobian, residual, derivative of the residual with t)."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solve.solution import Solution
+from cosserat_casadi.solver.solution import Solution
 
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""

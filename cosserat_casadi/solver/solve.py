@@ -12,11 +12,11 @@ import numpy.typing as npt
 from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solve.continuation import ContinuationSettings, PathEquations, Progress, follow
-from cosserat_casadi.solve.newton import relative_norm
-from cosserat_casadi.solve.outcome import Outcome
-from cosserat_casadi.solve.solution import Solution
-from cosserat_casadi.solve.stability import second_variation
+from cosserat_casadi.solver.continuation import ContinuationSettings, PathEquations, Progress, follow
+from cosserat_casadi.solver.newton import relative_norm
+from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.stability import second_variation
 
 
 @dataclass(frozen=True)

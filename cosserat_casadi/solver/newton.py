@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solve.outcome import Outcome
+from cosserat_casadi.solver.outcome import Outcome
 
 Equations = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """x ↦ (Jacobian, residual)."""

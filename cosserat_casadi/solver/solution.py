@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solve.outcome import Outcome
+from cosserat_casadi.solver.outcome import Outcome
 
 
 @dataclass(frozen=True)

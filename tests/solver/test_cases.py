@@ -1,0 +1,71 @@
+"""The reference cases, from a cold start with default settings."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, read_scene, solve_scene
+from tests.conftest import case_files
+
+RODS = case_files("rods")
+pytestmark = pytest.mark.skipif(not RODS, reason="the reference cases are not beside this checkout")
+
+
+@cache
+def solved(path: Path) -> Solution:
+    return solve_scene(read_scene(path))
+
+
+def reference(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(path.with_suffix(".json").read_text())
+    return found
+
+
+def true_tip_error(path: Path) -> float:
+    case, tip = reference(path), solved(path).tip()
+    wanted = case["expected"]["tip"]
+    error = float(np.abs(tip.position[0] - wanted["position"]).max()) / case["length"]
+    if "rotation" in wanted:
+        error = max(error, float(np.abs(tip.rotation[0] - wanted["rotation"]).max()))
+    return error
+
+
+@pytest.mark.parametrize("path", RODS, ids=lambda path: path.stem)
+def test_tip_and_base_wrench_vs_independent_solvers(path: Path) -> None:
+    case, solution = reference(path), solved(path)
+    assert solution.converged, solution.message
+    tolerance, wanted = case["position_tolerance_relative_to_length"], case["expected"]
+    assert true_tip_error(path) <= tolerance
+    if "base_wrench" in wanted:
+        base = solution.base_wrench()
+        force, moment = (np.asarray(wanted["base_wrench"][k], dtype=float) for k in ("force", "moment"))
+        largest = max(np.abs(force).max(), np.abs(moment).max())
+        assert_allclose(base.force, force, rtol=0, atol=tolerance * largest)
+        assert_allclose(base.moment, moment, rtol=0, atol=tolerance * largest)
+
+
+@pytest.mark.parametrize("path", RODS, ids=lambda path: path.stem)
+def test_error_estimate_vs_true_error(path: Path) -> None:
+    """The estimate is honest (true error at most ten times it) and sharp (at most a hundred times the truth)."""
+    estimate, true = solved(path).error_estimate, true_tip_error(path)
+    assert estimate is not None
+    assert true <= 10 * estimate
+    # The references carry errors of their own, up to 1e-11; below that nothing can be said of sharpness.
+    assert estimate <= 100 * max(true, 1e-11)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("path", RODS[::3], ids=lambda path: path.stem)
+def test_error_vs_tolerance_asked_for(path: Path, tolerance: float) -> None:
+    solution = solve_scene(read_scene(path, (f"accuracy.tolerance={tolerance}",)))
+    case, tip = reference(path), solution.tip()
+    error = np.abs(tip.position[0] - case["expected"]["tip"]["position"]).max() / case["length"]
+    assert solution.converged, solution.message
+    assert error <= tolerance

@@ -1,0 +1,176 @@
+"""The command line as a user meets it: real processes, exit codes, files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, build, read_scene, solve
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.result_file import result_text
+from tests.conftest import ROOT
+
+SCENE = """
+schema = 1
+title = "A wire"
+[[rods]]
+name = "wire"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
+section = { shape = "circle", radius = 0.5e-3 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "wire"
+force = [0.2, 0, 0]
+"""
+
+
+def cosserat(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from cosserat_casadi.cli import main; main()", *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
+
+
+@pytest.fixture
+def wire(tmp_path: Path) -> Path:
+    (tmp_path / "wire.toml").write_text(SCENE)
+    return tmp_path
+
+
+def test_solve_writes_result_and_figure(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--output", "r.json", "--plot", "f.png", cwd=wire)
+    assert done.returncode == 0, done.stderr
+    assert "Equilibrium found" in done.stdout
+    assert "tip position" in done.stdout
+    assert (wire / "f.png").read_bytes().startswith(b"\x89PNG")
+    result = json.loads((wire / "r.json").read_text())
+    assert result["converged"] is True
+    assert result["outcome"] == "converged"
+    assert sorted(p.name for p in wire.iterdir()) == ["f.png", "r.json", "wire.toml"]
+
+
+def test_result_file_vs_solution(wire: Path) -> None:
+    cosserat("solve", "wire.toml", "--output", "r.json", cwd=wire)
+    result = json.loads((wire / "r.json").read_text())
+    rod = result["rods"]["wire"]
+    discretisation = result["discretisation"]["wire"]
+    scene = read_scene(
+        wire / "wire.toml",
+        (f"accuracy.modes={discretisation['modes'][0]}", f"accuracy.nodes={discretisation['nodes']}"),
+    )
+    solution = solve(build(scene))
+    X = np.array(rod["X"])
+    assert X[0] == 0.0
+    assert X[-1] == 1.0
+    pose = solution.pose(X)
+    assert_allclose(rod["position"], pose.position, rtol=0, atol=1e-12)
+    assert_allclose(rod["quaternion"], pose.quaternion, rtol=0, atol=1e-12)
+    assert_allclose(rod["strain"], solution.strain(X), rtol=0, atol=1e-9)
+    assert_allclose(rod["internal_wrench"], solution.internal_wrench(X), rtol=0, atol=1e-9)
+    assert_allclose(rod["tip"]["position"], rod["position"][-1], rtol=0, atol=1e-15)
+    assert_allclose(rod["base_wrench"]["force"], [-0.2, 0, 0], rtol=0, atol=1e-12)
+    w, x, y, z = rod["quaternion"][-1]
+    tangent = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]
+    assert_allclose(np.array(rod["tip"]["rotation"])[:, 2], tangent, rtol=0, atol=1e-12)
+
+
+def test_json_on_standard_output_is_pure(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--json", cwd=wire)
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["rods"]["wire"]["tip"]["position"][0] > 0
+
+
+def test_set_changes_a_load(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--set", "push.force=[0,0.2,0]", "--json", cwd=wire)
+    tip = json.loads(done.stdout)["rods"]["wire"]["tip"]["position"]
+    assert tip[1] > 0.01
+    assert_allclose(tip[0], 0.0, rtol=0, atol=1e-12)
+
+
+def test_check_prices_the_scene(wire: Path) -> None:
+    done = cosserat("check", "wire.toml", cwd=wire)
+    assert done.returncode == 0
+    for word in ("valid", "wire", "tip_wrench", "operations", "Jacobian"):
+        assert word in done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["solve", "missing.toml"], "missing.toml"),
+        (["solve", "."], "."),
+        (["solve", "wire.toml", "--set", "shove.force=[0,0,1]"], "--set shove.force"),
+        (["solve", "wire.toml", "--set", "push.force=[0,0,"], "--set push.force"),
+        (["solve", "wire.toml", "--output", "no/such/r.json"], "does not exist"),
+        (["solve", "wire.toml", "--output", "."], "is a folder"),
+        (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
+        (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
+        (["solve", "wire.toml", "--colour"], "colour"),
+        (["sing"], "sing"),
+    ],
+)
+def test_refusals(wire: Path, arguments: list[str], words: str) -> None:
+    done = cosserat(*arguments, cwd=wire)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
+
+
+def test_no_equilibrium_is_exit_code_three_and_still_written(wire: Path) -> None:
+    """A rod that must reach a pose with its length exactly spent sideways: the support cannot be met."""
+    text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
+    (wire / "hard.toml").write_text(text)
+    done = cosserat("solve", "hard.toml", "--output", "r.json", cwd=wire)
+    assert done.returncode == 3, done.stdout + done.stderr
+    result = json.loads((wire / "r.json").read_text())
+    assert result["converged"] is False
+    assert result["outcome"] != "converged"
+    assert "Traceback" not in done.stderr
+
+
+def test_not_finite_numbers_become_null(wire: Path) -> None:
+    found = solve(build(read_scene(wire / "wire.toml")))
+    broken = Solution(
+        found.model, found.inputs, np.full_like(found.x, np.nan), found.outcome, "broken", float("nan"), 0
+    )
+    text = result_text(broken)
+    assert "NaN" not in text
+    assert json.loads(text)["residual_norm"] is None
+
+
+def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "r.json"
+    target.write_text("old")
+
+    def interrupted(self: Path, other: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_atomically(target, b"new")
+    assert target.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["r.json"]
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_solve(path: Path, tmp_path: Path) -> None:
+    done = cosserat("solve", str(path), "--output", "r.json", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert result["converged"]
+    assert result["error_estimate"] <= read_scene(path).accuracy.tolerance
+
+
+def test_demo_solves_every_example() -> None:
+    listed = (ROOT / "examples" / "demo.py").read_text()
+    for path in (ROOT / "examples").glob("*.toml"):
+        assert f'"{path.stem}"' in listed
