@@ -8,7 +8,7 @@ from typing import Any, final
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import LineWrench, Wrench
+from cosserat_casadi.rod.wrenches import Action, LineWrench
 
 
 @final
@@ -18,12 +18,12 @@ class DistributedWrench(Effect):
     kind = "distributed_wrench"
     magnitudes = ("force", "moment")
 
-    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """One line wrench for each of force and moment: their polynomials may differ in degree."""
         follower = load.frame == "body"
         force = site.placed(values["force"], follower=follower)
         moment = site.placed(values["moment"], follower=follower)
-        found: list[Wrench] = []
+        found: list[Action] = []
         for is_force, vector in ((True, force), (False, moment)):
             if vector is None:
                 continue

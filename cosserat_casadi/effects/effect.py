@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.rod.wrenches import Wrench
+from cosserat_casadi.rod.wrenches import Action
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class Effect(ABC):
     magnitudes: ClassVar[tuple[str, ...]]
 
     @abstractmethod
-    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
-        """Wrenches on one rod.
+    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
+        """What the load does to one rod.
 
         Args:
             load: the load as the scene has it.

@@ -7,7 +7,7 @@ from typing import Any, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import LineWrench, Wrench
+from cosserat_casadi.rod.wrenches import Action, LineWrench
 
 
 @final
@@ -17,7 +17,7 @@ class Gravity(Effect):
     kind = "gravity"
     magnitudes = ("acceleration",)
 
-    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The rod's weight per length, N/m."""
         acceleration = site.placed(values["acceleration"], follower=False)
         if acceleration is None or site.rod.linear_density is None:

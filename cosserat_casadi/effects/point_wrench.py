@@ -11,7 +11,7 @@ from typing import Any, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import Action, PointWrench
 
 
 @final
@@ -21,7 +21,7 @@ class PointForceAndMoment(Effect):
     kind = "point_wrench"
     magnitudes = ("force", "moment")
 
-    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the section."""
         follower = load.frame == "body"
         force = site.placed(values["force"], follower=follower)

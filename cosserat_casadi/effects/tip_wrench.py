@@ -7,7 +7,7 @@ from typing import Any, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import Action, PointWrench
 
 
 @final
@@ -17,7 +17,7 @@ class TipWrench(Effect):
     kind = "tip_wrench"
     magnitudes = ("force", "moment")
 
-    def wrenches(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Wrench]:
+    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the tip section."""
         follower = load.frame == "body"
         force = site.placed(values["force"], follower=follower)

@@ -8,10 +8,8 @@ import numpy as np
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.system import Arguments, Frame, System, rod_wrenches
+from cosserat_casadi.model.system import Arguments, Frame, System, balance, rod_actions
 from cosserat_casadi.rod import kinematics
-from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.statics import Statics
 
 
 def _arguments(frame: Frame) -> Arguments:
@@ -59,12 +57,11 @@ def igm(frame: Frame, rod: str) -> ca.Function:
     q, inputs = ca.MX.sym("q", basis.size), ca.MX.sym("inputs", frame.layout.size)
     position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
     rotation = quaternion_to_matrix(quaternion)
-    wrenches = rod_wrenches(frame, rod, rotation.T, Arguments(q, inputs))
-    balance = InverseGeometricModel(Statics(kinematics.shape(basis, q), wrenches))
+    model = balance(kinematics.shape(basis, q), rod_actions(frame, rod, rotation.T, Arguments(q, inputs)))
     outputs = [
-        balance.generalised_force,
-        rotation @ balance.statics.base_force,
-        rotation @ balance.statics.base_moment,
+        model.generalised_force,
+        rotation @ model.statics.base_force,
+        rotation @ model.statics.base_moment,
     ]
     return ca.Function(
         f"igm_{rod}",
@@ -106,17 +103,17 @@ def shape(frame: Frame, rod: str) -> ca.Function:
 def fields(frame: Frame, rod: str) -> ca.Function:
     """(x, inputs) ↦ fields at the nodes, world frame but for the internal wrench, which is in the section's."""
     a = _arguments(frame)
-    balance = System(frame, a).rods[rod]
+    model = System(frame, a).rods[rod]
     base = frame.base(rod)
     count = frame.bases[rod].grid.size
     turn = ca.repmat(base.quaternion, 1, count)
     rotation = quaternion_to_matrix(base.quaternion)
     outputs = [
-        ca.repmat(base.position, 1, count) + rotation @ balance.shape.position,
-        quaternion_product(ca.MX(turn), ca.densify(balance.shape.quaternion)),
-        balance.statics.internal_wrench(),
-        rotation @ balance.statics.base_force,
-        rotation @ balance.statics.base_moment,
+        ca.repmat(base.position, 1, count) + rotation @ model.shape.position,
+        quaternion_product(ca.MX(turn), ca.densify(model.shape.quaternion)),
+        model.statics.internal_wrench(),
+        rotation @ model.statics.base_force,
+        rotation @ model.statics.base_moment,
     ]
     names = ["position", "quaternion", "internal_wrench", "base_force", "base_moment"]
     return ca.Function(f"fields_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)

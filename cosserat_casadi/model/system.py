@@ -6,7 +6,7 @@ one; what couples rods adds rows and columns, never instructions to the rods the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,11 +23,11 @@ from cosserat_casadi.model.inputs import InputLayout, magnitude
 from cosserat_casadi.model.rods import base_pose, rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Wrench
+from cosserat_casadi.rod.wrenches import Action, ActuationStress
 
 
 @dataclass(frozen=True)
@@ -183,21 +183,28 @@ class System:
         basis = self.frame.bases[name]
         q = self.arguments.x[self.frame.rod_slices[name]]
         rotation = quaternion_to_matrix(self.frame.base(name).quaternion)
-        wrenches = rod_wrenches(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
-        wrenches += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
-        return InverseGeometricModel(Statics(shape(basis, q), wrenches))
+        actions = rod_actions(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
+        actions += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        return balance(shape(basis, q), actions)
 
 
-def rod_wrenches(frame: Frame, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Wrench]:
-    """Wrenches of the scene's loads on one rod, in its base frame."""
+def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
+    """Balance of a rod of this shape under these actions."""
+    wrenches = [action for action in actions if not isinstance(action, ActuationStress)]
+    stresses = tuple(action for action in actions if isinstance(action, ActuationStress))
+    return InverseGeometricModel(Statics(place, wrenches), stresses)
+
+
+def rod_actions(frame: Frame, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
+    """What the scene's loads do to one rod, in its base frame."""
     basis = frame.bases[rod]
     site = Site(basis.rod, basis.grid, base_R_world)
-    found: list[Wrench] = []
+    found: list[Action] = []
     for load in frame.scene.loads:
         effect = EFFECTS[load.kind]
         if effect.acts_on(load, rod):
             values = {field: _value(frame.layout, load, field, arguments) for field in effect.magnitudes}
-            found.extend(effect.wrenches(load, site, values))
+            found.extend(effect.actions(load, site, values))
     return found
 
 

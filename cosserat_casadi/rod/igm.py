@@ -16,6 +16,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import interval_kernels, interval_turns, turn_matrix
+from cosserat_casadi.rod.wrenches import ActuationStress
 
 
 @dataclass(frozen=True)
@@ -24,9 +25,11 @@ class InverseGeometricModel:
 
     Attributes:
         statics: the rod's shape and internal wrench.
+        actuation: stresses that actuators add to the elastic ones.
     """
 
     statics: Statics
+    actuation: tuple[ActuationStress, ...] = ()
 
     @property
     def shape(self) -> Shape:
@@ -41,9 +44,16 @@ class InverseGeometricModel:
         return self._transposed_force()
 
     @cached_property
+    def actuation_force(self) -> Matrix | None:
+        """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
+        forces = [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation]
+        return sum(forces[1:], forces[0]) if forces else None
+
+    @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        return ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q + self.generalised_force
+        passive = ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q + self.generalised_force
+        return passive if self.actuation_force is None else passive + self.actuation_force
 
     @cached_property
     def energy(self) -> Matrix:
@@ -90,6 +100,10 @@ class InverseGeometricModel:
 
     def _weighted_force(self) -> Matrix:
         """Literal quadrature of report (2.16), from the internal wrench at the nodes."""
-        basis, wrench = self.shape.basis, self.statics.internal_wrench()
-        factor = -basis.rod.length / basis.energy_unit * basis.grid.weights
+        return -self._project(self.statics.internal_wrench())
+
+    def _project(self, wrench: Matrix) -> Matrix:
+        """ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ) of a 6×M stress in the sections' frames, n×1."""
+        basis = self.shape.basis
+        factor = basis.rod.length / basis.energy_unit * basis.grid.weights
         return ca.vertcat(*[ca.DM(basis.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in basis.rod.admitted])

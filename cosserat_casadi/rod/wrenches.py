@@ -1,4 +1,4 @@
-"""Wrenches that act on a rod: the two records in which every effect speaks to the mechanics.
+"""What acts on a rod: the records in which every effect speaks to the mechanics.
 
 Coordinates are those of the rod's base frame for a dead wrench and those of the loaded section for a follower.
 A part that does not exist is None and costs nothing.
@@ -46,3 +46,19 @@ class LineWrench:
 
 
 Wrench = PointWrench | LineWrench
+
+
+@dataclass(frozen=True)
+class ActuationStress:
+    """Stress Λ_ad that an actuator adds to the elastic one, report (2.15), whatever the rod's strain.
+
+    Attributes:
+        stress: 6×k coefficients of [M; N] in the sections' frames, N m and N.
+        profiles: values of the k profiles at the nodes, shape (k, M), without unit.
+    """
+
+    stress: Matrix
+    profiles: FloatArray
+
+
+Action = Wrench | ActuationStress

@@ -1,0 +1,93 @@
+"""Block operators on stacked fields against dense NumPy products, for every CasADi type."""
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.linalg import block_diag
+
+from cosserat_casadi.maths import blocks
+
+KINDS = pytest.mark.parametrize("kind", [ca.DM, ca.SX, ca.MX])
+PATTERNS = {
+    "dense": np.ones((3, 2)),
+    "sparse": np.array([[1, 0, 0], [0, 1, 1], [0, 0, 0]]),
+    "column": np.ones((3, 1)),
+    "one": np.ones((1, 1)),
+    "empty": np.zeros((2, 3)),
+}
+
+
+def normal(*shape):
+    return np.random.default_rng((5, *shape)).normal(size=shape)
+
+
+def evaluated(kind, function, value):
+    """Value of ``function`` at a sparse DM, through symbols of the given kind."""
+    value = ca.DM(value)
+    if kind is ca.DM:
+        return ca.DM(function(value)).full()
+    x = kind.sym("x", value.sparsity())
+    return ca.Function("f", [x], [function(x)])(value).full()
+
+
+def place_by_place(components, places):
+    """Permutation from component-by-component stacking to place-by-place stacking."""
+    order = np.arange(components * places).reshape(components, places).T.ravel()
+    return np.eye(components * places)[order]
+
+
+@KINDS
+@pytest.mark.parametrize("places", [1, 4])
+@pytest.mark.parametrize("name", PATTERNS)
+def test_block_diagonal_vs_numpy_block_diag(kind, places, name):
+    mask = PATTERNS[name]
+    m, n = mask.shape
+    dense = [mask * normal(m, n, i + 1)[..., i] for i in range(places)]
+    pattern = ca.DM(mask).sparsity() if mask.all() else ca.sparsify(ca.DM(mask)).sparsity()
+    sparse = ca.horzcat(*[ca.project(ca.DM(d), pattern) for d in dense])
+    found = evaluated(kind, lambda x: blocks.block_diagonal(x, pattern), sparse)
+    expected = place_by_place(m, places).T @ block_diag(*dense) @ place_by_place(n, places)
+    assert_allclose(found, expected, rtol=0, atol=0)
+
+
+@KINDS
+def test_block_diagonal_sparsity_vs_entries_of_the_blocks(kind):
+    pattern = ca.Sparsity.lower(3)
+    symbol = ca.DM(ca.Sparsity.lower(3), 1.0) if kind is ca.DM else kind.sym("x", pattern)
+    assert blocks.block_diagonal(ca.horzcat(symbol, symbol), pattern).nnz() == 2 * pattern.nnz()
+
+
+@KINDS
+def test_hat_operator_vs_numpy_cross(kind):
+    field, vectors = normal(3, 6), normal(3, 6, 2)[..., 1]
+    operator = evaluated(kind, blocks.hat_operator, field)
+    expected = np.cross(field, vectors, axis=0).ravel()
+    assert_allclose(operator @ vectors.ravel(), expected, rtol=1e-15, atol=1e-15)
+
+
+@KINDS
+@pytest.mark.parametrize("components", [1, 3])
+@pytest.mark.parametrize("full", [True, False])
+def test_cumulative_sum_vs_numpy_cumsum(kind, components, full):
+    places = 5
+    values = normal(components * places, 4)
+    mask = np.ones_like(values) if full else np.random.default_rng(2).integers(0, 2, values.shape)
+    sparse = ca.sparsify(ca.DM(values * mask))
+    found = evaluated(kind, lambda x: blocks.cumulative_sum(x, places), sparse)
+    expected = np.cumsum((values * mask).reshape(components, places, 4), axis=1).reshape(-1, 4)
+    assert_allclose(found, expected, rtol=1e-15, atol=1e-15)
+
+
+@KINDS
+def test_reversed_places_vs_numpy_flip(kind):
+    values = normal(12, 3)
+    found = evaluated(kind, lambda x: blocks.reversed_places(x, 4), values)
+    assert_allclose(found, values.reshape(3, 4, 3)[:, ::-1].reshape(12, 3), rtol=0, atol=0)
+
+
+@KINDS
+def test_stack_vs_numpy_ravel(kind):
+    field = normal(3, 5)
+    assert_allclose(evaluated(kind, blocks.stack, field).ravel(), field.ravel(), rtol=0, atol=0)
+    assert_allclose(evaluated(kind, lambda x: blocks.unstack(blocks.stack(x), 3), field), field, rtol=0, atol=0)

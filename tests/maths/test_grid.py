@@ -1,0 +1,119 @@
+"""Grids of one or several elements: exact on polynomials, with both sides of every break."""
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.grid import Grid
+
+BREAKS = [(0.0, 1.0), (0.0, 0.3, 1.0), (0.0, 0.125, 0.5, 0.9, 1.0)]
+GRIDS = [Grid(breaks, N) for breaks in BREAKS for N in (1, 2, 5, 12)]
+ALL_GRIDS = pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g.elements}x{g.intervals}")
+
+
+def polynomials(grid, degree):
+    """One polynomial for each element, not continuous at the breaks."""
+    draw = np.random.default_rng((grid.elements, degree))
+    return [Polynomial(draw.normal(size=degree + 1)) for _ in range(grid.elements)]
+
+
+def element_numbers(grid):
+    return np.repeat(np.arange(grid.elements), grid.intervals + 1)
+
+
+def sampled(grid, pieces):
+    return np.array([pieces[e](x) for e, x in zip(element_numbers(grid), grid.nodes, strict=True)])
+
+
+def integral(grid, pieces, x, element):
+    """∫₀ˣ of piecewise polynomials, x in the given element, in closed form."""
+    ends = [*grid.breaks[: element + 1], x]
+    return sum(p.integ()(b) - p.integ()(a) for p, a, b in zip(pieces, ends[:-1], ends[1:], strict=False))
+
+
+@ALL_GRIDS
+def test_nodes_vs_mapped_chebyshev_points(grid):
+    local = chebyshev.nodes(grid.intervals)
+    expected = [a + (b - a) * local for a, b in zip(grid.breaks, grid.breaks[1:], strict=False)]
+    assert grid.size == grid.elements * (grid.intervals + 1) == len(grid.nodes)
+    assert_allclose(grid.nodes.reshape(grid.elements, -1), expected, rtol=1e-15, atol=0)
+
+
+@ALL_GRIDS
+def test_element_ends_vs_breaks(grid):
+    ends = grid.nodes.reshape(grid.elements, -1)
+    assert_allclose(ends[:, 0], grid.breaks[:-1], rtol=0, atol=1e-16)
+    assert_allclose(ends[:, -1], grid.breaks[1:], rtol=2e-16, atol=0)
+
+
+@ALL_GRIDS
+def test_weights_vs_one(grid):
+    assert_allclose(grid.weights.sum(), 1.0, rtol=4e-16, atol=0)
+    assert np.all(grid.weights > 0)
+
+
+@ALL_GRIDS
+def test_quadrature_vs_closed_form_on_piecewise_polynomials(grid):
+    pieces = polynomials(grid, grid.intervals)
+    expected = integral(grid, pieces, 1.0, grid.elements - 1)
+    assert_allclose(grid.weights @ sampled(grid, pieces), expected, rtol=1e-13, atol=1e-14)
+
+
+@ALL_GRIDS
+def test_integration_matrix_vs_closed_form_on_piecewise_polynomials(grid):
+    pieces = polynomials(grid, grid.intervals)
+    places = zip(grid.nodes, element_numbers(grid), strict=True)
+    expected = [integral(grid, pieces, x, e) for x, e in places]
+    assert_allclose(grid.integration_matrix @ sampled(grid, pieces), expected, rtol=1e-12, atol=1e-14)
+
+
+@ALL_GRIDS
+def test_last_row_of_integration_matrix_vs_weights(grid):
+    assert_allclose(grid.integration_matrix[-1], grid.weights, rtol=1e-13, atol=1e-16)
+
+
+@ALL_GRIDS
+def test_interpolation_vs_piecewise_polynomials(grid):
+    pieces = polynomials(grid, grid.intervals)
+    X = np.random.default_rng(1).uniform(0, 1, 40)
+    expected = [pieces[np.searchsorted(grid.breaks[1:-1], x)](x) for x in X]
+    assert_allclose(grid.interpolation_matrix(X) @ sampled(grid, pieces), expected, rtol=1e-11, atol=1e-12)
+
+
+@ALL_GRIDS
+def test_interpolation_at_a_break_vs_the_side_of_the_base(grid):
+    pieces = polynomials(grid, grid.intervals)
+    X = np.array(grid.breaks[1:])
+    expected = [p(x) for p, x in zip(pieces, X, strict=True)]
+    assert_allclose(grid.interpolation_matrix(X) @ sampled(grid, pieces), expected, rtol=1e-12, atol=1e-13)
+
+
+@ALL_GRIDS
+def test_node_at_vs_the_last_node_of_its_element(grid):
+    for e, x in enumerate(grid.breaks[1:]):
+        node = grid.node_at(x)
+        assert node == (e + 1) * (grid.intervals + 1) - 1
+        assert_allclose(grid.nodes[node], x, rtol=2e-16, atol=0)
+
+
+def test_node_at_vs_an_abscissa_that_is_no_break():
+    with pytest.raises(ValueError, match="not in tuple"):
+        Grid((0.0, 0.5, 1.0), 4).node_at(0.3)
+
+
+@ALL_GRIDS
+def test_intervals_vs_neighbouring_distinct_sections(grid):
+    assert_allclose(grid.left_ends[1:], grid.right_ends[:-1], rtol=3e-16, atol=1e-16)
+    assert len(grid.left_ends) == grid.elements * grid.intervals
+    assert np.all(grid.right_ends > grid.left_ends)
+    sections = np.append(grid.left_ends, 1.0)
+    assert_allclose(sections[grid.section_of_node], grid.nodes, rtol=3e-16, atol=1e-16)
+
+
+@ALL_GRIDS
+def test_element_of_vs_comparison_with_breaks(grid):
+    X = np.concatenate([np.linspace(0, 1, 33), grid.breaks])
+    expected = [max(0, sum(x > b for b in grid.breaks[:-1]) - 1) for x in X]
+    assert grid.element_of(X).tolist() == expected

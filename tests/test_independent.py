@@ -1,0 +1,253 @@
+"""Whole scenes against independent routes: an initial-value integration, closed forms, elliptic integrals."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.linalg import expm
+from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
+
+from cosserat_casadi import Scene, Solution, build, discretise, solve, solve_scene
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.wrenches import ActuationStress
+from tests.initial_value import integrate
+from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
+
+BASE = {"position": [0.1, -0.2, 0.3], "quaternion": [0.5, 0.5, -0.5, 0.5]}
+TUBE = {
+    "name": "rod",
+    "length": 0.8,
+    "strain": "reissner",
+    "material": {"youngs_modulus": 2.0e6, "poisson_ratio": 0.4, "density": 1100.0},
+    "section": {"shape": "annulus", "outer_radius": [0.04, 0.025], "inner_radius": [0.02, 0.01]},
+}
+BAR = {**TUBE, "section": {"shape": "rectangle", "width": 0.05, "height": [0.04, 0.03], "shear_correction": 0.85}}
+HEAVY = {**WEIGHT, "acceleration": [1.0, -2.0, -9.81]}
+
+SCENES: dict[str, Scene] = {
+    "weight": scene(WEIGHT, rods=[rod(base=BASE)]),
+    "weight, planar": scene(WEIGHT, strain="planar"),
+    "push and twist, Reissner": scene(push(moment=[0.2, -0.3, 0.4]), strain="reissner"),
+    "follower push": scene(push(force=[2.0, -1.0, 0.5], frame="body")),
+    "follower moment": scene(push(force=[0, 0, 0], moment=[0.5, -0.8, 0.6], frame="body")),
+    "hook": scene(HOOK, rods=[rod(base=BASE)]),
+    "two hooks, one follower": scene(
+        HOOK, {**HOOK, "name": "second", "at": 0.75, "moment": [0.1, 0.2, 0], "frame": "body"}, strain="reissner"
+    ),
+    "wind": scene(WIND, strain="reissner"),
+    "follower wind with couples": scene({**WIND, "frame": "body", "moment": [[0.2, 0.1], 0.1, [0.0, 0.0, 0.3]]}),
+    "intrinsic curvature": scene(
+        push(),
+        WEIGHT,
+        rods=[rod(intrinsic={"curvature": [[1.0, 0.5], -2.0, [0.5, 0.0, 1.0]], "tangent": [0, 0.05, 1]})],
+    ),
+    "some strains only": scene(push(), WEIGHT, strain=["bending_x", "torsion", "extension"]),
+    "tapered tube": scene(HEAVY, push(force=[6.0, 3.0, -2.0]), rods=[TUBE]),
+    "rectangular bar": scene(HEAVY, HOOK, rods=[BAR]),
+    "everything": scene(
+        push(moment=[0.1, 0, 0.2]), HEAVY, HOOK, WIND, {**WIND, "name": "jet", "frame": "body"},
+        rods=[rod("reissner", base=BASE, intrinsic={"curvature": [0.4, -0.6, [0.3, 0.2]]})],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_solution_vs_initial_value_integration(name: str) -> None:
+    wanted = SCENES[name]
+    solution = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))
+    assert solution.converged
+    base = solution.base_wrench()
+    reached = integrate(wanted, base.force, base.moment)
+    tip = solution.tip()
+    assert_allclose(reached.position, tip.position[0], rtol=0, atol=1e-9)
+    assert_allclose(reached.rotation, tip.rotation[0], rtol=0, atol=1e-9)
+    size = 1.0 + np.abs(base.force).max() + np.abs(base.moment).max()
+    assert_allclose(reached.force_left, 0.0, rtol=0, atol=1e-10 * size)
+    assert_allclose(reached.moment_left, 0.0, rtol=0, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_error_estimate_vs_initial_value_integration(name: str) -> None:
+    """Honest: at most ten times too small."""
+    wanted = SCENES[name].model_copy(update={"accuracy": SCENES[name].accuracy.model_copy(update={"tolerance": 1e-5})})
+    solution = solve_scene(wanted)
+    fine = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))
+    error = np.abs(solution.tip().position - fine.tip().position).max() / wanted.rods[0].length
+    error = max(error, np.abs(solution.tip().rotation - fine.tip().rotation).max())
+    assert solution.converged
+    assert solution.error_estimate is not None
+    assert error <= 10 * solution.error_estimate
+    assert error <= 1e-5
+
+
+# Closed forms
+
+
+def unit_rod(**changes: Any) -> dict[str, Any]:
+    plain = {"name": "rod", "length": 1.0, "strain": "kirchhoff", "base": {"quaternion": [0.5, 0.5, 0.5, 0.5]}}
+    return {**plain, "stiffness": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.0}, **changes}
+
+
+def solved(*loads: dict[str, Any], **changes: Any) -> Solution:
+    found = solve_scene(scene(*loads, rods=[unit_rod(**changes)], accuracy={"tolerance": 1e-10}))
+    assert found.converged, found.message
+    return found
+
+
+@pytest.mark.parametrize("turns", [0.25, 0.5, 1.0, 2.0])
+def test_moment_rolls_a_rod_into_circles(turns: float) -> None:
+    """A moment 2π k EI/ℓ bends a cantilever to curvature 2π k/ℓ: k circles."""
+    moment = 2 * np.pi * turns
+    solution = solved(push(force=[0, 0, 0], moment=[0, 0, moment]))
+    expected = [np.sin(moment) / moment, (1 - np.cos(moment)) / moment, 0.0]
+    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-11)
+    cosine, sine = np.cos(moment), np.sin(moment)
+    assert_allclose(solution.tip().rotation[0][:, 2], [cosine, sine, 0], rtol=0, atol=1e-10)
+
+
+def test_constant_intrinsic_strain_is_a_screw() -> None:
+    """The unloaded rod of constant curvature and torsion: the exponential of SE(3)."""
+    curvature = np.array([1.2, -0.7, 2.0])
+    intrinsic = {"curvature": curvature.tolist()}
+    solution = solved(intrinsic=intrinsic, base={"quaternion": [1, 0, 0, 0]})
+    twist = np.zeros((4, 4))
+    twist[:3, :3] = [
+        [0, -curvature[2], curvature[1]],
+        [curvature[2], 0, -curvature[0]],
+        [-curvature[1], curvature[0], 0],
+    ]
+    twist[2, 3] = 1.0
+    pose = expm(twist)
+    assert_allclose(solution.tip().position[0], pose[:3, 3], rtol=0, atol=1e-11)
+    assert_allclose(solution.tip().rotation[0], pose[:3, :3], rtol=0, atol=1e-11)
+
+
+def test_pull_stretches_by_force_over_axial_stiffness() -> None:
+    stiffness = {
+        "bending_x": 1.0,
+        "bending_y": 1.0,
+        "torsion": 1.0,
+        "shear_x": 30.0,
+        "shear_y": 30.0,
+        "extension": 50.0,
+    }
+    solution = solved(push(force=[5.0, 0, 0]), strain="reissner", stiffness=stiffness)
+    assert_allclose(solution.tip().position[0], [1.1, 0, 0], rtol=0, atol=1e-13)
+
+
+def test_moment_along_the_axis_twists_by_moment_over_torsion_stiffness() -> None:
+    solution = solved(push(force=[0, 0, 0], moment=[0.9, 0, 0]))
+    assert_allclose(solution.tip().position[0], [1, 0, 0], rtol=0, atol=1e-12)
+    # Local x starts along world y and turns about world x.
+    assert_allclose(solution.tip().rotation[0][:, 0], [0, np.cos(0.9), np.sin(0.9)], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("load", [0.5, 1.0, 2.0, 5.0, 10.0, 30.0])
+def test_elastica_vs_elliptic_integrals(load: float) -> None:
+    """Cantilever under a dead transverse force F: the inextensible elastica."""
+    along, across, angle = elastica(load)
+    tip = solved(push(force=[0, load, 0])).tip()
+    assert_allclose(tip.position[0], [along, across, 0], rtol=0, atol=1e-10)
+    assert_allclose(tip.rotation[0][:, 2], [np.cos(angle), np.sin(angle), 0], rtol=0, atol=1e-9)
+
+
+def test_elastica_vs_published_table() -> None:
+    """K. Mattiasson, Int. J. Numer. Meth. Engng 17 (1981) 145: F ℓ²/EI = 1 and 10, eight published digits or fewer."""
+    for load, across, shortening in ((1.0, 0.30172, 0.05643), (10.0, 0.81061, 0.55500)):
+        position = solved(push(force=[0, load, 0])).tip().position[0]
+        assert_allclose([position[1], 1 - position[0]], [across, shortening], rtol=0, atol=6e-6)
+
+
+def elastica(load: float) -> tuple[float, float, float]:
+    """Tip of the elastica by elliptic integrals: along, across, angle."""
+    low, high = 1e-9, np.pi / 2 - 1e-12
+    for _ in range(200):
+        angle = (low + high) / 2
+        m = (1 + np.sin(angle)) / 2
+        start = np.arcsin(np.sqrt(0.5 / m))
+        low, high = (angle, high) if (ellipk(m) - ellipkinc(start, m)) ** 2 < load else (low, angle)
+    across = 1 - 2 / np.sqrt(load) * (ellipe(m) - ellipeinc(start, m))
+    return float(np.sqrt(2 * np.sin(angle) / load)), float(across), float(angle)
+
+
+def test_small_push_vs_beam_theory() -> None:
+    """F ℓ³/(3 EI) for bending, plus F ℓ/GA with shear."""
+    force = 1e-5
+    stiffness = {"bending_x": 1.0, "bending_y": 2.0, "torsion": 1.0, "shear_x": 7.0, "shear_y": 5.0, "extension": 50.0}
+    solution = solved(push(force=[0, force, 0]), strain="reissner", stiffness=stiffness)
+    # World y is local x: bending about local y, shear along local x.
+    assert_allclose(solution.tip().position[0][1], force * (1 / 6 + 1 / 7), rtol=1e-8, atol=0)
+
+
+@pytest.mark.parametrize("direction", [0, 1])
+def test_cantilever_pushed_to_plus_x_bends_to_plus_x(direction: int) -> None:
+    force = [0.0, 0.0, 0.0]
+    force[direction] = 0.3
+    tip = solve(build(scene(push(force=force)))).tip().position[0]
+    assert tip[direction] > 0.01
+
+
+def test_reciprocity_of_the_tip() -> None:
+    """Maxwell–Betti on the loaded rod: the flexibility d(tip)/d(force) is symmetric where forces are dead."""
+    model = build(scene(push(), WEIGHT, strain="reissner", inputs=["push.force"]))
+    solution = solve(model)
+    jacobian = model.jacobian(solution.x, solution.inputs)[0].full()
+    sensitivity = -np.linalg.solve(jacobian, model.input_jacobian(solution.x, solution.inputs).full())
+    tip = model.tip["rod"]
+    step = 1e-6
+    columns = [
+        (tip(solution.x + step * c, solution.inputs)[0] - tip(solution.x - step * c, solution.inputs)[0]).full()[:, 0]
+        for c in sensitivity.T
+    ]
+    flexibility = np.array(columns).T / (2 * step)
+    assert_allclose(flexibility, flexibility.T, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("transport", ["magnus6", "magnus8", "permuted"])
+def test_tip_error_falls_geometrically_to_rounding(transport: str) -> None:
+    """Modes and nodes grow together: a factor of twenty a rung at least, down to 1e-11 of the length."""
+    wanted = scene(push(force=[1.5, 0.8, -0.5]), WEIGHT)
+    truth = solve(build(wanted, discretise(wanted, 16, 60, "magnus8"))).tip().position
+    errors = []
+    for modes in (2, 4, 6, 8, 10):
+        nodes = 2 * modes + (40 if transport == "magnus6" else 14)
+        tip = solve(build(wanted, discretise(wanted, modes, nodes, transport))).tip().position
+        errors.append(float(np.abs(tip - truth).max()) / 0.8)
+    for coarse, fine in pairwise(errors):
+        assert fine < max(coarse / 20, 1e-11)
+    assert errors[-1] < 1e-11
+
+
+def test_actuation_stress_bends_to_the_curvature_it_balances() -> None:
+    """Λ_ad + H Δξ = 0 without loads: a constant stress −(M, N) gives the strain H⁻¹ (M, N), report (2.15)."""
+    hooke = np.array([1.0, 2.0, 0.5, 30.0, 40.0, 50.0])
+    plain = RodProperties(
+        "r", 0.5, tuple(range(6)), "legendre", lambda X: np.tile(hooke, (len(X), 1)), ((0.0,),) * 5 + ((1.0,),)
+    )
+    basis = StrainBasis(plain, Discretisation((3,) * 6, 8))
+    wrench = np.array([0.3, -0.4, 0.2, 1.0, -2.0, 3.0])
+    q = np.linalg.solve(basis.stiffness, -_actuation(basis, np.zeros(basis.size), -wrench))
+    assert_allclose(_actuation(basis, q, -wrench) + basis.stiffness @ q, 0.0, rtol=0, atol=1e-14)
+    strain = basis.at(q, np.array([0.0, 0.3, 1.0])).full().T
+    assert_allclose(strain, np.tile([0, 0, 0, 0, 0, 1] + wrench / hooke, (3, 1)), rtol=0, atol=1e-12)
+
+
+def _actuation(basis: StrainBasis, q: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    import casadi as ca
+
+    action = ActuationStress(ca.DM(stress), np.ones((1, basis.grid.size)))
+    model = InverseGeometricModel(Statics(shape(basis, ca.DM(q)), []), (action,))
+    assert model.actuation_force is not None
+    assert_allclose(
+        model.residual.full()[:, 0], basis.stiffness @ q + model.actuation_force.full()[:, 0], rtol=0, atol=1e-14
+    )
+    return np.asarray(model.actuation_force.full()[:, 0])
