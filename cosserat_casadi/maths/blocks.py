@@ -42,7 +42,7 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
     columns = np.tile(c, places) * places + place
     shape = (pattern.size1() * places, pattern.size2() * places)
     sparsity, order = ca.Sparsity.triplet(*shape, rows.tolist(), columns.tolist(), False)
-    return type(blocks)(sparsity, blocks.nz[order])
+    return type(blocks)(sparsity, ca.vec(blocks.nz[order]))
 
 
 def hat_operator(field: Matrix) -> Matrix:

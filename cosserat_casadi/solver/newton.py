@@ -125,4 +125,6 @@ def _size(x: FloatArray) -> float:
 
 
 def _norm(vector: FloatArray) -> float:
-    return float(np.sqrt(vector @ vector))
+    """2-norm; infinite where the squares overflow, which the line search takes for a step too long."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(np.sqrt(vector @ vector))

@@ -1,0 +1,65 @@
+"""The README works when pasted: its scene, its commands, its Python."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi import parse_scene, read_scene
+from tests.conftest import ROOT
+
+README = (ROOT / "README.md").read_text()
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+def test_scene_of_the_readme_is_the_example() -> None:
+    (text,) = blocks("toml")
+    assert parse_scene(text) == read_scene(ROOT / "examples" / "nitinol_wire.toml")
+
+
+def test_python_of_the_readme_runs() -> None:
+    (code,) = blocks("python")
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Equilibrium found" in done.stdout
+
+
+def commands() -> list[str]:
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    return [line.split(" > ")[0] for line in lines if line.startswith(".venv/bin/cosserat ")]
+
+
+def test_there_are_four_commands() -> None:
+    assert len(commands()) == 4
+
+
+@pytest.mark.parametrize("line", commands())
+def test_commands_of_the_readme_run(line: str, tmp_path: Path) -> None:
+    words = shlex.split(line.replace("examples/", f"{ROOT}/examples/"))
+    code = "from cosserat_casadi.cli import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_effect_is_in_the_table() -> None:
+    from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
+
+    for kind in (*EFFECTS, *SUPPORTS):
+        assert f"`{kind}`" in README
+
+
+def test_pictures_and_pages_exist() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target
