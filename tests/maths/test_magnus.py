@@ -111,7 +111,7 @@ def test_increment_tangent_vs_frechet_derivative_of_expm(omega):
     tangent = magnus.increment_tangent(ca.DM(omega)).full()
     for i, direction in enumerate(np.eye(3)):
         value, derivative = expm_frechet(hat(omega), hat(direction))
-        assert_allclose(hat(tangent[:, i]), derivative @ value.T, rtol=0, atol=2e-15)
+        assert_allclose(hat(tangent[:, i]), derivative @ value.T, rtol=0, atol=5e-14)
 
 
 @pytest.mark.parametrize("omega", OMEGAS)

@@ -1,0 +1,336 @@
+"""Figures of a solved scene: the deformed rods with their loads, strain and internal wrench along X.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.solver.solution import Solution
+
+FORMATS = (".png", ".pdf", ".svg")
+"""Suffixes a figure may have."""
+
+SAMPLES = np.linspace(0.0, 1.0, 201)
+RODS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")
+AXES = ("#cc3311", "#228833", "#0055bb")
+LOADS = "#b2560d"
+
+
+class PlotUnavailableError(CosseratError):
+    """Matplotlib is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__("figures need matplotlib: install it with  pip install 'cosserat-casadi[plot]'")
+
+
+def check_plot_path(path: str | Path) -> None:
+    """Refuse a figure that could not be made, before any work is done for it.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    if Path(path).suffix.lower() not in FORMATS:
+        remedy = f"use one of {', '.join(FORMATS)}"
+        raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
+    _figure_class()
+
+
+def save_plot(solution: Solution, path: str | Path) -> None:
+    """Draw a solution into a file, whole or not at all; the same solution gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    check_plot_path(path)
+    import matplotlib as mpl
+
+    suffix = Path(path).suffix.lower()[1:]
+    metadata = {"png": {"Software": None}, "pdf": {"CreationDate": None, "Producer": None}, "svg": {"Date": None}}
+    content = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": "cosserat"}):
+        plot_solution(solution).savefig(content, format=suffix, dpi=150, metadata=metadata[suffix])
+    write_atomically(Path(path), content.getvalue())
+
+
+def plot_solution(solution: Solution) -> Any:
+    """Figure of a solution.
+
+    Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick,
+    unloaded dashed, section frames (x red, y green, z blue), loads as arrows. Right, along X: the strains that are
+    admitted, the internal moment and the internal force in the sections' frames.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    figure = _figure_class()(figsize=(13.0, 6.6), layout="constrained")
+    grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
+    plane = _plane(solution)
+    scenery = figure.add_subplot(grid[:, 0], projection=None if plane else "3d")
+    _draw_scenery(scenery, solution, plane)
+    panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
+    for panel, (quantity, columns, unit) in zip(panels, _PANELS, strict=True):
+        _draw_panel(panel, solution, quantity, columns, unit)
+    panels[-1].set_xlabel("X = s/ℓ, base to tip")
+    _draw_title(figure, solution)
+    return figure
+
+
+_PANELS: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("strain", ("K_x", "K_y", "K_z", "Γ_x", "Γ_y", "Γ_z − 1"), "curvature, 1/m"),
+    ("moment", ("M_x", "M_y", "M_z"), "moment, N m"),
+    ("force", ("N_x", "N_y", "N_z"), "force, N"),
+)
+
+
+Arrow = tuple[FloatArray, FloatArray, str, str]
+"""Where an arrow starts, its vector, its label (empty for a repeated one), and "point", "line" or "moment"."""
+
+
+def _figure_class() -> Any:
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as missing:
+        raise PlotUnavailableError from missing
+    return Figure
+
+
+def _size(solution: Solution) -> float:
+    return max(basis.rod.length for basis in solution.model.frame.bases.values())
+
+
+def _plane(solution: Solution) -> tuple[int, int] | None:
+    """World axes of the coordinate plane that holds all rods and forces, moments across it, or None."""
+    together = np.concatenate([solution.pose(SAMPLES, name).position for name in solution.model.frame.bases])
+    for flat, axes in ((1, (0, 2)), (2, (0, 1)), (0, (1, 2))):
+        level = np.abs(together[:, flat]).max() <= 1e-9 * _size(solution)
+        if level and all(_lies_flat(arrow, flat) for arrow in _arrows(solution)):
+            return axes
+    return None
+
+
+def _lies_flat(arrow: Arrow, flat: int) -> bool:
+    _, vector, _, style = arrow
+    largest = np.abs(vector).max()
+    outside = np.delete(vector, flat) if style == "moment" else vector[[flat]]
+    return bool(np.abs(outside).max() <= 1e-9 * largest)
+
+
+def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
+    several = len(solution.model.frame.bases) > 1
+    for i, name in enumerate(solution.model.frame.bases):
+        colour = RODS[i % len(RODS)]
+        unloaded = _unloaded(solution, name)
+        _line(axes, unloaded, plane, color="0.55", linestyle="--", linewidth=1.2, label=None if i else "unloaded")
+        shape = solution.pose(SAMPLES, name).position
+        _line(axes, shape, plane, color=colour, linewidth=3.5, label=name if several else "deformed")
+        _line(axes, shape[:1], plane, color="0.2", marker="s", markersize=9, linestyle="none")
+        _draw_frames(axes, solution, name, plane)
+    _draw_supports(axes, solution, plane)
+    _draw_arrows(axes, solution, plane)
+    names = "xyz"
+    shown = plane or (0, 1, 2)
+    axes.set_xlabel(f"{names[shown[0]]}, m")
+    axes.set_ylabel(f"{names[shown[1]]}, m")
+    if plane is None:
+        axes.set_zlabel("z, m")
+        _equal_box(axes, solution)
+        axes.view_init(elev=22, azim=-58)
+    else:
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.grid(alpha=0.3)
+    axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
+
+
+def _unloaded(solution: Solution, name: str) -> FloatArray:
+    model = solution.model
+    rest = Solution(model, solution.inputs, model.unloaded(), solution.outcome, "", 0.0, 0)
+    return rest.pose(SAMPLES, name).position
+
+
+def _line(axes: Any, points: FloatArray, plane: tuple[int, int] | None, **style: Any) -> None:
+    columns = plane or (0, 1, 2)
+    axes.plot(*[points[:, c] for c in columns], **style)
+
+
+def _draw_frames(axes: Any, solution: Solution, name: str, plane: tuple[int, int] | None) -> None:
+    pose = solution.pose(np.linspace(0.0, 1.0, 9), name)
+    length = 0.06 * solution.model.frame.bases[name].rod.length
+    for position, rotation in zip(pose.position, pose.rotation, strict=True):
+        for axis, colour in enumerate(AXES):
+            ends = np.array([position, position + length * rotation[:, axis]])
+            _line(axes, ends, plane, color=colour, linewidth=1.1)
+
+
+def _draw_supports(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
+    for support in solution.model.scene.supports:
+        marker = "s" if support.kind == "clamped" else "^"
+        point = np.array([support.position])
+        style = {"marker": marker, "markersize": 10, "linestyle": "none", "color": "0.2"}
+        _line(axes, point, plane, label=f"{support.kind} tip", **style)
+
+
+def _arrows(solution: Solution) -> list[Arrow]:
+    model = solution.model
+    values = load_values(model.scene, model.inputs, solution.inputs)
+    arrows: list[Arrow] = []
+    for load in model.scene.loads:
+        if load.kind == "gravity":
+            arrows += _weights(solution, load, values[load.name]["acceleration"])
+        elif load.kind == "distributed_wrench":
+            arrows += _distributed(solution, load, values[load.name]["force"])
+        else:
+            arrows += _points(solution, load, values[load.name])
+    return arrows
+
+
+def _points(solution: Solution, load: Any, values: dict[str, FloatArray]) -> list[Arrow]:
+    pose = solution.pose(np.array([getattr(load, "at", 1.0)]), load.rod)
+    turn = pose.rotation[0] if load.frame == "body" else np.eye(3)
+    arrows: list[Arrow] = []
+    for field, unit, style in (("force", "N", "point"), ("moment", "N m", "moment")):
+        vector = turn @ values[field][:, 0]
+        if np.any(vector):
+            label = f"{load.name}: {np.linalg.norm(vector):.3g} {unit}"
+            arrows.append((pose.position[0], vector, label, style))
+    return arrows
+
+
+def _distributed(solution: Solution, load: Any, coefficients: FloatArray) -> list[Arrow]:
+    X = np.linspace(0.05, 0.95, 8)
+    pose = solution.pose(X, load.rod)
+    vectors = np.polynomial.legendre.legval(2 * X - 1, coefficients.T).T
+    if load.frame == "body":
+        vectors = np.einsum("kij,kj->ki", pose.rotation, vectors)
+    label = f"{load.name}: up to {np.linalg.norm(vectors, axis=1).max():.3g} N/m"
+    return [
+        (position, vector, label if i == 0 else "", "line")
+        for i, (position, vector) in enumerate(zip(pose.position, vectors, strict=True))
+        if np.any(vector)
+    ]
+
+
+def _weights(solution: Solution, load: Any, acceleration: FloatArray) -> list[Arrow]:
+    X = np.linspace(0.05, 0.95, 8)
+    arrows: list[Arrow] = []
+    for name, basis in solution.model.frame.bases.items():
+        if basis.rod.linear_density is None or (load.rods is not None and name not in load.rods):
+            continue
+        weight = basis.rod.linear_density(X)[:, None] * acceleration[:, 0]
+        label = f"{load.name}: up to {np.linalg.norm(weight, axis=1).max():.3g} N/m"
+        positions = solution.pose(X, name).position
+        arrows += [
+            (position, vector, "" if arrows or i else label, "line")
+            for i, (position, vector) in enumerate(zip(positions, weight, strict=True))
+            if np.any(vector)
+        ]
+    return arrows
+
+
+def _draw_arrows(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
+    """Arrows scaled within their own kind: the largest point load is a fifth of the rod, a line load a tenth."""
+    styles = {"point": (0.22, LOADS, 2.2), "moment": (0.18, "#7a3e9d", 2.2), "line": (0.09, "#c98b4b", 1.0)}
+    arrows = _arrows(solution)
+    for style, (share, colour, width) in styles.items():
+        chosen = [arrow for arrow in arrows if arrow[3] == style]
+        largest = max((float(np.linalg.norm(vector)) for _, vector, *_ in chosen), default=0.0)
+        for start, vector, label, _ in chosen:
+            if style == "moment" and plane is not None:
+                axes.plot([], [], color=colour, linewidth=width, label=label)
+                continue
+            scaled = vector * share * _size(solution) / largest
+            _arrow(axes, start, scaled, plane, color=colour, linewidth=width, label=label)
+    _show_moments_in_the_plane(axes, arrows, plane)
+
+
+def _arrow(axes: Any, start: FloatArray, vector: FloatArray, plane: tuple[int, int] | None, **style: Any) -> None:
+    label = style.pop("label") or None
+    if plane is None:
+        axes.quiver(*start, *vector, arrow_length_ratio=0.25, label=label, **style)
+        return
+    ends = [start[list(plane)], (start + vector)[list(plane)]]
+    arrow = {"arrowstyle": "-|>", "color": style["color"], "linewidth": style["linewidth"], "mutation_scale": 14}
+    axes.annotate("", xy=ends[1], xytext=ends[0], arrowprops=arrow)
+    axes.plot([], [], color=style["color"], linewidth=style["linewidth"], label=label)
+    axes.update_datalim(ends)
+    axes.autoscale_view()
+
+
+def _show_moments_in_the_plane(axes: Any, arrows: list[Arrow], plane: tuple[int, int] | None) -> None:
+    """A moment across the plane has no arrow in it: a turning sign at its section."""
+    if plane is None:
+        return
+    (across,) = {0, 1, 2} - set(plane)
+    for start, vector, _, style in arrows:
+        if style == "moment":
+            # In the x–z plane the world y axis points away from the reader, so the turn is seen reversed.
+            left = (vector[across] > 0) is not (plane == (0, 2))
+            point = start[list(plane)]
+            axes.annotate("↺" if left else "↻", point, fontsize=20, color="#7a3e9d", ha="center", va="center")
+
+
+def _equal_box(axes: Any, solution: Solution) -> None:
+    points = [solution.pose(SAMPLES, name).position for name in solution.model.frame.bases]
+    points += [_unloaded(solution, name) for name in solution.model.frame.bases]
+    together = np.concatenate(points)
+    centre = (together.max(axis=0) + together.min(axis=0)) / 2
+    half = 0.55 * max(float(np.ptp(together, axis=0).max()), 0.2 * _size(solution))
+    axes.set_xlim(centre[0] - half, centre[0] + half)
+    axes.set_ylim(centre[1] - half, centre[1] + half)
+    axes.set_zlim(centre[2] - half, centre[2] + half)
+    axes.set_box_aspect((1, 1, 1))
+
+
+def _draw_panel(panel: Any, solution: Solution, quantity: str, labels: tuple[str, ...], unit: str) -> None:
+    several = len(solution.model.frame.bases) > 1
+    panel.set_ylabel(unit)
+    for i, (name, basis) in enumerate(solution.model.frame.bases.items()):
+        values = _values(solution, name, quantity)
+        for j, label in enumerate(labels):
+            if np.abs(values[:, j]).max() <= 1e-9 * max(np.abs(values).max(), 1e-300):
+                continue
+            colour = AXES[j % 3] if not several else RODS[i % len(RODS)]
+            text = f"{name} {label}" if several else label
+            panel.plot(SAMPLES, values[:, j], color=colour, linestyle="-" if j < 3 else ":", label=text)
+            if j >= 3:
+                panel.set_ylabel("curvature, 1/m; shear, stretch")
+        for cut in basis.grid.breaks[1:-1]:
+            panel.axvline(cut, color="0.6", linewidth=0.8)
+    panel.grid(alpha=0.3)
+    panel.margins(x=0.01)
+    if panel.get_legend_handles_labels()[0]:
+        panel.legend(fontsize=9, ncols=3, framealpha=0.9)
+
+
+def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
+    if quantity == "strain":
+        strain = solution.strain(SAMPLES, name)
+        strain[:, 5] -= 1.0
+        return strain
+    wrench = solution.internal_wrench(SAMPLES, name)
+    return wrench[:, :3] if quantity == "moment" else wrench[:, 3:]
+
+
+def _draw_title(figure: Any, solution: Solution) -> None:
+    figure.suptitle(solution.model.scene.title or "Untitled scene", fontsize=14, fontweight="bold")
+    parts = [f"residual {solution.residual_norm:.0e}"]
+    if solution.error_estimate is not None:
+        parts.append(f"estimated tip error {solution.error_estimate:.0e} ℓ")
+    if solution.stable is not None:
+        parts.append("stable" if solution.stable else "unstable")
+    text, colour = ("; ".join(parts), "0.3") if solution.converged else (solution.message, "#cc3311")
+    figure.axes[0].set_title(text, fontsize=10, color=colour, wrap=True)
