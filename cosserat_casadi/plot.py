@@ -110,7 +110,14 @@ def _figure_class() -> Any:
 
 
 def _size(solution: Solution) -> float:
-    return max(basis.rod.length for basis in solution.model.frame.bases.values())
+    """Largest extent of the scene, deformed or not, m: what arrows and frames are scaled with."""
+    names = solution.model.frame.bases
+    points = [f(solution, name) for name in names for f in (_deformed, _unloaded)]
+    return float(np.ptp(np.concatenate(points), axis=0).max())
+
+
+def _deformed(solution: Solution, name: str) -> FloatArray:
+    return solution.pose(SAMPLES, name).position
 
 
 def _plane(solution: Solution) -> tuple[int, int] | None:
@@ -169,7 +176,7 @@ def _line(axes: Any, points: FloatArray, plane: tuple[int, int] | None, **style:
 
 def _draw_frames(axes: Any, solution: Solution, name: str, plane: tuple[int, int] | None) -> None:
     pose = solution.pose(np.linspace(0.0, 1.0, 9), name)
-    length = 0.06 * solution.model.frame.bases[name].rod.length
+    length = 0.06 * _size(solution)
     for position, rotation in zip(pose.position, pose.rotation, strict=True):
         for axis, colour in enumerate(AXES):
             ends = np.array([position, position + length * rotation[:, axis]])
@@ -284,9 +291,8 @@ def _show_moments_in_the_plane(axes: Any, arrows: list[Arrow], plane: tuple[int,
 
 
 def _equal_box(axes: Any, solution: Solution) -> None:
-    points = [solution.pose(SAMPLES, name).position for name in solution.model.frame.bases]
-    points += [_unloaded(solution, name) for name in solution.model.frame.bases]
-    together = np.concatenate(points)
+    names = solution.model.frame.bases
+    together = np.concatenate([f(solution, name) for name in names for f in (_deformed, _unloaded)])
     centre = (together.max(axis=0) + together.min(axis=0)) / 2
     half = 0.55 * max(float(np.ptp(together, axis=0).max()), 0.2 * _size(solution))
     axes.set_xlim(centre[0] - half, centre[0] + half)
@@ -298,6 +304,8 @@ def _equal_box(axes: Any, solution: Solution) -> None:
 def _draw_panel(panel: Any, solution: Solution, quantity: str, labels: tuple[str, ...], unit: str) -> None:
     several = len(solution.model.frame.bases) > 1
     panel.set_ylabel(unit)
+    # Shear and stretch have no unit and are small beside curvatures: an axis of their own, on the right.
+    shown = {False: panel, True: panel.twinx() if _has_linear_strain(solution, quantity) else None}
     for i, (name, basis) in enumerate(solution.model.frame.bases.items()):
         values = _values(solution, name, quantity)
         for j, label in enumerate(labels):
@@ -305,15 +313,39 @@ def _draw_panel(panel: Any, solution: Solution, quantity: str, labels: tuple[str
                 continue
             colour = AXES[j % 3] if not several else RODS[i % len(RODS)]
             text = f"{name} {label}" if several else label
-            panel.plot(SAMPLES, values[:, j], color=colour, linestyle="-" if j < 3 else ":", label=text)
-            if j >= 3:
-                panel.set_ylabel("curvature, 1/m; shear, stretch")
+            shown[j >= 3].plot(SAMPLES, values[:, j], color=colour, linestyle="-" if j < 3 else ":", label=text)
         for cut in basis.grid.breaks[1:-1]:
             panel.axvline(cut, color="0.6", linewidth=0.8)
+    panel.set_xlim(-0.01, 1.01)
     panel.grid(alpha=0.3)
-    panel.margins(x=0.01)
-    if panel.get_legend_handles_labels()[0]:
-        panel.legend(fontsize=9, ncols=3, framealpha=0.9)
+    _finish_panel([axes for axes in shown.values() if axes is not None])
+
+
+def _has_linear_strain(solution: Solution, quantity: str) -> bool:
+    names = solution.model.frame.bases
+    return quantity == "strain" and any(np.any(_values(solution, name, quantity)[:, 3:]) for name in names)
+
+
+def _finish_panel(shown: list[Any]) -> None:
+    handles = [handle for axes in shown for handle in axes.get_legend_handles_labels()[0]]
+    if not handles:
+        shown[0].text(0.5, 0.5, "zero", ha="center", va="center", color="0.5", transform=shown[0].transAxes)
+        shown[0].set_yticks([])
+        return
+    shown[-1].legend(handles=handles, fontsize=9, ncols=3, framealpha=0.9)
+    for axes in shown:
+        _keep_rounding_invisible(axes)
+    if len(shown) > 1:
+        shown[1].set_ylabel("shear, stretch (dotted)")
+
+
+def _keep_rounding_invisible(panel: Any) -> None:
+    """A constant is drawn as a level line, not as its rounding errors."""
+    low, high = panel.get_ylim()
+    largest = max(abs(low), abs(high))
+    if high - low < 1e-3 * largest:
+        middle = (low + high) / 2
+        panel.set_ylim(middle - 0.1 * largest, middle + 0.1 * largest)
 
 
 def _values(solution: Solution, name: str, quantity: str) -> FloatArray:

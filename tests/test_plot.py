@@ -54,9 +54,9 @@ def test_a_plane_scene_is_drawn_in_its_plane(planar: Solution) -> None:
 
 
 def test_panels_hold_strain_moment_and_force(spatial: Solution) -> None:
-    _, strain, moment, force = plot_solution(spatial).axes
+    _, strain, moment, force, linear = plot_solution(spatial).axes
     assert_allclose(lines(strain)["K_y"].get_ydata(), spatial.strain(SAMPLES)[:, 1], rtol=0, atol=1e-15)
-    assert_allclose(lines(strain)["Γ_z − 1"].get_ydata(), spatial.strain(SAMPLES)[:, 5] - 1, rtol=0, atol=1e-15)
+    assert_allclose(lines(linear)["Γ_z − 1"].get_ydata(), spatial.strain(SAMPLES)[:, 5] - 1, rtol=0, atol=1e-15)
     wrench = spatial.internal_wrench(SAMPLES)
     assert_allclose(lines(moment)["M_x"].get_ydata(), wrench[:, 0], rtol=0, atol=1e-15)
     assert_allclose(lines(force)["N_z"].get_ydata(), wrench[:, 5], rtol=0, atol=1e-15)
