@@ -70,8 +70,8 @@ def _rod_table(solution: Solution) -> Table:
         tip, base = solution.tip(name), solution.base_wrench(name)
         table.add_row(escape(name), "tip position, m", *_digits(tip.position[0]))
         table.add_row("", "tip tangent", *_digits(tip.rotation[0][:, 2]))
-        table.add_row("", "clamp force on the rod, N", *_digits(base.force))
-        table.add_row("", "clamp moment about the base, N m", *_digits(base.moment), end_section=True)
+        table.add_row("", "clamp force, N", *_digits(base.force))
+        table.add_row("", "clamp moment, N m", *_digits(base.moment), end_section=True)
     return table
 
 

@@ -63,3 +63,11 @@ def test_every_effect_is_in_the_table() -> None:
 def test_pictures_and_pages_exist() -> None:
     for target in re.findall(r"\]\(([^)#]+)\)", README):
         assert (ROOT / target).exists(), target
+
+
+def test_every_test_that_the_theory_names_exists() -> None:
+    tests = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
+    named = re.findall(r"`(?:tests/[\w/]+\.py::)?(test_\w+)`", (ROOT / "docs" / "theory.md").read_text())
+    assert len(named) > 20
+    for name in named:
+        assert f"def {name}(" in tests, name
