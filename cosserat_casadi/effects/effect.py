@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.rod.wrenches import Action
+from cosserat_casadi.rod.wrenches import Action, PointWrench
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,12 @@ class Site:
     def placed(self, vector: Matrix | None, *, follower: bool) -> Matrix | None:
         """Coordinates in which the mechanics want a vector: base frame if dead, section frame if follower."""
         return vector if vector is None or follower else self.base_R_world @ vector
+
+    def wrench_at(self, X: float, values: Mapping[str, Matrix | None], *, follower: bool) -> PointWrench:
+        """Force and moment on the section at X."""
+        force = self.placed(values["force"], follower=follower)
+        moment = self.placed(values["moment"], follower=follower)
+        return PointWrench(X, force, moment, follower)
 
 
 class Effect(ABC):

@@ -11,7 +11,7 @@ from typing import Any, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action, PointWrench
+from cosserat_casadi.rod.wrenches import Action
 
 
 @final
@@ -23,10 +23,7 @@ class PointForceAndMoment(Effect):
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the section."""
-        follower = load.frame == "body"
-        force = site.placed(values["force"], follower=follower)
-        moment = site.placed(values["moment"], follower=follower)
-        return [PointWrench(load.at, force, moment, follower)]
+        return [site.wrench_at(load.at, values, follower=load.frame == "body")]
 
     def breaks(self, load: Any) -> tuple[float, ...]:
         """The loaded section."""

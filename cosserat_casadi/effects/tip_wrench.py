@@ -7,7 +7,7 @@ from typing import Any, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action, PointWrench
+from cosserat_casadi.rod.wrenches import Action
 
 
 @final
@@ -19,7 +19,4 @@ class TipWrench(Effect):
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the tip section."""
-        follower = load.frame == "body"
-        force = site.placed(values["force"], follower=follower)
-        moment = site.placed(values["moment"], follower=follower)
-        return [PointWrench(1.0, force, moment, follower)]
+        return [site.wrench_at(1.0, values, follower=load.frame == "body")]

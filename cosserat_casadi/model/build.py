@@ -98,6 +98,11 @@ class Model:
         """(x, inputs) ↦ elastic energy of all rods, J."""
         return functions.energy(self.frame)
 
+    @cached_property
+    def potential(self) -> ca.Function | None:
+        """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
+        return functions.potential(self.frame)
+
     def operations(self, function: ca.Function) -> int:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
         return functions.operations(function)

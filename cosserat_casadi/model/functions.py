@@ -58,8 +58,9 @@ def igm(frame: Frame, rod: str) -> ca.Function:
     position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
     rotation = quaternion_to_matrix(quaternion)
     model = balance(kinematics.shape(basis, q), rod_actions(frame, rod, rotation.T, Arguments(q, inputs)))
+    actuated = model.actuation_force
     outputs = [
-        model.generalised_force,
+        model.generalised_force if actuated is None else model.generalised_force + actuated,
         rotation @ model.statics.base_force,
         rotation @ model.statics.base_moment,
     ]
@@ -123,6 +124,15 @@ def energy(frame: Frame) -> ca.Function:
     """(x, inputs) ↦ elastic energy, J."""
     a = _arguments(frame)
     return ca.Function("energy", [a.x, a.inputs], [System(frame, a).energy()], ["x", "inputs"], ["energy"])
+
+
+def potential(frame: Frame) -> ca.Function | None:
+    """(x, inputs) ↦ elastic energy less the work of dead forces, J; None where a load has no such energy."""
+    a = _arguments(frame)
+    value = System(frame, a).potential()
+    if value is None:
+        return None
+    return ca.Function("potential", [a.x, a.inputs], [value], ["x", "inputs"], ["potential"])
 
 
 def operations(function: ca.Function) -> int:

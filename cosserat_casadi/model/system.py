@@ -149,6 +149,13 @@ class System:
         """Elastic energy of all rods, J."""
         return ca.sum1(ca.vertcat(*[igm.energy for igm in self.rods.values()]))
 
+    def potential(self) -> Matrix | None:
+        """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
+        terms = [igm.potential for igm in self.rods.values()]
+        if self.frame.scene.supports or any(term is None for term in terms):
+            return None
+        return ca.sum1(ca.vertcat(*terms))
+
     @property
     def _whole(self) -> bool:
         """Whether the equations are those of the scene itself, not of a point on the way to it."""

@@ -62,6 +62,18 @@ class InverseGeometricModel:
         return basis.energy_unit / 2 * ca.bilin(ca.sparsify(ca.DM(basis.stiffness)), self.shape.q, self.shape.q)
 
     @cached_property
+    def potential(self) -> Matrix | None:
+        """Elastic energy less the work of the loads, 1×1, J; None unless every load is a dead force.
+
+        With r = S t and n̂ = Sᵀ f the work of the forces is Σ n̂_k·t_k, so the residual is its exact gradient.
+        """
+        wrenches = self.statics.wrenches
+        if self.actuation or any(w.follower or w.moment is not None for w in wrenches):
+            return None
+        covector = self.statics.force_covector
+        return self.energy if covector is None else self.energy - ca.dot(covector, self.shape.tangent)
+
+    @cached_property
     def body_moment(self) -> Matrix | None:
         """Internal moment of each interval in the frame of the section at its beginning, 3×(intervals)."""
         moment = self.statics.interval_moment

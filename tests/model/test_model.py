@@ -155,6 +155,23 @@ def test_energy_gradient_is_the_elastic_part_of_the_residual() -> None:
     assert_allclose(gradient(x, inputs).full() / unit, model.residual(x, inputs).full(), rtol=0, atol=1e-13)
 
 
+@pytest.mark.parametrize("strain", STRAINS, ids=str)
+def test_residual_vs_gradient_of_the_potential(strain: str) -> None:
+    """With dead forces only the residual is the exact gradient of the discrete energy."""
+    model = coarse(scene(push(), WEIGHT, HOOK, WIND, strain=strain))
+    x, inputs = point(model)
+    assert model.potential is not None
+    symbols = model.potential.mx_in()
+    gradient = ca.Function("gradient", symbols, [ca.gradient(model.potential(*symbols), symbols[0])])
+    unit = model.frame.bases["rod"].energy_unit
+    assert_allclose(gradient(x, inputs).full() / unit, model.residual(x, inputs).full(), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("load", ["follower", "push_and_twist", "wind_follower"])
+def test_potential_is_none_where_there_is_none(load: str) -> None:
+    assert coarse(scene(LOADS[load])).potential is None
+
+
 def test_work_of_the_push_is_what_the_rod_stores() -> None:
     """d(elastic energy) = F·d(tip) along a path of equilibria: Simpson's rule over the growing force."""
     wanted = scene(push())
