@@ -13,7 +13,7 @@ PATTERNS = {
     "dense": np.ones((3, 2)),
     "sparse": np.array([[1, 0, 0], [0, 1, 1], [0, 0, 0]]),
     "column": np.ones((3, 1)),
-    "one": np.ones((1, 1)),
+    "corner": np.eye(2)[[1, 0]] * np.array([[1, 0]]),
     "empty": np.zeros((2, 3)),
 }
 
@@ -48,6 +48,16 @@ def test_block_diagonal_vs_numpy_block_diag(kind, places, name):
     sparse = ca.horzcat(*[ca.project(ca.DM(d), pattern) for d in dense])
     found = evaluated(kind, lambda x: blocks.block_diagonal(x, pattern), sparse)
     expected = place_by_place(m, places).T @ block_diag(*dense) @ place_by_place(n, places)
+    assert_allclose(found, expected, rtol=0, atol=0)
+
+
+@KINDS
+@pytest.mark.parametrize("columns", [1, 2])
+def test_block_diagonal_of_one_row_vs_numpy_block_diag(kind, columns):
+    dense = normal(3, 1, columns)
+    pattern = ca.Sparsity.dense(1, columns)
+    found = evaluated(kind, lambda x: blocks.block_diagonal(x, pattern), np.hstack(list(dense)))
+    expected = block_diag(*dense) @ place_by_place(columns, 3)
     assert_allclose(found, expected, rtol=0, atol=0)
 
 
