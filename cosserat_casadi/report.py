@@ -21,7 +21,7 @@ from cosserat_casadi.solver.solution import Solution
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Outcome, table of rods, and the files that were written."""
     console.print(f"[bold]{escape(solution.model.scene.title or 'Untitled scene')}[/]", highlight=False)
-    colour = "green" if solution.converged else "red"
+    colour = {True: "yellow" if solution.stable is False else "green", False: "red"}[solution.converged]
     console.print(f"[bold {colour}]{escape(solution.message)}[/]", highlight=False)
     console.print(_rod_table(solution))
     console.print(_figures(solution), highlight=False)
