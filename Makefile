@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# Small matrices: a second BLAS thread only takes the other worker's core.
+export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
 .PHONY: help demo test test-slow lint format schema clean

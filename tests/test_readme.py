@@ -61,7 +61,8 @@ def test_every_effect_is_in_the_table() -> None:
 
 
 def test_pictures_and_pages_exist() -> None:
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
+    prose = re.sub(r"```.*?```", "", README, flags=re.DOTALL)
+    for target in re.findall(r"\]\(([^)#]+)\)", prose):
         assert (ROOT / target).exists(), target
 
 
