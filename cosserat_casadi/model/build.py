@@ -69,9 +69,24 @@ class Model:
         return functions.input_jacobian(self.frame)
 
     @cached_property
-    def homotopy(self) -> ca.Function:
-        """(x, inputs, factor) ↦ (jacobian, residual, factor_derivative) of the scene at a load factor."""
-        return functions.homotopy(self.frame)
+    def path_residual(self) -> ca.Function:
+        """(x, inputs, factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
+        return functions.path_residual(self.frame)
+
+    @cached_property
+    def path_jacobian(self) -> ca.Function:
+        """(x, inputs, factor) ↦ (jacobian, residual) of the scene at a load factor."""
+        return functions.path_jacobian(self.frame)
+
+    @cached_property
+    def path_rate(self) -> ca.Function:
+        """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
+        return functions.path_rate(self.frame)
+
+    @cached_property
+    def path_tangent(self) -> ca.Function:
+        """Inputs ↦ dx/dfactor of the unloaded scene, where the Jacobian is constant."""
+        return functions.path_tangent(self.frame)
 
     @cached_property
     def igm(self) -> dict[str, ca.Function]:

@@ -16,6 +16,15 @@ def _arguments(frame: Frame) -> Arguments:
     return Arguments(ca.MX.sym("x", frame.size), ca.MX.sym("inputs", frame.layout.size))
 
 
+def _path_arguments(frame: Frame) -> Arguments:
+    symbols = _arguments(frame)
+    return Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
+
+
+def _listed(arguments: Arguments) -> list[Matrix]:
+    return [arguments.x, arguments.inputs, arguments.factor]
+
+
 def residual(frame: Frame) -> ca.Function:
     """(x, inputs) ↦ residual."""
     a = _arguments(frame)
@@ -37,14 +46,41 @@ def input_jacobian(frame: Frame) -> ca.Function:
     return ca.Function("input_jacobian", [a.x, a.inputs], [derivative], ["x", "inputs"], ["input_jacobian"])
 
 
-def homotopy(frame: Frame) -> ca.Function:
-    """(x, inputs, factor) ↦ (jacobian, residual, factor_derivative)."""
-    symbols = _arguments(frame)
-    a = Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
+def path_residual(frame: Frame) -> ca.Function:
+    """(x, inputs, factor) ↦ residual."""
+    a = _path_arguments(frame)
+    outputs = [System(frame, a).residual]
+    return ca.Function("path_residual", _listed(a), outputs, ["x", "inputs", "factor"], ["residual"])
+
+
+def path_jacobian(frame: Frame) -> ca.Function:
+    """(x, inputs, factor) ↦ (jacobian, residual)."""
+    a = _path_arguments(frame)
     system = System(frame, a)
-    outputs = [system.jacobian, system.residual, ca.jacobian(system.residual, a.factor)]
-    names = ["jacobian", "residual", "factor_derivative"]
-    return ca.Function("homotopy", [a.x, a.inputs, a.factor], outputs, ["x", "inputs", "factor"], names)
+    outputs = [system.jacobian, system.residual]
+    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian", "residual"])
+
+
+def path_rate(frame: Frame) -> ca.Function:
+    """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
+    a = _path_arguments(frame)
+    inputs_rate, factor_rate = ca.MX.sym("inputs_rate", frame.layout.size), ca.MX.sym("factor_rate")
+    moving, speed = ca.vertcat(a.inputs, a.factor), ca.vertcat(inputs_rate, factor_rate)
+    joined = ca.MX.sym("inputs_and_factor", moving.shape[0])
+    parts = Arguments(a.x, joined[:-1], joined[-1])
+    rate = ca.substitute(ca.jtimes(System(frame, parts).residual, joined, speed), joined, moving)
+    names = ["x", "inputs", "factor", "inputs_rate", "factor_rate"]
+    return ca.Function("path_rate", [*_listed(a), inputs_rate, factor_rate], [rate], names, ["residual_rate"])
+
+
+def path_tangent(frame: Frame) -> ca.Function:
+    """Inputs ↦ dx/dfactor of the unloaded scene: its linear response, since the Jacobian there is constant."""
+    inputs = ca.MX.sym("inputs", frame.layout.size)
+    unloaded, none = ca.DM.zeros(frame.size, 1), ca.DM.zeros(frame.layout.size, 1)
+    jacobian, _ = path_jacobian(frame)(unloaded, none, 0.0)
+    rate = path_rate(frame)(unloaded, inputs, 0.0, none, 1.0)
+    inverse = ca.DM(np.linalg.inv(jacobian.full())) if frame.size else ca.DM(0, 0)
+    return ca.Function("path_tangent", [inputs], [-inverse @ rate], ["inputs"], ["tangent"])
 
 
 def igm(frame: Frame, rod: str) -> ca.Function:

@@ -20,10 +20,9 @@ from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
-from cosserat_casadi.solver.newton import newton
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Pose, Solution
-from cosserat_casadi.solver.solve import judge, solve
+from cosserat_casadi.solver.solve import correct, judge, solve
 
 LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
 """Modes per strain component and element, rung by rung."""
@@ -196,16 +195,9 @@ def _unloaded_turn(basis: StrainBasis) -> float:
 
 def _polish(model: Model, below: Solution) -> Solution | None:
     """Newton from the rung below; None where it does not stay near, so that it may be another branch."""
-    start = prolong(below, model)
     settings = ContinuationSettings().newton
-
-    def equations(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        jacobian, residual = model.jacobian(x, below.inputs)
-        return jacobian.full(), residual.full()[:, 0]
-
-    found = newton(equations, start, settings)
-    near = float(np.linalg.norm(found.x - start)) <= 0.5 and not found.damped
-    if found.outcome is not Outcome.CONVERGED or not near:
+    found = correct(model, below.inputs, prolong(below, model), settings)
+    if found is None:
         return None
     return judge(model, below.inputs, found.x, found.outcome, found.iterations, 1.0, settings.tolerance)
 

@@ -1,7 +1,7 @@
 """Load continuation: from a known equilibrium to the wanted one along a path in the loads.
 
 Natural continuation in t ∈ [0, 1] with a tangent predictor. A step is taken back and halved unless Newton needs
-few iterations, no damping, and little correction: far from the path Newton finds some equilibrium, not the one that
+few Jacobians, no damping, and little correction: far from the path Newton finds some equilibrium, not the one that
 the growing load leads to.
 """
 
@@ -13,14 +13,35 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, newton, newton_step
+from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, newton
 from cosserat_casadi.solver.outcome import Outcome
-
-PathEquations = Callable[[FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
-"""(x, t) ↦ (Jacobian, residual, derivative of the residual with t)."""
+from cosserat_casadi.solver.secant import newton_step
 
 Progress = Callable[[float], None]
 """Told the t reached."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """Equations that change along a path t ∈ [0, 1].
+
+    Attributes:
+        residual: (x, t) ↦ g, shape (n,).
+        jacobian: (x, t) ↦ ∂g/∂x, shape (n, n).
+        rate: (x, t) ↦ ∂g/∂t, shape (n,).
+        start: unknowns at or near the equilibrium at t = 0, shape (n,).
+        tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
+    """
+
+    residual: Callable[[FloatArray, float], FloatArray]
+    jacobian: Callable[[FloatArray, float], FloatArray]
+    rate: Callable[[FloatArray, float], FloatArray]
+    start: FloatArray
+    tangent: FloatArray | None = None
+
+    def at(self, t: float) -> Equations:
+        """The equations at one point of the path."""
+        return Equations(lambda x: self.residual(x, t), lambda x: self.jacobian(x, t))
 
 
 @dataclass(frozen=True)
@@ -32,16 +53,16 @@ class ContinuationSettings:
         longest: longest predicted change of x in a step (2-norm; about one radian of bending a unit).
         shortest: smallest step in t before the path counts as stalled.
         steps: most steps, taken or refused.
-        quick: iterations up to which the next step grows.
-        slow: iterations beyond which a step is refused.
+        quick: Jacobians up to which the next step grows.
+        slow: Jacobians beyond which a step is refused.
     """
 
     newton: NewtonSettings = field(default_factory=NewtonSettings)
-    longest: float = 1.5
+    longest: float = 2.0
     shortest: float = 1e-7
     steps: int = 400
-    quick: int = 4
-    slow: int = 9
+    quick: int = 2
+    slow: int = 4
 
 
 @dataclass(frozen=True)
@@ -51,10 +72,9 @@ class ContinuationResult:
     Attributes:
         x: unknowns at the end of the path, or the last good ones.
         outcome: how it ended.
-        residual_norm: 2-norm of the residual at x and t.
-        iterations: Newton iterations of all steps.
+        residual_norm: relative norm of the residual at x and t.
+        iterations: Newton steps of all corrections.
         reached: t that was reached; 1 unless the path stalled.
-        jacobian: Jacobian at x and t.
     """
 
     x: FloatArray
@@ -62,71 +82,59 @@ class ContinuationResult:
     residual_norm: float
     iterations: int
     reached: float
-    jacobian: FloatArray
 
 
 def follow(
-    equations: PathEquations,
-    start: FloatArray,
-    settings: ContinuationSettings | None = None,
-    progress: Progress | None = None,
+    path: Path, settings: ContinuationSettings | None = None, progress: Progress | None = None
 ) -> ContinuationResult:
-    """Follow the path from t = 0 to t = 1.
+    """Follow a path from t = 0 to t = 1.
 
     Args:
-        equations: (x, t) ↦ (Jacobian, residual, t-derivative).
-        start: unknowns at or near the equilibrium at t = 0.
+        path: the equations and where they start.
         settings: limits.
         progress: told the t reached after every step.
     """
     limits = settings or ContinuationSettings()
-    here = newton(_frozen(equations, 0.0), start, limits.newton)
+    here, tangent = _depart(path, limits)
     iterations, t, step = here.iterations, 0.0, 1.0
     if here.outcome is not Outcome.CONVERGED:
-        return ContinuationResult(here.x, here.outcome, here.residual_norm, iterations, t, here.jacobian)
-    rate = _rate(equations, here.x, t)
+        return ContinuationResult(here.x, here.outcome, here.residual_norm, iterations, t)
     for _ in range(limits.steps):
-        step = min(step, 1.0 - t, limits.longest / max(float(np.linalg.norm(rate)), 1e-12))
+        step = min(step, 1.0 - t, limits.longest / max(float(np.linalg.norm(tangent)), 1e-12))
         target = 1.0 if t + step > 1.0 - 1e-12 else t + step
-        trial = _step(equations, here.x + step * rate, target, limits)
+        trial = newton(path.at(target), here.x + step * tangent, limits.newton)
         iterations += trial.iterations
-        if _trusted(trial, here.x, step * rate, limits):
+        if _trusted(trial, here.x, step * tangent, limits):
             here, t = trial, target
             if progress is not None:
                 progress(t)
             if t == 1.0:
-                return ContinuationResult(here.x, Outcome.CONVERGED, here.residual_norm, iterations, t, here.jacobian)
-            rate = _rate(equations, here.x, t)
-            step *= 2.0 if trial.iterations <= limits.quick else 1.0
+                return ContinuationResult(here.x, Outcome.CONVERGED, here.residual_norm, iterations, t)
+            tangent = _tangent(path, here.x, t)
+            step *= 2.0 if trial.jacobians <= limits.quick else 1.0
         else:
             step /= 2
             if step < limits.shortest:
                 break
-    return ContinuationResult(here.x, Outcome.LOAD_STALLED, here.residual_norm, iterations, t, here.jacobian)
+    return ContinuationResult(here.x, Outcome.LOAD_STALLED, here.residual_norm, iterations, t)
 
 
-def _frozen(equations: PathEquations, t: float) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
-    def at(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        jacobian, residual, _ = equations(x, t)
-        return jacobian, residual
-
-    return at
-
-
-def _step(equations: PathEquations, x: FloatArray, t: float, limits: ContinuationSettings) -> NewtonResult:
-    return newton(_frozen(equations, t), x, limits.newton)
+def _depart(path: Path, limits: ContinuationSettings) -> tuple[NewtonResult, FloatArray]:
+    if path.tangent is not None:
+        return NewtonResult(path.start, Outcome.CONVERGED, 0.0, 0, 0, False), path.tangent
+    here = newton(path.at(0.0), path.start, limits.newton)
+    return here, _tangent(path, here.x, 0.0)
 
 
 def _trusted(trial: NewtonResult, x: FloatArray, predicted: FloatArray, limits: ContinuationSettings) -> bool:
     """Whether a corrected point lies on the path and not on some other."""
-    if trial.outcome is not Outcome.CONVERGED or trial.iterations > limits.slow or trial.damped:
+    if trial.outcome is not Outcome.CONVERGED or trial.jacobians > limits.slow or trial.damped:
         return False
     correction = float(np.linalg.norm(trial.x - x - predicted))
     return correction <= 0.3 + 0.5 * float(np.linalg.norm(predicted))
 
 
-def _rate(equations: PathEquations, x: FloatArray, t: float) -> FloatArray:
+def _tangent(path: Path, x: FloatArray, t: float) -> FloatArray:
     """The dx/dt of the path."""
-    jacobian, _, derivative = equations(x, t)
-    rate = newton_step(jacobian, derivative)
-    return np.zeros_like(x) if rate is None else rate
+    tangent = newton_step(path.jacobian(x, t), path.rate(x, t))
+    return np.zeros_like(x) if tangent is None else tangent

@@ -1,4 +1,9 @@
-"""Newton's method with a backtracking line search; success is judged here, by finiteness and residual."""
+"""Newton's method that keeps a Jacobian while it serves; success is judged here, by finiteness and residual.
+
+A Jacobian and its factorisation cost several residuals. Between two of them the steps are corrected by rank-one
+updates, which converge superlinearly. A step that does not lower the residual well enough asks for a new Jacobian;
+with a new one it is halved until it does. The exported C holds the same algorithm.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +14,29 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.outcome import Outcome
-
-Equations = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-"""x ↦ (Jacobian, residual)."""
+from cosserat_casadi.solver.secant import Secant
 
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_STEP = 2.0**-12
+
+KEPT_DECREASE = 0.3
+"""A Jacobian is kept while a step leaves at most this share of the residual."""
+
+KEPT_STEPS = 12
+"""Most steps with one Jacobian."""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Square equations g(x) = 0 of n unknowns.
+
+    Attributes:
+        residual: x ↦ g, shape (n,).
+        jacobian: x ↦ ∂g/∂x, shape (n, n).
+    """
+
+    residual: Callable[[FloatArray], FloatArray]
+    jacobian: Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -23,11 +45,11 @@ class NewtonSettings:
 
     Attributes:
         tolerance: bound on the residual norm, see :func:`relative_norm`.
-        iterations: most Jacobians to factorise.
+        iterations: most steps tried.
     """
 
     tolerance: float = 1e-11
-    iterations: int = 30
+    iterations: int = 60
 
 
 @dataclass(frozen=True)
@@ -38,79 +60,72 @@ class NewtonResult:
         x: last iterate that was accepted; finite whenever the start was.
         outcome: how it ended.
         residual_norm: relative norm of the residual at x.
-        iterations: Jacobians factorised.
+        iterations: steps tried.
+        jacobians: Jacobians factorised.
         damped: whether any step had to be shortened.
-        jacobian: Jacobian at x.
     """
 
     x: FloatArray
     outcome: Outcome
     residual_norm: float
     iterations: int
+    jacobians: int
     damped: bool
-    jacobian: FloatArray
 
 
 def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) -> NewtonResult:
     """Solve equations from a start.
 
-    The tolerance is met, then one more full step is taken if it lowers the residual: it costs one evaluation and
-    brings the residual to rounding.
-
     Args:
-        equations: x ↦ (Jacobian, residual).
+        equations: what to solve.
         start: first iterate, shape (n,).
         settings: limits.
     """
-    x, damped = start, False
-    jacobian, residual = equations(x)
+    x, damped, jacobians, keep = start, False, 0, False
+    residual, secant = equations.residual(x), Secant(np.zeros((0, 0)))
     norm = _norm(residual)
-    for iteration in range(settings.iterations):
-        if not np.isfinite(norm) or not np.all(np.isfinite(jacobian)):
-            return NewtonResult(x, Outcome.NOT_FINITE, norm / _size(x), iteration, damped, jacobian)
-        done = norm <= settings.tolerance * _size(x)
-        step = newton_step(jacobian, residual)
-        if step is None:
-            outcome = Outcome.CONVERGED if done else Outcome.SINGULAR
-            return NewtonResult(x, outcome, norm / _size(x), iteration, damped, jacobian)
-        found = _search(equations, x, step, norm, 1.0 if done else SHORTEST_STEP)
-        if found is None:
-            outcome = Outcome.CONVERGED if done else Outcome.SINGULAR
-            return NewtonResult(x, outcome, norm / _size(x), iteration + 1, damped, jacobian)
-        x, length, jacobian, residual = found
-        norm = _norm(residual)
+
+    def end(outcome: Outcome, iterations: int) -> NewtonResult:
+        return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped)
+
+    for iteration in range(settings.iterations + 1):
+        if not np.isfinite(norm):
+            return end(Outcome.NOT_FINITE, iteration)
+        if norm <= settings.tolerance * _size(x):
+            return end(Outcome.CONVERGED, iteration)
+        if iteration == settings.iterations:
+            break
+        if not keep:
+            secant, jacobians, keep = Secant(equations.jacobian(x)), jacobians + 1, False
+            if not np.all(np.isfinite(secant.jacobian)):
+                return end(Outcome.NOT_FINITE, iteration)
+        step = secant.step(residual)
+        found = None if step is None else _search(equations, x, step, norm, 1.0 if keep else SHORTEST_STEP)
+        if step is None or found is None:
+            if not keep:
+                return end(Outcome.SINGULAR, iteration + 1)
+            keep = False
+            continue
+        x, length, residual = found
+        norm, before = _norm(residual), norm
         damped = damped or length < 1.0
-        if done:
-            return NewtonResult(x, Outcome.CONVERGED, norm / _size(x), iteration + 1, damped, jacobian)
-    outcome = Outcome.CONVERGED if norm <= settings.tolerance * _size(x) else Outcome.MAX_ITERATIONS
-    return NewtonResult(x, outcome, norm / _size(x), settings.iterations, damped, jacobian)
-
-
-def newton_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """The Newton step; the shortest one where the Jacobian is singular; None where there is none."""
-    if not len(residual):
-        return np.zeros(0)
-    if not (np.all(np.isfinite(jacobian)) and np.all(np.isfinite(residual))):
-        return None
-    step: FloatArray
-    try:
-        step = np.asarray(np.linalg.solve(jacobian, -residual), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=1e-12)[0], dtype=np.float64)
-    return step if np.all(np.isfinite(step)) else None
+        if length == 1.0:
+            secant.steps.append(step)
+        keep = length == 1.0 and norm <= KEPT_DECREASE * before and len(secant.steps) < KEPT_STEPS
+    return end(Outcome.MAX_ITERATIONS, settings.iterations)
 
 
 def _search(
     equations: Equations, x: FloatArray, step: FloatArray, norm: float, shortest: float
-) -> tuple[FloatArray, float, FloatArray, FloatArray] | None:
+) -> tuple[FloatArray, float, FloatArray] | None:
     """Halve the step until the residual falls; None if it never does."""
     length = 1.0
     while length >= shortest:
         trial = x + length * step
-        jacobian, residual = equations(trial)
+        residual = equations.residual(trial)
         trial_norm = _norm(residual)
         if np.isfinite(trial_norm) and trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm:
-            return trial, length, jacobian, residual
+            return trial, length, residual
         length /= 2
     return None
 

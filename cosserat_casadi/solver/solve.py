@@ -12,11 +12,17 @@ import numpy.typing as npt
 from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.continuation import ContinuationSettings, PathEquations, Progress, follow
-from cosserat_casadi.solver.newton import relative_norm
+from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
+from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.stability import second_variation
+
+Start = Solution | FloatArray | None
+"""Where a solve starts: a solution, unknowns, or the unloaded rod."""
+
+NEAR = 0.5
+"""Longest way of the unknowns (2-norm) that a correction may go and still count as the same branch."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +39,7 @@ def solve(
     model: Model,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
-    start: Solution | None = None,
+    start: Start = None,
     method: str = "continuation",
     settings: ContinuationSettings | None = None,
     progress: Progress | None = None,
@@ -44,8 +50,9 @@ def solve(
     Args:
         model: what to solve.
         values: inputs by name; those not named keep the scene's values.
-        start: a solution of the same model to start from; by default the unloaded rod. Continuation then follows
-            the inputs from those of the start to the wanted ones.
+        start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
+            the inputs from those of the solution to the wanted ones, and so stays on its branch. From unknowns of
+            shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
         method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
             at the full load and may find another branch, or none.
         settings: limits of the continuation.
@@ -58,8 +65,8 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     inputs = model.pack(values)
-    if start is not None and len(start.x) != model.size:
-        raise ValueError(f"the start has {len(start.x)} unknowns, the model {model.size}")
+    if start is not None and len(_unknowns(model, start)) != model.size:
+        raise ValueError(f"the start has {len(_unknowns(model, start))} unknowns, the model {model.size}")
     if method not in _METHODS:
         raise ValueError(f"method is one of {', '.join(_METHODS)}, got {method!r}")
     limits = settings or ContinuationSettings()
@@ -116,45 +123,78 @@ def _with_stability(solution: Solution) -> Solution:
     )
 
 
+def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: NewtonSettings) -> NewtonResult | None:
+    """Newton from unknowns near an equilibrium; None where it does not stay near, so that it may be another branch.
+
+    Args:
+        model: what to solve.
+        inputs: stacked inputs.
+        start: first iterate, shape (size,).
+        settings: limits.
+    """
+    equations = Equations(
+        lambda x: _column(model.residual(x, inputs)), lambda x: np.asarray(model.jacobian(x, inputs)[0].full())
+    )
+    found = newton(equations, start, settings)
+    strayed = found.damped or float(np.linalg.norm(found.x - start)) > NEAR
+    return None if found.outcome is not Outcome.CONVERGED or strayed else found
+
+
 def _continuation(
     model: Model,
     inputs: FloatArray,
-    start: Solution | None,
+    start: Start,
     limits: ContinuationSettings,
     progress: Progress | None,
 ) -> _End:
-    if start is None:
-        first, equations = model.unloaded(), _load_path(model, inputs)
+    if isinstance(start, Solution):
+        path = input_path(model, start.x, start.inputs, inputs)
     else:
-        first, equations = start.x, _input_path(model, start.inputs, inputs)
-    result = follow(equations, first, limits, progress)
+        near = None if start is None or not np.any(start) else correct(model, inputs, start, limits.newton)
+        if near is not None:
+            return _End(near.x, near.outcome, near.iterations)
+        path = load_path(model, inputs)
+    result = follow(path, limits, progress)
     return _End(result.x, result.outcome, result.iterations, result.reached)
 
 
-def _load_path(model: Model, inputs: FloatArray) -> PathEquations:
-    def equations(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        jacobian, residual, derivative = model.homotopy(x, inputs, t)
-        return jacobian.full(), residual.full()[:, 0], derivative.full()[:, 0]
+def load_path(model: Model, inputs: FloatArray) -> Path:
+    """From the unloaded scene to the scene, all loads growing together."""
+    none = np.zeros(model.inputs.size)
+    return Path(
+        residual=lambda x, t: _column(model.path_residual(x, inputs, t)),
+        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, inputs, t)[0].full()),
+        rate=lambda x, t: _column(model.path_rate(x, inputs, t, none, 1.0)),
+        start=model.unloaded(),
+        tangent=_column(model.path_tangent(inputs)),
+    )
 
-    return equations
 
-
-def _input_path(model: Model, before: FloatArray, after: FloatArray) -> PathEquations:
+def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
+    """From an equilibrium of the scene to other inputs, on the straight line between them."""
     change = after - before
+    return Path(
+        residual=lambda x, t: _column(model.path_residual(x, before + t * change, 1.0)),
+        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, before + t * change, 1.0)[0].full()),
+        rate=lambda x, t: _column(model.path_rate(x, before + t * change, 1.0, change, 0.0)),
+        start=start,
+    )
 
-    def equations(x: FloatArray, t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        inputs = before + t * change
-        jacobian, residual = model.jacobian(x, inputs)
-        derivative = model.input_jacobian(x, inputs).full() @ change
-        return jacobian.full(), residual.full()[:, 0], derivative
 
-    return equations
+def _column(vector: ca.DM) -> FloatArray:
+    return np.asarray(vector.full()[:, 0]) if vector.shape[0] else np.zeros(0)
+
+
+def _unknowns(model: Model, start: Start) -> FloatArray:
+    if start is None:
+        return model.unloaded()
+    return start.x if isinstance(start, Solution) else start
 
 
 def _rootfinder(
     model: Model,
     inputs: FloatArray,
-    start: Solution | None,
+    start: Start,
     limits: ContinuationSettings,
     progress: Progress | None,
 ) -> _End:
@@ -165,14 +205,14 @@ def _rootfinder(
         "jacobian_function": model.jacobian,
     }
     finder = ca.rootfinder("finder", "newton", model.residual, options)
-    x = finder(model.unloaded() if start is None else start.x, inputs).full()[:, 0]
+    x = finder(_unknowns(model, start), inputs).full()[:, 0]
     return _End(x, Outcome.MAX_ITERATIONS, int(finder.stats()["iter_count"]))
 
 
 def _nlpsol(
     model: Model,
     inputs: FloatArray,
-    start: Solution | None,
+    start: Start,
     limits: ContinuationSettings,
     progress: Progress | None,
 ) -> _End:
@@ -189,11 +229,11 @@ def _nlpsol(
         },
     }
     solver = ca.nlpsol("solver", "ipopt", problem, options)
-    found = solver(x0=model.unloaded() if start is None else start.x, p=inputs, lbg=0, ubg=0)
+    found = solver(x0=_unknowns(model, start), p=inputs, lbg=0, ubg=0)
     return _End(found["x"].full()[:, 0], Outcome.MAX_ITERATIONS, int(solver.stats()["iter_count"]))
 
 
-_METHODS: dict[str, Callable[[Model, FloatArray, Solution | None, ContinuationSettings, Progress | None], _End]] = {
+_METHODS: dict[str, Callable[[Model, FloatArray, Start, ContinuationSettings, Progress | None], _End]] = {
     "continuation": _continuation,
     "rootfinder": _rootfinder,
     "nlpsol": _nlpsol,

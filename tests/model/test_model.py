@@ -76,13 +76,40 @@ def test_structured_jacobian_with_supports_vs_automatic_differentiation(strain: 
         support["quaternion"] = [0.8, 0.0, 0.6, 0.0]
     model = coarse(scene(WEIGHT, HOOK, strain=strain, supports=[support]))
     x, inputs = point(model)
-    symbols = model.homotopy.mx_in()
-    derivative = ca.jacobian(model.homotopy(*symbols)[1], symbols[0])
+    symbols = model.path_jacobian.mx_in()
+    derivative = ca.jacobian(model.path_jacobian(*symbols)[1], symbols[0])
     automatic = ca.Function("automatic", symbols, [derivative])
     for factor in (0.3, 1.0):
-        found = model.homotopy(x, inputs, factor)[0].full()
+        found = model.path_jacobian(x, inputs, factor)[0].full()
         assert_allclose(found, automatic(x, inputs, factor).full(), rtol=0, atol=1e-12)
-    assert_allclose(model.jacobian(x, inputs)[0].full(), model.homotopy(x, inputs, 1.0)[0].full(), rtol=0, atol=1e-12)
+    assert_allclose(
+        model.jacobian(x, inputs)[0].full(), model.path_jacobian(x, inputs, 1.0)[0].full(), rtol=0, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("load", LOADS)
+def test_path_rate_vs_finite_differences(load: str) -> None:
+    model = coarse(scene(LOADS[load], supports=[{"rod": "rod", "kind": "pinned", "position": [0.3, 0.0, 0.5]}]))
+    x, inputs = point(model)
+    rng = np.random.default_rng(3)
+    inputs_rate, factor_rate, step = rng.standard_normal(model.inputs.size), 0.7, 1e-6
+    ahead = model.path_residual(x, inputs + step * inputs_rate, 0.4 + step * factor_rate)
+    behind = model.path_residual(x, inputs - step * inputs_rate, 0.4 - step * factor_rate)
+    found = model.path_rate(x, inputs, 0.4, inputs_rate, factor_rate)
+    assert_allclose(found.full(), (ahead - behind).full() / (2 * step), rtol=1e-7, atol=1e-8)
+
+
+@pytest.mark.parametrize("supported", [False, True])
+@pytest.mark.parametrize("load", LOADS)
+def test_path_tangent_vs_small_factor(load: str, supported: bool) -> None:
+    """The unloaded scene is in equilibrium at factor 0, whatever the inputs, and responds linearly."""
+    supports = [{"rod": "rod", "kind": "pinned", "position": [0.3, 0.0, 0.5]}] if supported else []
+    model = coarse(scene(LOADS[load], supports=supports))
+    inputs, factor = point(model)[1], 1e-7
+    assert_allclose(model.path_residual(model.unloaded(), inputs, 0.0).full(), 0.0, rtol=0, atol=1e-15)
+    tangent = model.path_tangent(inputs).full()[:, 0]
+    left = model.path_residual(factor * tangent, inputs, factor).full()
+    assert_allclose(left, 0.0, rtol=0, atol=1e-11 * (1 + np.linalg.norm(tangent)))
 
 
 @pytest.mark.parametrize("load", ["push_and_twist", "follower", "wind_follower", "weight"])

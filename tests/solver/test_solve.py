@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, solve, solve_scene
-from cosserat_casadi.solver.continuation import ContinuationSettings, follow
-from cosserat_casadi.solver.newton import NewtonSettings, newton
+from cosserat_casadi.solver.continuation import ContinuationSettings, Path, follow
+from cosserat_casadi.solver.newton import Equations, NewtonSettings, newton
+from cosserat_casadi.solver.secant import Secant
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 
@@ -89,47 +90,111 @@ def test_a_solver_that_lies_is_not_believed() -> None:
 
 
 def test_newton_says_not_finite() -> None:
-    result = newton(lambda x: (np.array([[np.nan]]), np.array([1.0])), np.zeros(1), NewtonSettings())
-    assert result.outcome is Outcome.NOT_FINITE
+    for residual, slope in ((1.0, np.nan), (np.nan, 1.0), (np.inf, 1.0)):
+        equations = Equations(lambda x, r=residual: np.array([r]), lambda x, j=slope: np.array([[j]]))
+        assert newton(equations, np.zeros(1), NewtonSettings()).outcome is Outcome.NOT_FINITE
 
 
 def test_newton_says_iterations_ran_out() -> None:
-    result = newton(lambda x: (np.array([[1e3]]), x - 1.0), np.zeros(1), NewtonSettings(iterations=3))
+    equations = Equations(lambda x: x - 1.0, lambda x: np.array([[1e3]]))
+    result = newton(equations, np.zeros(1), NewtonSettings(iterations=3))
     assert result.outcome is Outcome.MAX_ITERATIONS
+    assert result.iterations == 3
 
 
 def test_newton_says_singular() -> None:
     """x² + 1 has no root: the search ends where the slope vanishes."""
-    result = newton(lambda x: (np.array([[2 * x[0]]]), x**2 + 1), np.array([1.5]), NewtonSettings())
+    equations = Equations(lambda x: x**2 + 1, lambda x: np.array([[2 * x[0]]]))
+    result = newton(equations, np.array([1.5]), NewtonSettings())
     assert result.outcome in (Outcome.SINGULAR, Outcome.MAX_ITERATIONS)
     assert result.residual_norm > 0.3
+
+
+def test_kept_jacobian_vs_a_new_one_at_each_step() -> None:
+    """Rank-one updates reach the same root superlinearly with one Jacobian where the start is near."""
+    matrix = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, -1.0], [0.0, -1.0, 5.0]])
+    goal = np.array([0.3, -0.2, 0.1])
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        return matrix @ (x - goal) + 0.3 * (x**3 - goal**3)
+
+    asked: list[np.ndarray] = []
+
+    def jacobian(x: np.ndarray) -> np.ndarray:
+        asked.append(x)
+        return matrix + np.diag(0.9 * x**2)
+
+    result = newton(Equations(residual, jacobian), np.zeros(3), NewtonSettings())
+    assert result.outcome is Outcome.CONVERGED
+    assert len(asked) == result.jacobians == 1
+    assert result.iterations <= 6
+    assert_allclose(result.x, goal, rtol=0, atol=1e-11)
+
+
+def test_secant_vs_broyden_updates_of_the_matrix() -> None:
+    """The inverse applied from the steps alone is that of B + (y − B s) sᵀ/(s·s), built as a matrix."""
+    rng = np.random.default_rng(5)
+    matrix = np.eye(4) + 0.2 * rng.standard_normal((4, 4))
+    updated, secant, x = matrix.copy(), Secant(matrix), np.zeros(4)
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        return matrix @ x + 0.3 * np.sin(x) - 1.0
+
+    for _ in range(5):
+        step = secant.step(residual(x))
+        assert step is not None
+        assert_allclose(step, np.linalg.solve(updated, -residual(x)), rtol=1e-9, atol=1e-13)
+        change = residual(x + step) - residual(x)
+        updated += np.outer(change - updated @ step, step) / (step @ step)
+        secant.steps.append(step)
+        x = x + step
+
+
+def test_solve_from_unknowns_nearby_vs_from_the_unloaded_rod() -> None:
+    model = build(scene(push(force=[2.0, 0.5, 0.0])))
+    cold = solve(model)
+    warm = solve(model, {"push.force": [2.02, 0.505, 0.0]}, start=cold.x)
+    again = solve(model, {"push.force": [2.02, 0.505, 0.0]})
+    assert warm.converged
+    assert warm.iterations < again.iterations
+    assert_allclose(warm.x, again.x, rtol=0, atol=1e-10)
+
+
+def test_solve_from_unknowns_that_lead_astray_vs_from_the_unloaded_rod() -> None:
+    """A start far from any equilibrium may not decide the branch: the load is grown from zero instead."""
+    model = build(scene(push(force=[2.0, 0.5, 0.0])))
+    far = np.full(model.size, 3.0)
+    assert_allclose(solve(model, start=far).x, solve(model).x, rtol=0, atol=1e-10)
 
 
 def test_newton_solves_a_singular_but_consistent_system() -> None:
     """Two equal equations for two unknowns: the shortest step is taken."""
     matrix = np.array([[1.0, 1.0], [1.0, 1.0]])
-    result = newton(lambda x: (matrix, matrix @ x - 2.0), np.zeros(2), NewtonSettings())
+    equations = Equations(lambda x: matrix @ x - 2.0, lambda x: matrix)
+    result = newton(equations, np.zeros(2), NewtonSettings())
     assert result.outcome is Outcome.CONVERGED
     assert_allclose(result.x, [1.0, 1.0], rtol=0, atol=1e-12)
 
 
+def cubic(load: float) -> Path:
+    """x³ − 3x = t·load: from x = 0 the path folds at |t load| = 2; short of it the inner root is the right one."""
+    return Path(
+        residual=lambda x, t: x**3 - 3 * x - load * t,
+        jacobian=lambda x, t: np.array([[3 * x[0] ** 2 - 3]]),
+        rate=lambda x, t: np.array([-load]),
+        start=np.zeros(1),
+    )
+
+
 def test_continuation_reaches_the_branch_of_the_growing_load() -> None:
-    """x³ − 3x = t·k: from x = 0 the path folds at |t k| = 2; short of it the inner root is the right one."""
-
-    def equations(x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return np.array([[3 * x[0] ** 2 - 3]]), x**3 - 3 * x - 1.9 * t, np.array([-1.9])
-
-    result = follow(equations, np.zeros(1))
+    result = follow(cubic(1.9))
     assert result.outcome is Outcome.CONVERGED
     roots = np.roots([1, 0, -3, -1.9])
     assert_allclose(result.x[0], np.sort(roots.real)[1], rtol=0, atol=1e-10)
 
 
 def test_continuation_stalls_at_a_fold() -> None:
-    def equations(x: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return np.array([[3 * x[0] ** 2 - 3]]), x**3 - 3 * x - 4.0 * t, np.array([-4.0])
-
-    result = follow(equations, np.zeros(1))
+    result = follow(cubic(4.0))
     assert result.outcome is Outcome.LOAD_STALLED
     assert_allclose(result.reached, 0.5, rtol=0, atol=1e-2)
 
