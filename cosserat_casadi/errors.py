@@ -42,3 +42,15 @@ class SceneError(CosseratError):
 
 class SolveError(CosseratError):
     """No equilibrium was found and the caller asked for an exception."""
+
+
+class ExportError(CosseratError):
+    """A model cannot be exported as asked, or an exported folder cannot be used.
+
+    Attributes:
+        problems: every fault found.
+    """
+
+    def __init__(self, *problems: Problem) -> None:
+        self.problems = problems
+        super().__init__("\n".join(str(problem) for problem in problems))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
@@ -16,7 +16,7 @@ class DistributedWrench(Effect):
     """Legendre coefficients in 2X − 1 of a force (N/m) and a moment (N m/m), dead or follower."""
 
     kind = "distributed_wrench"
-    magnitudes = ("force", "moment")
+    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N/m", "moment": "N m/m"}
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """One line wrench for each of force and moment: their polynomials may differ in degree."""

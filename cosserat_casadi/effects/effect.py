@@ -46,11 +46,11 @@ class Effect(ABC):
 
     Attributes:
         kind: the word of the scene format.
-        magnitudes: fields that may stay free at run time: the model's inputs.
+        magnitudes: fields that may stay free at run time, the model's inputs, each with its unit.
     """
 
     kind: ClassVar[str]
-    magnitudes: ClassVar[tuple[str, ...]]
+    magnitudes: ClassVar[Mapping[str, str]]
 
     @abstractmethod
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:

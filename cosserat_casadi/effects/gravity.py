@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
@@ -15,7 +15,7 @@ class Gravity(Effect):
     """A uniform field of acceleration (m/s²) on the rods it names, or on all."""
 
     kind = "gravity"
-    magnitudes = ("acceleration",)
+    magnitudes: ClassVar[Mapping[str, str]] = {"acceleration": "m/s²"}
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The rod's weight per length, N/m."""

@@ -7,7 +7,7 @@ of its own on either side, so every field is smooth inside an element and the ac
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
@@ -19,7 +19,7 @@ class PointForceAndMoment(Effect):
     """A force (N) and a moment (N m) at X = at, dead or follower."""
 
     kind = "point_wrench"
-    magnitudes = ("force", "moment")
+    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the section."""

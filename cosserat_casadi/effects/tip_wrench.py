@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, final
+from typing import Any, ClassVar, final
 
 from cosserat_casadi.effects.effect import Effect, Site
 from cosserat_casadi.maths.typing import Matrix
@@ -15,7 +15,7 @@ class TipWrench(Effect):
     """A force (N) and a moment (N m) at X = 1, dead or follower."""
 
     kind = "tip_wrench"
-    magnitudes = ("force", "moment")
+    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
 
     def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
         """The wrench on the tip section."""

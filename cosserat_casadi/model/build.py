@@ -99,6 +99,11 @@ class Model:
         return {rod: functions.tip(self.frame, rod) for rod in self.frame.bases}
 
     @cached_property
+    def tip_jacobian(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs) ↦ derivatives of the tip's position and quaternion with x and with inputs."""
+        return {rod: functions.tip_jacobian(self.frame, rod) for rod in self.frame.bases}
+
+    @cached_property
     def shape(self) -> dict[str, ca.Function]:
         """For each rod (x, inputs, X) ↦ (position, quaternion) at any abscissa: the interpolant itself."""
         return {rod: functions.shape(self.frame, rod) for rod in self.frame.bases}

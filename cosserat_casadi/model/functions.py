@@ -74,13 +74,18 @@ def path_rate(frame: Frame) -> ca.Function:
 
 
 def path_tangent(frame: Frame) -> ca.Function:
-    """Inputs ↦ dx/dfactor of the unloaded scene: its linear response, since the Jacobian there is constant."""
-    inputs = ca.MX.sym("inputs", frame.layout.size)
-    unloaded, none = ca.DM.zeros(frame.size, 1), ca.DM.zeros(frame.layout.size, 1)
+    """Inputs ↦ dx/dfactor of the unloaded scene: its linear response.
+
+    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it.
+    """
+    size, inputs = frame.layout.size, ca.MX.sym("inputs", frame.layout.size)
+    unloaded, none = np.zeros(frame.size), np.zeros(size)
     jacobian, _ = path_jacobian(frame)(unloaded, none, 0.0)
-    rate = path_rate(frame)(unloaded, inputs, 0.0, none, 1.0)
-    inverse = ca.DM(np.linalg.inv(jacobian.full())) if frame.size else ca.DM(0, 0)
-    return ca.Function("path_tangent", [inputs], [-inverse @ rate], ["inputs"], ["tangent"])
+    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
+    rates = path_rate(frame).map(size + 1)(unloaded, probes, 0.0, none, 1.0).full()
+    response = -np.linalg.solve(jacobian.full(), rates) if frame.size else rates
+    matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
+    return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ inputs], ["inputs"], ["tangent"])
 
 
 def igm(frame: Frame, rod: str) -> ca.Function:
@@ -118,6 +123,31 @@ def tip(frame: Frame, rod: str) -> ca.Function:
     outputs = [position, quaternion, quaternion_to_matrix(quaternion)]
     names = ["position", "quaternion", "rotation"]
     return ca.Function(f"tip_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+
+
+def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
+    """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
+
+    From the variations of the rod's fields: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q.
+    """
+    a = _arguments(frame)
+    system, base = System(frame, a), frame.base(rod)
+    if frame.bases[rod].discretisation.transport == "permuted":
+        pose = ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2])
+        own = ca.jacobian(pose, a.x)
+    else:
+        tangent, count = system.tangents[rod], frame.bases[rod].size
+        quaternion = ca.repmat(ca.densify(system.tip(rod).quaternion), 1, count)
+        spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
+        turned = quaternion_product(spin, quaternion) / 2
+        world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
+        moved = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
+        place = frame.rod_slices[rod]
+        before, after = ca.DM(7, place.start), ca.DM(7, frame.size - place.stop)
+        own = ca.horzcat(before, ca.vertcat(moved, world), after)
+    outputs = [ca.densify(own), ca.DM.zeros(7, frame.layout.size)]
+    names = ["d_pose_d_x", "d_pose_d_inputs"]
+    return ca.Function(f"tip_jacobian_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
 def shape(frame: Frame, rod: str) -> ca.Function:
@@ -172,14 +202,24 @@ def potential(frame: Frame) -> ca.Function | None:
 
 
 def operations(function: ca.Function) -> int:
-    """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted."""
+    """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted.
+
+    The kernels of the intervals stay functions of their own; each call counts with all its operations.
+    """
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    outputs = ca.cse(list(function.call(symbols)))
-    scalar = ca.Function("scalar", symbols, outputs)
-    used = sum(
-        scalar.instruction_id(i) in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST) for i in range(scalar.n_instructions())
-    )
-    return int(scalar.n_instructions() - used)
+    return _operations(ca.Function("scalar", symbols, ca.cse(list(function.call(symbols)))))
+
+
+def _operations(scalar: ca.Function) -> int:
+    called = {(f.nnz_in(), f.nnz_out()): _operations(f) for f in scalar.find_functions(0)}
+    total = 0
+    for i in range(scalar.n_instructions()):
+        kind = scalar.instruction_id(i)
+        if kind == ca.OP_CALL:
+            total += called[len(scalar.instruction_input(i)), len(scalar.instruction_output(i))]
+        elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
+            total += 1
+    return total
 
 
 def _interpolation_row(frame: Frame, rod: str, X: Matrix) -> Matrix:

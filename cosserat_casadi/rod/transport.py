@@ -9,7 +9,7 @@ member, kept as the oracle.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import casadi as ca
 import numpy as np
@@ -45,7 +45,9 @@ class IntervalKernels:
     def increment(self) -> ca.Function:
         """The map turn ↦ quaternion of the increment."""
         turn, omega = self._rotation_vector()
-        return ca.Function("increment", [turn], [magnus.increment_quaternion(omega)], ["turn"], ["quaternion"])
+        return ca.Function(
+            "increment", [turn], [magnus.increment_quaternion(omega)], ["turn"], ["quaternion"], {"never_inline": True}
+        )
 
     @cached_property
     def pull(self) -> ca.Function:
@@ -53,7 +55,7 @@ class IntervalKernels:
         turn, omega = self._rotation_vector()
         moment = ca.SX.sym("moment", 3)
         force = ca.cse(ca.jtimes(omega, turn, magnus.increment_tangent(omega).T @ moment, True))
-        return ca.Function("pull", [turn, moment], [force], ["turn", "moment"], ["force"])
+        return ca.Function("pull", [turn, moment], [force], ["turn", "moment"], ["force"], {"never_inline": True})
 
     @cached_property
     def variation(self) -> ca.Function:
@@ -72,7 +74,14 @@ class IntervalKernels:
         second = ca.substitute(second, pulled, frame.T @ moment)
         outputs = ca.cse([ca.jacobian(omega, turn), frame, turning, second])
         names = ["E", "T", "W", "H"]
-        return ca.Function("variation", [turn, moment], list(map(ca.sparsify, outputs)), ["turn", "moment"], names)
+        return ca.Function(
+            "variation",
+            [turn, moment],
+            list(map(ca.sparsify, outputs)),
+            ["turn", "moment"],
+            names,
+            {"never_inline": True},
+        )
 
     def _rotation_vector(self) -> tuple[ca.SX, ca.SX]:
         turn = ca.SX.sym("turn", self.size)
@@ -87,7 +96,13 @@ class IntervalKernels:
 
 def interval_kernels(basis: StrainBasis) -> IntervalKernels:
     """The kernels that fit a rod's turning axes and its integration method."""
-    return IntervalKernels(basis.rod.turning_axes, basis.taylor_count)
+    return _kernels(basis.rod.turning_axes, basis.taylor_count)
+
+
+@cache
+def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
+    """One set of functions for all models: what they share is generated once."""
+    return IntervalKernels(axes, count)
 
 
 def turn_matrix(basis: StrainBasis) -> FloatArray:

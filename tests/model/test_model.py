@@ -87,6 +87,20 @@ def test_structured_jacobian_with_supports_vs_automatic_differentiation(strain: 
     )
 
 
+@pytest.mark.parametrize("transport", ["magnus6", "permuted"])
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+def test_tip_jacobian_vs_automatic_differentiation(strain: str, transport: str) -> None:
+    support = {"rod": "rod", "kind": "pinned", "position": [0.3, 0.0, 0.5]}
+    given = scene(WEIGHT, strain=strain, supports=[support])
+    model = build(given, discretise(given, 3, 8, transport))
+    x, inputs = point(model)
+    symbols = model.tip["rod"].mx_in()
+    pose = ca.vertcat(*model.tip["rod"](*symbols)[:2])
+    automatic = ca.Function("automatic", symbols, [ca.jacobian(pose, symbol) for symbol in symbols])
+    for found, expected in zip(model.tip_jacobian["rod"](x, inputs), automatic(x, inputs), strict=True):
+        assert_allclose(found.full(), expected.full(), rtol=0, atol=1e-13)
+
+
 @pytest.mark.parametrize("load", LOADS)
 def test_path_rate_vs_finite_differences(load: str) -> None:
     model = coarse(scene(LOADS[load], supports=[{"rod": "rod", "kind": "pinned", "position": [0.3, 0.0, 0.5]}]))
@@ -286,9 +300,9 @@ def test_graph_budget() -> None:
     functions = (model.igm["rod"], model.residual, model.jacobian)
     assert model.size == 12
     igm, residual, jacobian = (model.operations(f) for f in functions)
-    assert igm <= 7_300
-    assert residual <= 7_300
-    assert jacobian <= 53_000
+    assert igm <= 7_900
+    assert residual <= 7_900
+    assert jacobian <= 55_000
 
 
 @pytest.mark.parametrize("basis", ["legendre", "chebyshev"])

@@ -1,0 +1,29 @@
+"""Functions of a model with derivatives to second order, named as ``casadi.external`` looks for them."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from cosserat_casadi.codegen.kernels import scalar, tip
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.model.build import Model
+
+
+def external_functions(model: Model, names: Names) -> dict[str, ca.Function]:
+    """Functions that a loaded library offers, by symbol: (x, inputs) ↦ residual, tip; and the IGM."""
+    found = {names.differentiable("residual"): model.residual}
+    for rod in names.rods:
+        found[names.differentiable("tip", rod)] = tip(model, rod)
+        found[names.differentiable("shape", rod)] = model.shape[rod]
+        found[names.differentiable("igm", rod)] = model.igm[rod]
+    return found
+
+
+def differentiable(model: Model, names: Names) -> list[ca.Function]:
+    """Each function with its forward and reverse derivatives, and the forward derivative of the latter."""
+    found = []
+    for symbol, function in external_functions(model, names).items():
+        plain = scalar(function, symbol)
+        reverse = plain.reverse(1)
+        found += [plain, plain.forward(1), reverse, reverse.forward(1)]
+    return found

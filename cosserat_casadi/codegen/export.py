@@ -1,0 +1,69 @@
+"""A model as a folder of C sources that needs neither Python nor CasADi."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+from cosserat_casadi.codegen.derivatives import differentiable
+from cosserat_casadi.codegen.folder import check_folder, write_folder
+from cosserat_casadi.codegen.kernels import kernels, sources
+from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.manifest import MANIFEST, manifest
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.writing import scene_text
+
+
+def export(
+    model: Model,
+    directory: str | os.PathLike[str],
+    name: str | None = None,
+    *,
+    error_estimate: float | None = None,
+) -> Path:
+    """Write a model as a folder of C99 sources: equations, derivatives, solver, demo, build file, README.
+
+    Args:
+        model: what to export, with its discretisation.
+        directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
+        name: what every symbol begins with, a C identifier.
+        error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
+
+    Returns:
+        the folder.
+
+    Raises:
+        ExportError: the name or the folder is refused; nothing was written.
+    """
+    folder = Path(directory)
+    chosen = re.sub(r"\W", "_", folder.absolute().name) if name is None else name
+    names = library_names(chosen, tuple(model.frame.bases))
+    stale = check_folder(folder, MANIFEST)
+    write_folder(folder, folder_files(model, names.name, error_estimate), stale)
+    return folder
+
+
+def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
+    """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
+    names = library_names(name, tuple(model.frame.bases))
+    functions = kernels(model, names)
+    generated = sources(functions, f"{name}_kernels")
+    generated[f"{name}_kernels.c"] = _prologue(names.name, names.macro) + generated[f"{name}_kernels.c"]
+    files = {
+        **library_sources(model, names, error_estimate),
+        **generated,
+        f"{name}_derivatives.c": sources(differentiable(model, names), f"{name}_derivatives")[f"{name}_derivatives.c"],
+        "scene.toml": scene_text(model.scene),
+    }
+    described = manifest(model, names, functions, error_estimate)
+    described["files"] = sorted([*files, MANIFEST])
+    files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
+    return files
+
+
+def _prologue(name: str, macro: str) -> str:
+    """What makes the kernels compute in float when the library does."""
+    return f"#ifdef {macro}_SINGLE\n#define casadi_real float\n#endif\n"

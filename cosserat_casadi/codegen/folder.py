@@ -1,0 +1,89 @@
+"""A folder of generated files: written whole or not at all, and never over what someone else put there."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.files import write_atomically
+
+
+def check_folder(directory: Path, manifest: str) -> set[str]:
+    """Refuse a folder that holds files which an export did not write.
+
+    Args:
+        directory: the folder; it need not exist.
+        manifest: name of the file that lists what an export wrote.
+
+    Returns:
+        names of the files of an earlier export.
+
+    Raises:
+        ExportError: the path is a file, holds foreign files, or cannot be written to.
+    """
+    if not directory.exists():
+        _check_parent(directory)
+        return set()
+    if not directory.is_dir():
+        raise ExportError(Problem("--output", f"{directory} is a file", "name a folder"))
+    if not os.access(directory, os.W_OK | os.X_OK):
+        raise ExportError(Problem("--output", f"the folder {directory} cannot be written to"))
+    held = {path.name for path in directory.iterdir()}
+    ours = _listed(directory / manifest)
+    foreign = sorted(held - ours)
+    if foreign:
+        shown = ", ".join(foreign[:5]) + (" …" if len(foreign) > 5 else "")
+        problem = f"the folder {directory} holds files that no export wrote: {shown}"
+        raise ExportError(Problem("--output", problem, "name a new or an empty folder"))
+    return held
+
+
+def write_folder(directory: Path, files: Mapping[str, str], stale: set[str]) -> None:
+    """Write all files, or leave the folder as it was.
+
+    Args:
+        directory: the folder; made if it does not exist.
+        files: text by name.
+        stale: files of an earlier export; those that are not written again are removed.
+    """
+    made = not directory.exists()
+    before = {name: (directory / name).read_bytes() for name in stale}
+    directory.mkdir(exist_ok=True)
+    try:
+        for name, text in files.items():
+            write_atomically(directory / name, text.encode())
+        for name in stale - set(files):
+            (directory / name).unlink()
+    except BaseException:
+        _restore(directory, set(files), before)
+        if made:
+            with contextlib.suppress(OSError):
+                directory.rmdir()
+        raise
+
+
+def _restore(directory: Path, written: set[str], before: Mapping[str, bytes]) -> None:
+    for name in written - set(before):
+        (directory / name).unlink(missing_ok=True)
+    for name, content in before.items():
+        write_atomically(directory / name, content)
+
+
+def _listed(manifest: Path) -> set[str]:
+    try:
+        files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
+        return {str(name) for name in files}
+    except (OSError, ValueError, KeyError, TypeError):
+        return set()
+
+
+def _check_parent(directory: Path) -> None:
+    parent = directory.absolute().parent
+    if not parent.is_dir():
+        raise ExportError(Problem("--output", f"the folder {parent} does not exist", "make it first"))
+    if not os.access(parent, os.W_OK):
+        raise ExportError(Problem("--output", f"the folder {parent} cannot be written to"))

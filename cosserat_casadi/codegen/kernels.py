@@ -1,0 +1,54 @@
+"""The generated kernels: functions of a model as straight-line C without dependencies."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import casadi as ca
+
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.model.build import Model
+
+GENERATOR = {"with_header": True, "static_aux": True, "casadi_int": "int", "avoid_stack": False}
+
+
+def kernels(model: Model, names: Names) -> list[ca.Function]:
+    """What the solver in C is made of, dense, with constants folded and common terms shared."""
+    found = [
+        scalar(model.path_residual, names.kernel("residual")),
+        scalar(model.path_jacobian, names.kernel("jacobian")),
+        scalar(model.path_rate, names.kernel("rate")),
+        scalar(model.path_tangent, names.kernel("tangent")),
+    ]
+    for rod in names.rods:
+        found.append(scalar(model.igm[rod], names.kernel("igm", rod)))
+        found.append(scalar(tip(model, rod), names.kernel("tip", rod)))
+        found.append(scalar(model.tip_jacobian[rod], names.kernel("tip_jacobian", rod)))
+        found.append(scalar(model.shape[rod], names.kernel("shape", rod)))
+    return found
+
+
+def tip(model: Model, rod: str) -> ca.Function:
+    """(x, inputs) ↦ (position, quaternion) of the tip, world frame."""
+    x, inputs = model.tip[rod].mx_in()
+    position, quaternion, _ = model.tip[rod](x, inputs)
+    return ca.Function("tip", [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
+
+
+def scalar(function: ca.Function, name: str) -> ca.Function:
+    """A function as scalar instructions with dense outputs, constants folded and common terms shared."""
+    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    expressions = [ca.densify(expression) for expression in ca.cse(list(function.call(symbols)))]
+    return ca.Function(name, symbols, expressions, function.name_in(), function.name_out())
+
+
+def sources(functions: Sequence[ca.Function], stem: str) -> dict[str, str]:
+    """Text of ``stem.c`` and ``stem.h`` with these functions."""
+    generator = ca.CodeGenerator(stem, GENERATOR)
+    for function in functions:
+        generator.add(function)
+    with tempfile.TemporaryDirectory() as folder:
+        generator.generate(f"{folder}/")
+        return {name: (Path(folder) / name).read_text() for name in (f"{stem}.c", f"{stem}.h")}

@@ -1,0 +1,186 @@
+"""The sources around the kernels: header, solver, demo program, build file, README; from templates."""
+
+from __future__ import annotations
+
+import re
+from importlib import resources
+from importlib.metadata import version
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solver import newton
+from cosserat_casadi.solver.continuation import ContinuationSettings
+from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.solve import NEAR
+
+SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4"}
+"""Limits of the solver in float: its rounding is 1e-7 of the largest term."""
+
+NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
+
+ROLES = {
+    ".h": "what you include: sizes, inputs, status, every function",
+    ".c": "the solver",
+    "_kernels.c": "the equations of the rods, generated",
+    "_kernels.h": "their prototypes",
+    "_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
+    "_demo.c": "solves once, times it, prints JSON",
+}
+
+
+def library_sources(model: Model, names: Names, error_estimate: float | None) -> dict[str, str]:
+    """Hand-readable files of a folder by name."""
+    words = _words(model, names, error_estimate)
+    name = names.name
+    return {
+        f"{name}.h": _render("library.h.in", words),
+        f"{name}.c": _render("library.c.in", words),
+        f"{name}_demo.c": _render("demo.c.in", words),
+        "CMakeLists.txt": _render("CMakeLists.txt.in", words),
+        "README.md": _render("README.md.in", words),
+    }
+
+
+def _render(template: str, words: dict[str, Any]) -> str:
+    text = (resources.files("cosserat_casadi.codegen") / "templates" / template).read_text(encoding="utf-8")
+    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
+
+
+def _words(model: Model, names: Names, error_estimate: float | None) -> dict[str, Any]:
+    rods = [_rod_words(model, names, rod) for rod in names.rods]
+    return {
+        **_sizes(model, names),
+        **_solver_constants(),
+        **_texts(),
+        **_input_words(model, names),
+        **_unknown_words(model),
+        **rods[0],
+        "rod_prototypes": "".join(_render("rod.h.in", words) for words in rods),
+        "rod_functions": "".join(_render("rod.c.in", words) for words in rods),
+        "tip_jacobians": ", ".join(words["tip_jacobian"] for words in rods),
+        "title": _comment(model.scene.title or names.name),
+        "version": version("cosserat-casadi"),
+        "casadi_version": ca.CasadiMeta.version(),
+        "file_rows": _file_rows(names),
+        "accuracy_note": _accuracy_note(model, error_estimate),
+    }
+
+
+def _sizes(model: Model, names: Names) -> dict[str, Any]:
+    # Newton holds two factorisations' worth of memory, the kernels their scalars, twelve steps are kept.
+    doubles = 2 * model.size**2 + 40 * model.size + 8 * 2000
+    return {
+        "name": names.name,
+        "MACRO": names.macro,
+        "unknowns": model.size,
+        "inputs": model.inputs.size,
+        "rods": len(names.rods),
+        "stack_kb": int(np.ceil(doubles * 8 / 1000 / 50) * 50),
+    }
+
+
+def _solver_constants() -> dict[str, Any]:
+    limits = ContinuationSettings()
+    return {
+        "tolerance": limits.newton.tolerance,
+        "iterations": limits.newton.iterations,
+        "shortest": limits.shortest,
+        "longest": limits.longest,
+        "steps": limits.steps,
+        "quick": limits.quick,
+        "slow": limits.slow,
+        "near": NEAR,
+        "kept_steps": newton.KEPT_STEPS,
+        "kept_decrease": newton.KEPT_DECREASE,
+        "sufficient_decrease": newton.SUFFICIENT_DECREASE,
+        "halvings": int(-np.log2(newton.SHORTEST_STEP)),
+        **SINGLE,
+    }
+
+
+def _texts() -> dict[str, str]:
+    outcomes = (
+        Outcome.CONVERGED,
+        Outcome.MAX_ITERATIONS,
+        Outcome.NOT_FINITE,
+        Outcome.SINGULAR,
+        Outcome.LOAD_STALLED,
+    )
+    return {"text_not_in_equilibrium": NOT_IN_EQUILIBRIUM, **{f"text_{o.label}": o.value for o in outcomes}}
+
+
+def _input_words(model: Model, names: Names) -> dict[str, str]:
+    entries = input_entries(model)
+    macros, rows = [], []
+    for entry in entries:
+        macro = f"{names.macro}_INPUT_{entry['name'].replace('.', '_').upper()}"
+        count, axes = len(entry["value"]), f"{entry['axes']} axes"
+        macros.append(f"#define {macro} {entry['first']} /* {count} numbers, {entry['unit']}, {axes} */")
+        span = f"{entry['first']} … {entry['first'] + count - 1}"
+        rows.append(f"| {span} | `{entry['name']}`, {axes} | {entry['unit']} | {_listed(entry['value'])} |")
+    numbers = [number for entry in entries for number in entry["value"]]
+    polynomial = any(entry["shape"][1] > 1 for entry in entries)
+    return {
+        "input_macros": "\n".join(macros) or "/* This scene leaves none free. */",
+        "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
+        "input_words": " ".join(entry["name"] for entry in entries) or "none",
+        "defaults": _listed(numbers) or "0",
+        "axes_note": "Polynomials along the rod are Legendre coefficients in 2X − 1, three numbers for each degree."
+        if polynomial
+        else "Section axes turn with the rod.",
+    }
+
+
+def _unknown_words(model: Model) -> dict[str, str]:
+    lines, rows = [], ["| entries | what |", "|---|---|"]
+    for entry in unknown_entries(model):
+        last = entry["first"] + entry["count"] - 1
+        what = (
+            f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
+            if "strain" in entry
+            else f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
+        )
+        lines.append(f"   {entry['first']} .. {last}: {what}")
+        rows.append(f"| {entry['first']} … {last} | {what} |")
+    return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
+
+
+def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
+    words = {word: names.function(word, rod) for word in ("igm", "tip", "tip_jacobian", "shape")}
+    kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
+    basics = {"name": names.name, "rod": rod, "coordinates": model.frame.bases[rod].size}
+    return {**words, **kernels, **basics}
+
+
+def _file_rows(names: Names) -> str:
+    rows = [f"| `{names.name}{ending}` | {role} |" for ending, role in ROLES.items()]
+    rows += [
+        "| `CMakeLists.txt` | library, demo, install, `find_package` |",
+        "| `manifest.json` | the same facts as data |",
+        "| `scene.toml` | the scene all of this was made from |",
+    ]
+    return "\n".join(rows)
+
+
+def _accuracy_note(model: Model, error_estimate: float | None) -> str:
+    tolerance = f"The scene asks for a tip pose within {model.scene.accuracy.tolerance:g} of the length."
+    if error_estimate is None:
+        return f"{tolerance} How far the discretisation here is from that was not estimated."
+    return (
+        f"{tolerance} The discretisation was judged at the scene's own inputs: estimated error {error_estimate:.1e}. "
+        "Far larger loads need it judged anew."
+    )
+
+
+def _listed(numbers: list[float]) -> str:
+    return ", ".join(f"{number:g}" if float(f"{number:g}") == number else repr(number) for number in numbers)
+
+
+def _comment(text: str) -> str:
+    """A title that cannot end the comment it stands in."""
+    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").split())

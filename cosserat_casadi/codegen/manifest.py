@@ -1,0 +1,98 @@
+"""What an exported folder holds, as data: functions, shapes, units, discretisation, sizes."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import casadi as ca
+
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.rod.properties import STRAINS
+
+MANIFEST = "manifest.json"
+
+UNITS = {
+    "position": "m",
+    "base_position": "m",
+    "base_force": "N",
+    "base_moment": "N m",
+    "generalised_force": "EI/L",
+}
+"""Units of arguments and results that have one; the rest, stacked inputs apart, are without."""
+
+
+def manifest(model: Model, names: Names, functions: list[ca.Function], error_estimate: float | None) -> dict[str, Any]:
+    """The manifest as plain data.
+
+    Args:
+        model: what is exported.
+        names: what things are called.
+        functions: the generated kernels.
+        error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
+    """
+    return {
+        "schema": 1,
+        "name": names.name,
+        "title": model.scene.title,
+        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        "inputs": input_entries(model),
+        "unknowns": unknown_entries(model),
+        "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
+        "tolerance": model.scene.accuracy.tolerance,
+        "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
+        "functions": [_function_entry(function) for function in functions],
+    }
+
+
+def input_entries(model: Model) -> list[dict[str, Any]]:
+    """Inputs in the order of their vector."""
+    kinds = {load.name: load for load in model.scene.loads}
+    entries = []
+    for name, place, default in zip(
+        model.inputs.names, model.inputs.slices.values(), model.inputs.defaults, strict=True
+    ):
+        load, field = name.split(".")
+        entries.append(
+            {
+                "name": name,
+                "unit": EFFECTS[kinds[load].kind].magnitudes[field],
+                "axes": "section" if getattr(kinds[load], "frame", "world") == "body" else "world",
+                "first": place.start,
+                "shape": list(default.shape),
+                "value": default.ravel(order="F").tolist(),
+            }
+        )
+    return entries
+
+
+def unknown_entries(model: Model) -> list[dict[str, Any]]:
+    """Unknowns in the order of their vector: strain coordinates of every rod, then multipliers of supports."""
+    entries: list[dict[str, Any]] = []
+    for rod, basis in model.frame.bases.items():
+        first = model.frame.rod_slices[rod].start
+        for component, columns in basis.columns.items():
+            count = basis.at_nodes[component].shape[1]
+            start = columns.start if isinstance(columns, slice) else columns[0]
+            entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
+    first = model.frame.strain_size
+    for support, hold in model.frame.holds:
+        entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
+        first += hold.size
+    return entries
+
+
+def _function_entry(function: ca.Function) -> dict[str, Any]:
+    return {
+        "name": function.name(),
+        "arguments": [_scalar_entry(function.name_in(i), function.size_in(i)) for i in range(function.n_in())],
+        "results": [_scalar_entry(function.name_out(i), function.size_out(i)) for i in range(function.n_out())],
+        "instructions": function.n_instructions(),
+    }
+
+
+def _scalar_entry(name: str, shape: tuple[int, int]) -> dict[str, Any]:
+    return {"name": name, "shape": list(shape), "unit": UNITS.get(name, "inputs" if name == "inputs" else "1")}

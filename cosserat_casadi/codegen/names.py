@@ -1,0 +1,65 @@
+"""The name that every exported symbol begins with."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from cosserat_casadi.errors import ExportError, Problem
+
+LONGEST = 48
+"""Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""
+
+KEYWORDS = frozenset(
+    """auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    alignas alignof and asm bool catch class concept constexpr delete explicit export false friend main module
+    mutable namespace new noexcept not nullptr operator or private protected public requires template this throw
+    true try typeid typename using virtual xor casadi""".split()
+)
+"""Words of C and C++, and of what is linked with them, that a library may not be called."""
+
+
+@dataclass(frozen=True)
+class Names:
+    """How an exported library and what is in it are called.
+
+    Attributes:
+        name: the library, a C identifier.
+        rods: names of the rods, in the order of the scene.
+    """
+
+    name: str
+    rods: tuple[str, ...]
+
+    @property
+    def macro(self) -> str:
+        """What macros and enumerators begin with."""
+        return self.name.upper()
+
+    def function(self, word: str, rod: str | None = None) -> str:
+        """Symbol of a function; the rod is named only where there are several."""
+        suffix = f"_{rod}" if rod is not None and len(self.rods) > 1 else ""
+        return f"{self.name}_{word}{suffix}"
+
+    def kernel(self, word: str, rod: str | None = None) -> str:
+        """Symbol of a generated kernel."""
+        return self.function(f"k_{word}", rod)
+
+    def differentiable(self, word: str, rod: str | None = None) -> str:
+        """Symbol of a function for ``casadi.external``."""
+        return self.function(f"f_{word}", rod)
+
+
+def library_names(name: str, rods: tuple[str, ...]) -> Names:
+    """Names of an exported library.
+
+    Raises:
+        ExportError: the name is no C identifier that two languages and a linker agree on.
+    """
+    remedy = "use letters, digits and underscores, a letter first, such as --name finger"
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or "__" in name or len(name) > LONGEST:
+        raise ExportError(Problem("--name", f"{name!r} is no name for a C library", remedy))
+    if name.lower() in KEYWORDS:
+        raise ExportError(Problem("--name", f"{name!r} is a word of C or C++", remedy))
+    return Names(name, rods)
