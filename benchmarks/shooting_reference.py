@@ -1,6 +1,7 @@
-"""The hand-written shooting solver, reference/shooting.c: compiled, run, and its steps matched to an accuracy.
+"""The hand-written shooting solvers of reference/: compiled, run, and their steps matched to an accuracy.
 
-As a program: tip error against time on the steel rods, for the plain solver and for its shortcuts.
+As a program: tip error against time on the steel rods, for the plain solver, the tuned one and the tuned one's
+shortcuts.
 """
 
 from __future__ import annotations
@@ -12,18 +13,21 @@ import tempfile
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from rich.console import Console
 from rich.table import Table
 
-SOURCE = Path(__file__).parent / "reference" / "shooting.c"
+FOLDER = Path(__file__).parent / "reference"
+SOURCES = {"plain": FOLDER / "plain_shooting.c", "tuned": FOLDER / "shooting.c"}
 BUILD = Path(__file__).parents[1] / "build" / "reference"
 FLAGS = ("-O2", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
 MOST_STEPS = 1 << 16
 """Where the search for steps gives up: rounding has long taken over."""
 
 Triple = tuple[float, float, float]
+Program = Literal["plain", "tuned"]
+PROGRAMS: tuple[Program, ...] = ("plain", "tuned")
 
 
 @dataclass(frozen=True)
@@ -33,14 +37,16 @@ class Case:
     Attributes:
         kind: "kirchhoff" or "reissner".
         length: m.
-        bending: EI, N m².
+        bending: EI, N m²; about x alone where bending_y is given.
         torsion: GJ, N m².
-        shear: GA, N, without a correction factor.
+        shear: GA, N, without a correction factor; along x alone where shear_y is given.
         extension: EA, N.
         force: dead force at the tip, N.
         moment: dead moment at the tip, N m.
         weight: dead force per metre, N/m.
         tip: where the tip is, m; None where nobody has said.
+        bending_y: EI about y where it differs, N m²; for the plain program.
+        shear_y: GA along y where it differs, N; likewise.
     """
 
     kind: str
@@ -53,6 +59,8 @@ class Case:
     moment: Triple = (0.0, 0.0, 0.0)
     weight: Triple = (0.0, 0.0, 0.0)
     tip: Triple | None = None
+    bending_y: float | None = None
+    shear_y: float | None = None
 
     def tip_error(self, tip: Triple) -> float:
         """Distance from the true tip, relative to length."""
@@ -83,30 +91,40 @@ CASES = {
 
 
 @cache
-def program(unknowns: int = 6) -> Path:
-    """The compiled solver; with three unknowns it takes the base force as known."""
+def compiled(program: Program = "tuned", unknowns: int = 6) -> Path:
+    """A compiled solver; with three unknowns, which the tuned one can do, it takes the base force as known."""
+    if program == "plain" and unknowns != 6:
+        raise ValueError(f"the plain program has six unknowns, not {unknowns}")
     BUILD.mkdir(parents=True, exist_ok=True)
-    target = BUILD / f"shooting-{unknowns}"
+    target = BUILD / f"{program}-{unknowns}"
     # Compiled aside and moved in place: another process may be running or compiling it.
     with tempfile.TemporaryDirectory(dir=BUILD) as folder:
         fresh = Path(folder) / target.name
-        command = ["gcc", *FLAGS, f"-DUNKNOWNS={unknowns}", str(SOURCE), "-o", str(fresh), "-lm"]
+        define = [f"-DUNKNOWNS={unknowns}"] if program == "tuned" else []
+        command = ["gcc", *FLAGS, *define, str(SOURCES[program]), "-o", str(fresh), "-lm"]
         subprocess.run(command, check=True)
         fresh.replace(target)
     return target
 
 
-def race(case: Case, steps: int, *, repeat: int = 200, unknowns: int = 6, nested: bool = False) -> dict[str, Any]:
+def race(
+    case: Case, steps: int, *, repeat: int = 200, program: Program = "tuned", unknowns: int = 6, nested: bool = False
+) -> dict[str, Any]:
     """Solve from cold as often as told.
 
     Returns:
         status ("converged" or "failed"), iterations, tip (m; None if failed), rotation (rows) and cold_us: the best
         time of a solve, µs.
+
+    Raises:
+        RuntimeError: with the usage if the program cannot do the case or the option.
     """
     stiffness = (case.length, case.bending, case.torsion, case.shear, case.extension)
     numbers = [*map(repr, stiffness), str(steps), *map(repr, (*case.force, *case.moment))]
     options = ["--weight", *map(repr, case.weight), "--repeat", str(repeat), *(["--nested"] if nested else [])]
-    command = [str(program(unknowns)), case.kind, *numbers, *options]
+    if case.bending_y is not None or case.shear_y is not None:
+        options += ["--y", repr(case.bending_y or case.bending), repr(case.shear_y or case.shear)]
+    command = [str(compiled(program, unknowns)), case.kind, *numbers, *options]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     # A failed solve exits with 1 and still has its line.
     if done.returncode not in (0, 1):
@@ -115,7 +133,7 @@ def race(case: Case, steps: int, *, repeat: int = 200, unknowns: int = 6, nested
     return found
 
 
-def steps_for(case: Case, tip_error: float) -> int:
+def steps_for(case: Case, tip_error: float, program: Program = "tuned") -> int:
     """The smallest number of steps whose tip error, relative to length, is at most as told.
 
     The error is taken to fall with the steps, as it does until rounding takes over.
@@ -125,7 +143,7 @@ def steps_for(case: Case, tip_error: float) -> int:
     """
 
     def accurate(steps: int) -> bool:
-        found = race(case, steps, repeat=1)
+        found = race(case, steps, repeat=1, program=program)
         return found["status"] == "converged" and case.tip_error(found["tip"]) <= tip_error
 
     enough = 1
@@ -142,27 +160,25 @@ def steps_for(case: Case, tip_error: float) -> int:
 
 def main() -> None:
     table = Table(title="Shooting by hand: cold solves, best of 2000")
-    table.add_column("case")
-    for heading in ("error wanted", "steps", "tip error / L", "iterations", "µs"):
-        table.add_column(heading, justify="right")
+    table.add_column("case", no_wrap=True)
+    table.add_column("error wanted", justify="right")
+    for program in PROGRAMS:
+        for heading in (f"{program} steps", "error", "Newton", "µs"):
+            table.add_column(heading, justify="right")
     for heading in ("nested, µs", "3 unknowns, µs", "both, µs"):
         table.add_column(heading, justify="right", style="dim")
     for name, case in CASES.items():
-        for wanted in (2e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10):
-            steps = steps_for(case, wanted)
-            plain = race(case, steps, repeat=2000)
+        for wanted in (2e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11):
+            row = [name, f"{wanted:.0e}"]
+            for program in PROGRAMS:
+                steps = steps_for(case, wanted, program)
+                found = race(case, steps, repeat=2000, program=program)
+                error = case.tip_error(found["tip"])
+                row += [str(steps), f"{error:.1e}", str(found["iterations"]), f"{found['cold_us']:.1f}"]
             others = [(6, True), (3, False), (3, True)]
             quick = [race(case, steps, repeat=2000, unknowns=size, nested=nested) for size, nested in others]
-            table.add_row(
-                name,
-                f"{wanted:.0e}",
-                str(steps),
-                f"{case.tip_error(plain['tip']):.1e}",
-                str(plain["iterations"]),
-                f"{plain['cold_us']:.1f}",
-                *(f"{found['cold_us']:.1f}" for found in quick),
-            )
-    Console(width=120).print(table)
+            table.add_row(*row, *(f"{found['cold_us']:.1f}" for found in quick))
+    Console(width=140).print(table)
 
 
 if __name__ == "__main__":

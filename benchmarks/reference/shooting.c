@@ -1,4 +1,4 @@
-/* Static equilibrium of a clamped rod under a dead tip wrench and its weight, by single shooting.
+/* Static equilibrium of a clamped rod under a dead tip wrench and its weight, by single shooting: the tuned program.
  *
  * State along the rod: position r, orientation R, internal force n and internal moment m, the last two in world axes.
  * The tangent t is the last column of R. With dots for d/ds and w the curvature in world axes:
@@ -13,15 +13,10 @@
  * in EI/L.
  *
  * The unknowns are m and n at the base; Newton with a Jacobian by forward differences finds them. All trajectories of
- * an iteration advance together, one lane each, in loops of a fixed length that a compiler vectorises by itself.
+ * an iteration advance together, one lane each, in loops of a fixed length that a compiler vectorises by itself,
+ * provided that everything in them is inlined.
  */
-#define _POSIX_C_SOURCE 199309L
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
+#include "common.h"
 
 /* 6: base moment and base force, as in a shooting code for any load. 3: the base force is known beforehand, since all
  * forces are dead, and only the moment is sought. */
@@ -35,14 +30,7 @@
 /* One lane for the point itself, one for each unknown, and for six unknowns a spare one that makes the number even. */
 #define LANES (UNKNOWNS == 6 ? 8 : 4)
 
-/* The lane loops vectorise only if everything in them is inlined and their lengths are constants. */
-#ifdef __GNUC__
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
-
-enum { MAX_ITERATIONS = 30, MAX_LOAD_STEPS = 200, COARSEST = 4, MOST_STEPS = 10000000 };
+enum { MAX_ITERATIONS = 30, MAX_LOAD_STEPS = 200, COARSEST = 4 };
 
 static const double TOLERANCE = 1e-11;   /* on the end condition, relative to the load */
 static const double DIFFERENCE = 1e-7;   /* of the forward differences */
@@ -262,46 +250,6 @@ static void shoot(const Problem *rod, double load, const double *u, int linearis
 
 /* Newton */
 
-/* Elimination with row pivoting, in place; x holds the right side and then the solution. Zero if singular. */
-static int eliminate(double a[UNKNOWNS][UNKNOWNS], double *x)
-{
-    for (int j = 0; j < UNKNOWNS; j++) {
-        int pivot = j;
-        for (int i = j + 1; i < UNKNOWNS; i++) {
-            if (fabs(a[i][j]) > fabs(a[pivot][j])) {
-                pivot = i;
-            }
-        }
-        if (!(fabs(a[pivot][j]) > 0)) {
-            return 0;
-        }
-        if (pivot != j) {
-            for (int k = j; k < UNKNOWNS; k++) {
-                const double kept = a[j][k];
-                a[j][k] = a[pivot][k];
-                a[pivot][k] = kept;
-            }
-            const double kept = x[j];
-            x[j] = x[pivot];
-            x[pivot] = kept;
-        }
-        for (int i = j + 1; i < UNKNOWNS; i++) {
-            const double factor = a[i][j] / a[j][j];
-            for (int k = j + 1; k < UNKNOWNS; k++) {
-                a[i][k] -= factor * a[j][k];
-            }
-            x[i] -= factor * x[j];
-        }
-    }
-    for (int i = UNKNOWNS - 1; i >= 0; i--) {
-        for (int k = i + 1; k < UNKNOWNS; k++) {
-            x[i] -= a[i][k] * x[k];
-        }
-        x[i] /= a[i][i];
-    }
-    return 1;
-}
-
 /* Newton with halved steps where the violation does not fall. A shot with its Jacobian takes three to four times as
  * long as one without, so both are computed at once unless the last contraction promises that the next shot ends it. */
 static int newton(const Problem *rod, double load, double *u, Shot *shot, int *iterations)
@@ -320,7 +268,7 @@ static int newton(const Problem *rod, double load, double *u, Shot *shot, int *i
         for (int k = 0; k < UNKNOWNS; k++) {
             correction[k] = -shot->violation[k];
         }
-        if (!eliminate(shot->jacobian, correction)) {
+        if (!eliminate(UNKNOWNS, shot->jacobian, correction)) {
             return 0;
         }
         ++*iterations;
@@ -380,7 +328,7 @@ static int follow(const Problem *rod, double *u, Shot *shot, int *iterations)
 }
 
 /* Nested: Newton starts from the solution with an eighth of the steps, where there are enough of them. */
-static int solve(const Problem *rod, int nested, Shot *shot, int *iterations)
+static int solution(const Problem *rod, int nested, Shot *shot, int *iterations)
 {
     double u[UNKNOWNS];
     *iterations = 0;
@@ -397,87 +345,32 @@ static int solve(const Problem *rod, int nested, Shot *shot, int *iterations)
 
 /* Program */
 
-static int usage(const char *program)
+static void solve(const Task *task, Answer *answer)
 {
-    fprintf(stderr,
-            "usage: %s kirchhoff|reissner L EI GJ GA EA steps Fx Fy Fz Mx My Mz\n"
-            "       [--weight wx wy wz] [--nested] [--repeat N]\n",
-            program);
-    return 2;
-}
-
-static int number(const char *text, double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*value);
-}
-
-static double seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    const double length = task->length, bending = task->bending_x;
+    const double force = length * length / bending, moment = length / bending, weight = force * length;
+    const Problem rod = {
+        .shears = task->shears,
+        .steps = task->steps,
+        .torsion = bending / task->torsion,
+        .shear = bending / (task->shear_x * length * length),
+        .extension = bending / (task->extension * length * length),
+        .force = {force * task->force[0], force * task->force[1], force * task->force[2]},
+        .moment = {moment * task->moment[0], moment * task->moment[1], moment * task->moment[2]},
+        .weight = {weight * task->weight[0], weight * task->weight[1], weight * task->weight[2]},
+    };
+    Shot shot;
+    answer->converged = solution(&rod, task->nested, &shot, &answer->iterations);
+    if (answer->converged) {
+        const Vector r = shot.r, t = shot.t, a = shot.a, b = cross(t, a);
+        const double tip[3] = {length * r.x, length * r.y, length * r.z};
+        const double rotation[3][3] = {{a.x, b.x, t.x}, {a.y, b.y, t.y}, {a.z, b.z, t.z}};
+        memcpy(answer->tip, tip, sizeof tip);
+        memcpy(answer->rotation, rotation, sizeof rotation);
+    }
 }
 
 int main(int argc, char **argv)
 {
-    double given[12], weight[3] = {0, 0, 0}, repeat = 1;
-    int nested = 0;
-    if (argc < 14 || (strcmp(argv[1], "kirchhoff") != 0 && strcmp(argv[1], "reissner") != 0)) {
-        return usage(argv[0]);
-    }
-    for (int i = 0; i < 12; i++) {
-        if (!number(argv[i + 2], &given[i]) || (i < 6 && given[i] <= 0)) {
-            return usage(argv[0]);
-        }
-    }
-    for (int i = 14; i < argc;) {
-        if (strcmp(argv[i], "--repeat") == 0 && i + 1 < argc && number(argv[i + 1], &repeat) && repeat >= 1) {
-            i += 2;
-        } else if (strcmp(argv[i], "--weight") == 0 && i + 3 < argc && number(argv[i + 1], &weight[0]) &&
-                   number(argv[i + 2], &weight[1]) && number(argv[i + 3], &weight[2])) {
-            i += 4;
-        } else if (strcmp(argv[i], "--nested") == 0) {
-            nested = 1;
-            i += 1;
-        } else {
-            return usage(argv[0]);
-        }
-    }
-    const double length = given[0], bending = given[1], force = length * length / bending, moment = length / bending;
-    if (given[5] < 1 || given[5] > MOST_STEPS || given[5] != floor(given[5])) {
-        return usage(argv[0]);
-    }
-    const Problem rod = {
-        .shears = strcmp(argv[1], "reissner") == 0,
-        .steps = (int)given[5],
-        .torsion = bending / given[2],
-        .shear = bending / (given[3] * length * length),
-        .extension = bending / (given[4] * length * length),
-        .force = {force * given[6], force * given[7], force * given[8]},
-        .moment = {moment * given[9], moment * given[10], moment * given[11]},
-        .weight = {force * length * weight[0], force * length * weight[1], force * length * weight[2]},
-    };
-
-    double best = HUGE_VAL;
-    int converged = 0, iterations = 0;
-    Shot shot;
-    for (double i = 0; i < repeat; i++) {
-        const double begin = seconds();
-        converged = solve(&rod, nested, &shot, &iterations);
-        best = fmin(best, seconds() - begin);
-    }
-    if (!converged) {
-        printf("{\"status\": \"failed\", \"iterations\": %d, \"tip\": null, \"cold_us\": %.3f}\n", iterations,
-               1e6 * best);
-        return 1;
-    }
-    const Vector r = shot.r, t = shot.t, a = shot.a, b = cross(t, a);
-    printf("{\"status\": \"converged\", \"iterations\": %d, \"tip\": [%.17g, %.17g, %.17g], ", iterations, length * r.x,
-           length * r.y, length * r.z);
-    printf("\"rotation\": [[%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g]], ", a.x, b.x, t.x, a.y,
-           b.y, t.y, a.z, b.z, t.z);
-    printf("\"cold_us\": %.3f}\n", 1e6 * best);
-    return 0;
+    return run(argc, argv, NESTED, solve);
 }
