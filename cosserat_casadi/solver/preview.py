@@ -13,7 +13,7 @@ such a rod is watched at sections between its ends too.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import casadi as ca
@@ -54,6 +54,7 @@ class Preview:
     """
 
     witness: Solution
+    _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict, repr=False)
 
     @property
     def model(self) -> Model:
@@ -63,8 +64,10 @@ class Preview:
     @cached_property
     def jacobian(self) -> FloatArray:
         """Jacobian at the witness, shape (n, n)."""
-        jacobian: FloatArray = self.model.jacobian(self.witness.x, self.witness.inputs)[0].full()
-        return jacobian
+        built = vars(self.model)
+        if "homotopy" in built and "jacobian" not in built:  # the same matrix, and a function less to build
+            return _numbers(self.model.homotopy(self.witness.x, self._inputs, 1.0)[0])
+        return _numbers(self.model.jacobian(self.witness.x, self._inputs)[0])
 
     @cached_property
     def tips(self) -> FloatArray:
@@ -93,9 +96,12 @@ class Preview:
             x[kept] -= inverse @ self.model.residual(x, self._inputs).full()[kept, 0]
         return x
 
-    def mode_shift(self, x: FloatArray) -> FloatArray:
-        """Watched poses at x less those of the witness, 12 entries for each section."""
-        return self._tips(x) - self.tips
+    def mode_shift(self, modes: Modes) -> FloatArray:
+        """Change of the watched poses by having fewer modes, 12 entries for each section."""
+        key = tuple(modes.items())
+        if key not in self._shifts:
+            self._shifts[key] = self._tips(self.with_modes(modes)) - self.tips
+        return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
         """Change of the watched poses from the witness's grid to others, 12 entries for each section.

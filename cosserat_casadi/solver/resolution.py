@@ -63,7 +63,7 @@ class Resolution:
 
     def _without(self, count: int) -> float:
         fewer = {n: tuple(max(1, m - count) for m in d.modes) for n, d in self._discretisation.items()}
-        return _size(self.preview.mode_shift(self.preview.with_modes(fewer)))
+        return _size(self.preview.mode_shift(fewer))
 
 
 def _size(shift: FloatArray) -> float:

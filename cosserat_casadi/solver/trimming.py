@@ -9,6 +9,7 @@ All of it is read off previews, exact to a per cent or so; no model is built.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -20,11 +21,20 @@ from cosserat_casadi.solver.preview import Modes, Preview
 MODES_SHARE = 0.6
 """Share of the bound that modes may use before grids are chosen."""
 
-ORDERS = ("magnus6", "magnus4", "magnus8")
-"""Rotation integrators, the one that is most often the cheapest first."""
+ORDERS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magnus6", "magnus8")))
+"""Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
 LOOKS = 4
 """Most grids looked at for one rod and one integrator: each costs about a third of building a model."""
+
+LIKELY, LEAST_LIKELY = 1.35, 1.15
+"""Intervals for each mode of the component that has most: where a search begins, and below what a second is not."""
+
+POWERS = {"magnus4": 4.5, "magnus6": 7.0, "magnus8": 9.0}
+"""Powers of the intervals with which the change of the tips falls where only one grid is known."""
+
+AIM = 0.7
+"""Share of the bound that the next grid is aimed at."""
 
 FEWEST = 2
 """Chebyshev intervals below which nothing is tried."""
@@ -54,7 +64,6 @@ class Trim:
 
     preview: Preview
     bound: float
-    _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict)
 
     def run(self) -> Trimmed:
         """The cheapest discretisation found."""
@@ -70,19 +79,12 @@ class Trim:
     def _full(self) -> dict[str, tuple[int, ...]]:
         return {name: d.modes for name, d in self.preview.model.discretisation.items()}
 
-    def _shift(self, modes: Modes) -> FloatArray:
-        """Change of the tips that fewer modes make on the witness's grid."""
-        key = tuple(modes.items())
-        if key not in self._shifts:
-            self._shifts[key] = self.preview.mode_shift(self.preview.with_modes(modes))
-        return self._shifts[key]
-
     def _uniform(self) -> dict[str, tuple[int, ...]]:
         """Fewest modes, the same number everywhere, within the share of the modes."""
         best = self._full
         for most in range(max(map(max, best.values())) - 1, 0, -1):
             trial = {name: tuple(min(m, most) for m in modes) for name, modes in best.items()}
-            if _size(self._shift(trial)) > MODES_SHARE * self.bound:
+            if _size(self.preview.mode_shift(trial)) > MODES_SHARE * self.bound:
                 break
             best = trial
         return best
@@ -104,7 +106,7 @@ class Trim:
                     open_places.discard((name, place))
                     continue
                 trial = _less(here, name, place)
-                change = self._shift(trial)
+                change = self.preview.mode_shift(trial)
                 size = max(_size(change), _size(change + shift))
                 if size <= bound:
                     trials.append((size / self._saving(name, place), trial))
@@ -153,9 +155,10 @@ class _GridSearch:
     def cheapest(self) -> tuple[Discretisation, FloatArray]:
         """The cheapest grid within the bound and the change of the tips with it."""
         start = self.grids[self.name]
-        best, cost = (start.transport, start.nodes), np.inf
+        best, cost = (start.transport, start.nodes), np.inf  # a grid that is known to do
         turning = len(self.trim.preview.model.frame.bases[self.name].rod.turning_axes)
-        for order in ORDERS if turning > 1 else ORDERS[:1]:
+        orders = next(names for least, names in ORDERS if self.trim.bound >= least)
+        for order in orders if turning > 1 else orders[:1]:
             most = self._affordable(order, cost, start.nodes)
             found = self._fewest(order, most, first=cost == np.inf)
             if found is not None:
@@ -164,40 +167,49 @@ class _GridSearch:
 
     def _fewest(self, order: str, most: int, first: bool) -> int | None:
         """Fewest intervals, at most ``most``, with which an integrator stays within the bound; None if none do."""
-        if most < FEWEST:
+        likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
+        if most < (FEWEST if first else LEAST_LIKELY / LIKELY * likely):
             return None
         enough, short = most + 1, FEWEST - 1
-        guess = min(most, max(FEWEST, round(1.5 * max(self.modes[self.name])))) if first else most
+        guess = min(most, likely) if first else most
         for _ in range(LOOKS):
-            excess = self._excess(order, guess)
-            if excess <= 1:
+            if self._within(order, guess):
                 enough = guess
             else:
                 short = guess
             if enough - short <= 1:
                 break
-            guess = self._next(order, guess, excess, short, enough)
+            guess = min(max(self._next(order, guess), short + 1), enough - 1)
         return enough if enough <= most else None
 
-    def _next(self, order: str, here: int, excess: float, short: int, enough: int) -> int:
-        """Next intervals to look at: the error falls like a power of them, a high one."""
-        power = {"magnus4": 4.5, "magnus6": 7.0, "magnus8": 9.0}[order]
-        known = [(n, self._excess(o, n)) for o, n in self._seen if o == order and n != here]
+    def _next(self, order: str, here: int) -> int:
+        """Intervals that should just do: the change by the grid alone falls like a power of them, a high one."""
+        power, excess = POWERS[order], self._excess(order, here)
+        known = [n for o, n in self._seen if o == order and n != here]
         if known:
-            n, other = min(known, key=lambda pair: abs(pair[0] - here))
-            slope = np.log(max(other, 1e-9) / max(excess, 1e-9)) / np.log(here / n)
+            near = min(known, key=lambda n: abs(n - here))
+            slope = np.log(self._excess(order, near) / excess) / np.log(here / near)
             power = float(np.clip(slope, 4.0, 30.0))
-        guess = int(np.ceil(here * max(excess, 1e-9) ** (1 / power) - 0.1))
-        return min(max(guess, short + 1), enough - 1)
+        return int(np.ceil(here * (excess / AIM) ** (1 / power) - 0.1))
+
+    def _within(self, order: str, nodes: int) -> bool:
+        """Whether grids alone, and grids and modes together, change the tips by less than the bound."""
+        together = self._shift(order, nodes) + self.trim.preview.mode_shift(self.modes)
+        return max(self._excess(order, nodes), _size(together) / self.trim.bound) <= 1
 
     def _excess(self, order: str, nodes: int) -> float:
-        """Change of the tips over the bound, by grids alone and by grids and modes together."""
+        """Change of the tips by grids alone over the bound; rounding apart."""
+        return max(_size(self._shift(order, nodes)) / self.trim.bound, 1e-9)
+
+    def _shift(self, order: str, nodes: int) -> FloatArray:
         if (order, nodes) not in self._seen:
             trial = {**self.grids, self.name: self._grid(order, nodes)}
-            x = self.trim.preview.with_modes(self.modes)
-            self._seen[order, nodes] = self.trim.preview.grid_shift(x, self.modes, trial)
-        shift = self._seen[order, nodes]
-        return max(_size(shift), _size(shift + self.trim._shift(self.modes))) / self.trim.bound
+            self._seen[order, nodes] = self.trim.preview.grid_shift(self._unknowns, self.modes, trial)
+        return self._seen[order, nodes]
+
+    @cached_property
+    def _unknowns(self) -> FloatArray:
+        return self.trim.preview.with_modes(self.modes)
 
     def _affordable(self, order: str, cost: float, most: int) -> int:
         """Most intervals with which an integrator is cheaper than what is known."""
