@@ -17,8 +17,8 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.solver.preview import Preview
 
-CAREFUL = 2.0
-"""Factor on the extrapolated error of the modes."""
+CAREFUL, CAREFUL_GRID = 2.0, 1.5
+"""Factors on the extrapolated error of the modes, and on the distance to a finer grid, which is not exact either."""
 
 FASTEST, SLOWEST = 0.02, 0.7
 """Ratios of the errors with two modes more and without that are believed."""
@@ -50,7 +50,7 @@ class Resolution:
         """Error that the intervals and the rotation integrator leave."""
         modes = {name: d.modes for name, d in self._discretisation.items()}
         finer = {name: replace(d, nodes=d.nodes + d.nodes // 3 + 2) for name, d in self._discretisation.items()}
-        return _size(self.preview.grid_shift(self.preview.witness.x, modes, finer))
+        return CAREFUL_GRID * _size(self.preview.grid_shift(self.preview.witness.x, modes, finer))
 
     def modes_lacking(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
