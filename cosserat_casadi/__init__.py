@@ -1,7 +1,7 @@
 """Cosserat rods as CasADi models: a scene enters as text and flows, stage by stage, to a solved rod.
 
 scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Functions} ─ solve ─▶ Solution
-Scene ─ solve_scene ─▶ Solution at the coarsest discretisation within tolerance
+Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
 """
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError, SolveError

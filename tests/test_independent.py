@@ -109,7 +109,7 @@ def test_moment_rolls_a_rod_into_circles(turns: float) -> None:
     moment = 2 * np.pi * turns
     solution = solved(push(force=[0, 0, 0], moment=[0, 0, moment]))
     expected = [np.sin(moment) / moment, (1 - np.cos(moment)) / moment, 0.0]
-    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-11)
+    assert_allclose(solution.tip().position[0], expected, rtol=0, atol=1e-10)
     cosine, sine = np.cos(moment), np.sin(moment)
     assert_allclose(solution.tip().rotation[0][:, 2], [cosine, sine, 0], rtol=0, atol=1e-10)
 
@@ -127,8 +127,8 @@ def test_constant_intrinsic_strain_is_a_screw() -> None:
     ]
     twist[2, 3] = 1.0
     pose = expm(twist)
-    assert_allclose(solution.tip().position[0], pose[:3, 3], rtol=0, atol=1e-11)
-    assert_allclose(solution.tip().rotation[0], pose[:3, :3], rtol=0, atol=1e-11)
+    assert_allclose(solution.tip().position[0], pose[:3, 3], rtol=0, atol=1e-10)
+    assert_allclose(solution.tip().rotation[0], pose[:3, :3], rtol=0, atol=1e-10)
 
 
 def test_pull_stretches_by_force_over_axial_stiffness() -> None:

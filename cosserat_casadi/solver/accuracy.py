@@ -1,8 +1,13 @@
-"""From a tolerance to a discretisation: refine until the estimated pose error is below it.
+"""From a tolerance to the cheapest discretisation that meets it.
 
-A ladder of discretisations is climbed, two modes or more a rung. The error of a rung is the distance of its poses to
-those of the next one, which is far closer to the truth: spectral errors fall by orders of magnitude a rung. The rung
-that meets the tolerance is the answer, the one above it is the witness.
+A ladder of uniform discretisations is climbed, quickly, to a witness: a solution whose own error is a small part of
+the tolerance. Below the witness modes per component, intervals and the order of the rotation integrator are trimmed
+to what the tolerance needs. The trimmed model is solved, and its distance to the witness, with what the witness itself
+may be off, is the estimate of its error.
+
+The choice is made at the inputs of the scene, or those given: a component that they do not excite keeps one mode. Who
+changes the inputs afterwards, to load the rod harder or in another direction, fixes modes and nodes or chooses at the
+inputs that excite most.
 """
 
 from __future__ import annotations
@@ -18,23 +23,45 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
 from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.preview import Preview, watched
+from cosserat_casadi.solver.resolution import Resolution
 from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.solve import correct, judge, solve
+from cosserat_casadi.solver.trimming import Trim
 
 LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
-"""Modes per strain component and element, rung by rung."""
+"""Modes per strain component and element of a witness, rung by rung."""
+
+FIRST = ((1e-4, 1), (0.0, 2))
+"""Rung to begin with for tolerances down to a bound; lower ones cannot tell how fast they converge."""
 
 SAFETY = 2.0
-"""Factor on the distance between two rungs: the witness has an error of its own."""
+"""Factor on the distance to a finer solution whose own error is not known."""
+
+WITNESS = 0.15
+"""Share of the tolerance that a witness may be off by its modes, and by its grid a third of that."""
+
+TRIMS = (0.85, 0.35)
+"""Shares of the tolerance that trimming may use up, one try after the other."""
+
+MARGIN = 1.02
+"""Factor on the distance to a witness whose own error is known."""
+
+STRETCH, MOST_STRETCH = 1.4, 4.0
+"""Factor on the intervals of a witness whose grid is too coarse, and the product at which it is given up."""
 
 ROUNDING = 2e-14
 """Floor of every estimate."""
 
+FLOOR = 1e-13
+"""Error of a witness that is not told from rounding."""
+
 TIGHT = 1e-6
-"""Tolerances below this take the rotation integrator of eighth order, others that of sixth."""
+"""Witnesses for tolerances below this take the rotation integrator of eighth order, others that of sixth."""
 
 GIVE_UP = 2
 """Rungs beyond the first failure after which no equilibrium is sought any more."""
@@ -46,17 +73,9 @@ Report = Callable[[str], None]
 """Told what is being tried."""
 
 
-@dataclass(frozen=True)
-class Rung:
-    """One discretisation of the ladder: modes per component and Chebyshev intervals, per element."""
-
-    modes: int | tuple[int, ...]
-    nodes: int
-
-
 @dataclass
 class _Climb:
-    """The way up the ladder for one scene and one set of inputs.
+    """The way up the ladder for one scene and one set of inputs, and down from its top.
 
     Attributes:
         scene: the scene.
@@ -73,50 +92,82 @@ class _Climb:
     failures: list[Solution] = field(default_factory=list)
 
     @property
-    def transport(self) -> str:
-        """Rotation integrator that suits the tolerance."""
-        return "magnus8" if self.scene.accuracy.tolerance < TIGHT else "magnus6"
+    def tolerance(self) -> float:
+        """Wanted error of the tip poses."""
+        return self.scene.accuracy.tolerance
 
-    def solve(self, rung: Rung, below: Solution | None) -> Solution:
-        """Solution on a rung, from the one below where that is near, else from the unloaded scene."""
-        model = build(self.scene, discretise(self.scene, rung.modes, rung.nodes, self.transport))
-        if self.report is not None:
-            self.report(f"{model.size} unknowns, {rung.nodes} intervals")
+    @property
+    def transport(self) -> str:
+        """Rotation integrator of the witness that suits the tolerance."""
+        return "magnus8" if self.tolerance < TIGHT else "magnus6"
+
+    def solve(self, modes: int | tuple[int, ...], nodes: int, below: Solution | None) -> Solution:
+        """Solution on a rung, from one with fewer modes where that is near, else from the unloaded scene."""
+        model = self._build(discretise(self.scene, modes, nodes, self.transport))
         if below is not None:
-            near = _polish(model, below)
+            near = _polish(model, prolong(below, model), below.inputs)
             if near is not None:
                 return near
         return solve(model, self.values, progress=self.progress)
 
     def ladder(self) -> Solution:
-        """The coarsest rung whose estimated error is below the tolerance."""
-        tolerance = self.scene.accuracy.tolerance
-        coarse: Solution | None = None
-        for modes in LADDER[0 if tolerance >= 1e-4 else 1 :]:
-            turn = 0.0 if coarse is None else largest_turn(coarse)
-            fine = self.solve(Rung(modes, self._nodes(modes, turn)), coarse)
+        """The cheapest solution found whose estimated error is below the tolerance."""
+        rung, stretch = self._first_rung(), 1.0
+        below: Solution | None = None
+        while rung < len(LADDER):
+            turn = 0.0 if below is None else largest_turn(below)
+            fine = self.solve(LADDER[rung], ceil(stretch * self._nodes(LADDER[rung], turn)), below)
             if not fine.converged:
                 self.failures.append(fine)
                 if len(self.failures) > GIVE_UP:
                     return self.failures[-1]
+                rung += 1
                 continue
-            if coarse is not None:
-                coarse = with_estimate(coarse, fine)
-                if coarse.error_estimate is not None and coarse.error_estimate <= tolerance:
-                    return coarse
-            coarse = fine
-        return self.failures[-1] if coarse is None else _unresolved(coarse)
+            below, resolution = fine, Resolution(Preview(fine))
+            lacking = resolution.modes_lacking(max(WITNESS * self.tolerance, FLOOR))
+            if lacking > 0:
+                rung = _next_rung(rung, lacking)
+            elif resolution.grid_error <= max(WITNESS / 3 * self.tolerance, FLOOR):
+                return self._trimmed(resolution)
+            elif stretch < MOST_STRETCH:
+                stretch *= STRETCH
+            else:
+                break
+        return self.failures[-1] if below is None else _unresolved(below)
+
+    def _trimmed(self, resolution: Resolution) -> Solution:
+        """The cheapest solution below a witness; the witness itself where none is near enough to it."""
+        witness = resolution.preview.witness
+        own = resolution.modes_error + resolution.grid_error
+        for share in TRIMS:
+            trimmed = Trim(resolution.preview, share * self.tolerance - own).run()
+            found = _polish(self._build(trimmed.discretisation), trimmed.start, witness.inputs)
+            if found is None:
+                continue
+            judged = with_estimate(found, witness, MARGIN, own)
+            if judged.error_estimate is not None and judged.error_estimate <= self.tolerance:
+                return judged
+        return replace(witness, error_estimate=own + ROUNDING)
+
+    def _build(self, discretisation: dict[str, Discretisation]) -> Model:
+        model = build(self.scene, discretisation)
+        if self.report is not None:
+            self.report(f"{model.size} unknowns, {max(d.nodes for d in discretisation.values())} intervals")
+        return model
+
+    def _first_rung(self) -> int:
+        return min(next(rung for bound, rung in FIRST if self.tolerance >= bound), len(LADDER) - 1)
 
     def fixed(self) -> Solution:
         """The discretisation that the scene asks for, with its error estimated by a finer one."""
         modes = DEFAULT_MODES if self.scene.accuracy.modes is None else self.scene.accuracy.modes
         most = modes if isinstance(modes, int) else max(modes)
         nodes = nodes_for(most) if self.scene.accuracy.nodes is None else self.scene.accuracy.nodes
-        coarse = self.solve(Rung(modes, nodes), None)
+        coarse = self.solve(modes, nodes, None)
         if not coarse.converged:
             return coarse
         finer = modes + 4 if isinstance(modes, int) else tuple(m + 4 for m in modes)
-        witness = self.solve(Rung(finer, max(nodes + 10, self._nodes(most + 4, largest_turn(coarse)))), coarse)
+        witness = self.solve(finer, max(nodes + 10, self._nodes(most + 4, largest_turn(coarse))), coarse)
         return with_estimate(coarse, witness) if witness.converged else _unresolved(coarse)
 
     def _nodes(self, modes: int, turn: float) -> int:
@@ -134,9 +185,10 @@ def solve_scene(
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Solution:
-    """Equilibrium of a scene to its tolerance, at the coarsest rung that meets it.
+    """Equilibrium of a scene to its tolerance, on the cheapest discretisation found that meets it.
 
-    Where the scene fixes modes or nodes they are used as they are, and only the error is estimated.
+    The discretisation suits these inputs: a strain that they do not excite has one mode. Where
+    the scene fixes modes or nodes they are used as they are, and only the error is estimated.
 
     Args:
         scene: a validated scene.
@@ -152,23 +204,36 @@ def solve_scene(
     return climb.fixed() if chosen else climb.ladder()
 
 
-def with_estimate(coarse: Solution, fine: Solution) -> Solution:
-    """A solution with the error that a finer one of the same scene and inputs gives it."""
-    tip = pose_distance(coarse, fine, np.array([1.0]))
+def with_estimate(coarse: Solution, fine: Solution, factor: float = SAFETY, own: float = 0.0) -> Solution:
+    """A solution with the error that a finer one of the same scene and inputs gives it.
+
+    Args:
+        coarse: the solution.
+        fine: the finer one.
+        factor: on the distance of their poses.
+        own: error of the finer one, added.
+    """
+    tip = pose_distance(coarse, fine)
     whole = pose_distance(coarse, fine, SAMPLES)
     return replace(
         coarse,
-        error_estimate=SAFETY * tip + ROUNDING,
-        shape_error_estimate=SAFETY * max(tip, whole) + ROUNDING,
+        error_estimate=factor * tip + own + ROUNDING,
+        shape_error_estimate=factor * max(tip, whole) + own + ROUNDING,
     )
 
 
-def pose_distance(one: Solution, other: Solution, X: FloatArray) -> float:
-    """Largest difference of the poses at X over all rods: position over length, rotation entries."""
+def pose_distance(one: Solution, other: Solution, X: FloatArray | None = None) -> float:
+    """Largest difference of the poses over all rods: position over length, rotation entries.
+
+    Args:
+        one: a solution.
+        other: another of the same scene.
+        X: abscissae to compare, shape (k,); by default the tips, and sections between where a rod is held.
+    """
     distances = [0.0]
     for name, basis in one.model.frame.bases.items():
-        a, b = one.pose(X, name), other.pose(X, name)
-        distances.append(_distance(a, b, basis.rod.length))
+        sections = watched(one.model, name) if X is None else X
+        distances.append(_distance(one.pose(sections, name), other.pose(sections, name), basis.rod.length))
     return max(distances)
 
 
@@ -193,13 +258,20 @@ def _unloaded_turn(basis: StrainBasis) -> float:
     return float(np.linalg.norm(curvature, axis=1).max()) * basis.rod.length
 
 
-def _polish(model: Model, below: Solution) -> Solution | None:
-    """Newton from the rung below; None where it does not stay near, so that it may be another branch."""
+def _polish(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | None:
+    """Newton from a near start; None where it does not stay near, so that it may be another branch."""
     settings = ContinuationSettings().newton
-    found = correct(model, below.inputs, prolong(below, model), settings)
+    found = correct(model, inputs, start, settings)
     if found is None:
         return None
-    return judge(model, below.inputs, found.x, found.outcome, found.iterations, 1.0, settings.tolerance)
+    return judge(model, inputs, found.x, found.outcome, found.iterations, 1.0, settings.tolerance)
+
+
+def _next_rung(rung: int, lacking: int) -> int:
+    """The lowest rung above that has the modes that lack; no more than three up, convergence may turn out faster."""
+    wanted = LADDER[rung] + lacking
+    above = next((r for r, modes in enumerate(LADDER) if modes >= wanted), len(LADDER))
+    return min(max(above, rung + 1), rung + 3)
 
 
 def prolong(solution: Solution, model: Model) -> FloatArray:

@@ -8,7 +8,7 @@ the growing load leads to.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -97,10 +97,14 @@ def follow(
     limits = settings or ContinuationSettings()
     here, tangent = _depart(path, limits)
     iterations, t, step = here.iterations, 0.0, 1.0
+    if here.outcome is Outcome.CONVERGED and not np.isfinite(np.linalg.norm(tangent)):
+        here = replace(here, outcome=Outcome.NOT_FINITE)
     if here.outcome is not Outcome.CONVERGED:
         return ContinuationResult(here.x, here.outcome, here.residual_norm, iterations, t)
     for _ in range(limits.steps):
         step = min(step, 1.0 - t, limits.longest / max(float(np.linalg.norm(tangent)), 1e-12))
+        if step < min(limits.shortest, 1.0 - t):
+            break
         target = 1.0 if t + step > 1.0 - 1e-12 else t + step
         trial = newton(path.at(target), here.x + step * tangent, limits.newton)
         iterations += trial.iterations
@@ -114,8 +118,6 @@ def follow(
             step *= 2.0 if trial.jacobians <= limits.quick else 1.0
         else:
             step /= 2
-            if step < limits.shortest:
-                break
     return ContinuationResult(here.x, Outcome.LOAD_STALLED, here.residual_norm, iterations, t)
 
 

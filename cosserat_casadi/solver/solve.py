@@ -13,7 +13,7 @@ from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
-from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, newton, relative_norm
+from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.stability import second_variation
@@ -87,7 +87,7 @@ def judge(
     tolerance: float,
 ) -> Solution:
     """The solution that a method's end amounts to: the residual is computed again, the method's word is not taken."""
-    residual = model.residual(x, inputs).full()[:, 0] if model.size else np.zeros(0)
+    residual = _column(model.path_residual(x, inputs, 1.0))
     norm = relative_norm(residual, x)
     if load_factor == 1.0:
         outcome = _verdict(outcome, norm, tolerance)
@@ -108,7 +108,7 @@ def _with_stability(solution: Solution) -> Solution:
     model = solution.model
     if not model.has_potential(solution.inputs):
         return solution
-    jacobian = model.jacobian(solution.x, solution.inputs)[0].full()
+    jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0)[0].full()
     test = second_variation(jacobian, model.frame.strain_size)
     notes = {
         (True, False): "",
@@ -132,10 +132,7 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
         start: first iterate, shape (size,).
         settings: limits.
     """
-    equations = Equations(
-        lambda x: _column(model.residual(x, inputs)), lambda x: np.asarray(model.jacobian(x, inputs)[0].full())
-    )
-    found = newton(equations, start, settings)
+    found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
     strayed = found.damped or float(np.linalg.norm(found.x - start)) > NEAR
     return None if found.outcome is not Outcome.CONVERGED or strayed else found
 

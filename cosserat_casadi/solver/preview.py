@@ -1,0 +1,170 @@
+"""Poses that a coarser discretisation would give, from a converged finer one and without building a model.
+
+A fine solution, the witness, knows the equilibrium, its Jacobian, and by the order of its polynomials every coarser
+set of modes: dropping a mode is dropping a row and a column. So the equilibrium with fewer modes is a few corrections
+in a subspace, and that on another grid is one correction with the residual of that grid. Both are solutions to within
+the square of what is neglected, so the superconvergence of the tip is in them: an error estimated from the tail of
+the strain alone would be far too large.
+
+What is compared are the tips. The tip of a rod that a support holds is where it is held, however coarse the model:
+such a rod is watched at sections between its ends too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system import Arguments, System, frame
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.solver.solution import Solution
+
+Mask = npt.NDArray[np.bool_]
+Modes = Mapping[str, tuple[int, ...]]
+"""Modes of every admitted strain and element, for each rod."""
+
+CORRECTIONS = 2
+"""Corrections with the witness's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
+
+
+BETWEEN = (0.25, 0.5, 0.75, 1.0)
+"""Sections at which a held rod is watched."""
+
+
+def watched(model: Model, rod: str) -> FloatArray:
+    """Abscissae of the sections whose poses must be right to the tolerance, shape (k,)."""
+    held = any(support.rod == rod for support in model.scene.supports)
+    return np.array(BETWEEN if held else (1.0,))
+
+
+@dataclass(frozen=True)
+class Preview:
+    """A witness that is asked what coarser discretisations would give.
+
+    Attributes:
+        witness: a converged solution.
+    """
+
+    witness: Solution
+    _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict, repr=False)
+
+    @property
+    def model(self) -> Model:
+        """The witness's model."""
+        return self.witness.model
+
+    @cached_property
+    def jacobian(self) -> FloatArray:
+        """Jacobian at the witness, shape (n, n)."""
+        return _numbers(self.model.path_jacobian(self.witness.x, self._inputs, 1.0)[0])
+
+    @cached_property
+    def tips(self) -> FloatArray:
+        """Watched poses of the witness: positions over length and rotation entries, 12 for each section."""
+        return self._tips(self.witness.x)
+
+    def kept(self, modes: Modes) -> Mask:
+        """Unknowns of the witness that exist with these modes, shape (n,); multipliers always do."""
+        mask = np.ones(self.model.size, dtype=bool)
+        for name, basis in self.model.frame.bases.items():
+            first = self.model.frame.rod_slices[name].start
+            for columns, full, count in zip(
+                basis.columns.values(), basis.discretisation.modes, modes[name], strict=True
+            ):
+                inside = np.tile(np.arange(full) < count, basis.grid.elements)
+                mask[first + columns.start : first + columns.stop] = inside
+        return mask
+
+    def with_modes(self, modes: Modes) -> FloatArray:
+        """Unknowns of the equilibrium with fewer modes on the witness's grid, shape (n,), zero where dropped."""
+        kept = self.kept(modes)
+        inverse = _inverse(self.jacobian[np.ix_(kept, kept)])
+        x = np.where(kept, self.witness.x, 0.0)
+        x[kept] += inverse @ (self.jacobian[np.ix_(kept, ~kept)] @ self.witness.x[~kept])
+        for _ in range(CORRECTIONS):
+            x[kept] -= inverse @ self.model.residual(x, self._inputs).full()[kept, 0]
+        return x
+
+    def mode_shift(self, modes: Modes) -> FloatArray:
+        """Change of the watched poses by having fewer modes, 12 entries for each section."""
+        key = tuple(modes.items())
+        if key not in self._shifts:
+            self._shifts[key] = self._tips(self.with_modes(modes)) - self.tips
+        return self._shifts[key]
+
+    def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
+        """Change of the watched poses from the witness's grid to others, 12 entries for each section.
+
+        Args:
+            x: equilibrium with the given modes on the witness's grid, from :meth:`with_modes`.
+            modes: modes of every rod.
+            grids: nodes and transport of every rod; their modes are not read.
+        """
+        kept = self.kept(modes)
+        full = {n: replace(grids[n], modes=d.modes) for n, d in self.model.discretisation.items()}
+        other = System(frame(self.model.scene, self.model.inputs, full), Arguments(ca.DM(x), ca.DM(self._inputs)))
+        moved = x.copy()
+        moved[kept] -= _inverse(self.jacobian[np.ix_(kept, kept)]) @ _numbers(other.residual)[kept, 0]
+        # The unknowns move by far less than the tips can tell apart on two grids: the witness's grid serves.
+        return self._tips_of(other) - self._tips(x) + self._tips(moved) - self._tips(x)
+
+    @property
+    def _inputs(self) -> FloatArray:
+        return self.witness.inputs
+
+    def _tips(self, x: FloatArray) -> FloatArray:
+        found = []
+        for name, basis in self.model.frame.bases.items():
+            X = watched(self.model, name)
+            if len(X) == 1:
+                position, quaternion, _ = self.model.tip[name](x, self._inputs)
+            else:
+                nodal = self.model.fields[name](x, self._inputs)
+                matrix = ca.DM(basis.grid.interpolation_matrix(X)).T
+                position, quaternion = nodal[0] @ matrix, nodal[1] @ matrix
+            found.append(_entries(position, quaternion, basis.rod.length))
+        return np.concatenate(found)
+
+    def _tips_of(self, system: System) -> FloatArray:
+        found = []
+        for name, basis in system.frame.bases.items():
+            X, shape, base = watched(self.model, name), system.rods[name].shape, system.frame.base(name)
+            if len(X) == 1:
+                position, quaternion = shape.position_at(-1), shape.quaternion[:, -1]
+            else:
+                matrix = ca.DM(basis.grid.interpolation_matrix(X)).T
+                position, quaternion = shape.position @ matrix, shape.quaternion @ matrix
+            place = ca.repmat(base.position, 1, len(X)) + quaternion_to_matrix(base.quaternion) @ position
+            turn = quaternion_product(ca.repmat(base.quaternion, 1, len(X)), ca.densify(quaternion))
+            found.append(_entries(place, turn, basis.rod.length))
+        return np.concatenate(found)
+
+
+def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
+    """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
+    columns = _numbers(quaternion).T
+    turns = [_numbers(quaternion_to_matrix(ca.DM(q / np.linalg.norm(q)))).ravel() for q in columns]
+    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, *turns])
+    return entries
+
+
+def _inverse(matrix: FloatArray) -> FloatArray:
+    """The inverse; of a singular matrix, where the rod is neutral, the pseudo-inverse."""
+    try:
+        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(matrix), dtype=np.float64)
+
+
+def _numbers(matrix: Matrix) -> FloatArray:
+    """Values of a matrix without symbols: what supports add is wrapped as an expression."""
+    values: FloatArray = ca.evalf(ca.MX(matrix)).full()
+    return values

@@ -1,0 +1,132 @@
+"""The tolerance: what is picked for it meets it, and is no larger than it must be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi.solver.accuracy import pose_distance
+from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.preview import Preview
+from cosserat_casadi.solver.resolution import Resolution
+from cosserat_casadi.solver.trimming import Trim
+from tests.conftest import CASES
+from tests.reference.random_scenes import random_scene
+from tests.scenes import HOOK, WEIGHT, push, scene
+
+B1 = CASES / "rods" / "steel_b1_kirchhoff.toml"
+
+
+def fine(wanted: Scene, modes: int = 14, nodes: int = 36) -> Solution:
+    return solve(build(wanted, discretise(wanted, modes, nodes, "magnus8")))
+
+
+@pytest.mark.skipif(not B1.exists(), reason="the reference cases are not beside this checkout")
+def test_planar_load_takes_modes_in_its_plane_only() -> None:
+    wanted = read_scene(B1, ("accuracy.tolerance=1e-8",))
+    solution = solve_scene(wanted)
+    assert solution.converged
+    assert solution.model.size <= 10
+    assert pose_distance(solution, fine(wanted)) <= 1e-8
+
+
+@pytest.mark.parametrize("seed", range(300, 312))
+def test_tolerance_is_met(seed: int) -> None:
+    """And the estimate is not below the truth."""
+    tolerance = (1e-3, 1e-5, 1e-7, 1e-9)[seed % 4]
+    wanted = scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": tolerance}})
+    solution = solve_scene(wanted)
+    assert solution.converged, solution.message
+    chosen = solution.model.discretisation["rod"]
+    error = pose_distance(solution, fine(wanted, max(chosen.modes) + 7, 2 * chosen.nodes + 14))
+    assert solution.error_estimate is not None
+    assert error <= solution.error_estimate <= tolerance
+
+
+def test_unloaded_rod_takes_one_mode() -> None:
+    solution = solve_scene(scene(accuracy={"tolerance": 1e-9}))
+    assert solution.converged
+    assert solution.model.discretisation["rod"].modes == (1, 1, 1)
+    assert solution.error_estimate is not None
+    assert solution.error_estimate <= 1e-9
+    assert_allclose(solution.x, 0.0, rtol=0, atol=0)
+
+
+def test_fixed_modes_are_kept_and_nodes_follow() -> None:
+    solution = solve_scene(scene(push(), accuracy={"modes": [5, 5, 4], "tolerance": 1e-3}))
+    assert solution.model.discretisation["rod"].modes == (5, 5, 4)
+    assert solution.error_estimate is not None
+
+
+def test_modes_follow_the_inputs_given() -> None:
+    flat = solve_scene(scene(push(force=[0.9, 0.0, 0.0])))
+    turned = solve_scene(scene(push(force=[0.9, 0.0, 0.0])), {"push.force": [0.0, 0.9, 0.0]})
+    assert flat.model.discretisation["rod"].modes[::2] == (1, 1)
+    assert turned.model.discretisation["rod"].modes[1:] == (1, 1)
+    assert min(flat.model.discretisation["rod"].modes[1], turned.model.discretisation["rod"].modes[0]) > 2
+
+
+@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+def test_held_rod_is_right_between_its_ends(kind: str) -> None:
+    """Its tip is right with any modes, so the tip must not be what is looked at."""
+    held = {"rod": "rod", "kind": kind, "position": [0.2, 0.15, 0.6]}
+    pose = {"quaternion": [1.0, 0.0, 0.0, 0.0]} if kind == "clamped" else {}
+    wanted = scene(WEIGHT, supports=[{**held, **pose}], accuracy={"tolerance": 1e-3})
+    solution = solve_scene(wanted)
+    assert solution.converged, solution.message
+    assert pose_distance(solution, fine(wanted, 11, 26)) <= 1e-3
+
+
+def test_trimmed_model_is_where_the_witness_says() -> None:
+    """Previews against solved models, and the start that a trim hands over against the solution."""
+    wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT, HOOK, strain="reissner")
+    witness = fine(wanted, 9, 22)
+    preview = Preview(witness)
+    trimmed = Trim(preview, 1e-6).run()
+    solution = solve(build(wanted, trimmed.discretisation))
+    modes = {name: d.modes for name, d in trimmed.discretisation.items()}
+    start = preview.with_modes(modes)
+    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, trimmed.discretisation)
+    assert_allclose(Preview(solution).tips - preview.tips, foreseen, rtol=0, atol=2e-8)
+    assert np.abs(foreseen).max() <= 1.01e-6
+    assert_allclose(trimmed.start, solution.x, rtol=0, atol=1e-3)
+
+
+def test_witness_knows_its_own_error() -> None:
+    """Not too small, and not so large that the ladder climbs in vain."""
+    wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT)
+    truth = fine(wanted)
+    for modes, nodes in ((5, 30), (7, 30), (9, 10)):
+        witness = solve(build(wanted, discretise(wanted, modes, nodes, "magnus6")))
+        resolution = Resolution(Preview(witness))
+        true = pose_distance(witness, truth)
+        assert true <= resolution.modes_error + resolution.grid_error <= 100 * true
+
+
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+def test_foreseen_operations_vs_counted(strain: str) -> None:
+    """Ratios are what a choice needs."""
+    wanted = scene(push(), WEIGHT, strain=strain)
+    counted, foreseen = [], []
+    for modes, nodes in ((3, 5), (5, 8)):
+        model = build(wanted, discretise(wanted, modes, nodes))
+        counted.append(model.operations(model.jacobian))
+        foreseen.append(foreseen_operations(model.frame.bases["rod"].rod, model.discretisation["rod"]))
+    assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.35)
+    assert_allclose(foreseen, counted, rtol=0.5)
+
+
+def test_choice_is_cheaper_than_its_neighbours() -> None:
+    """One mode or one interval less, and the tolerance is missed."""
+    wanted = scene(push(force=[3.0, 0.0, -1.0]), accuracy={"tolerance": 1e-7})
+    solution, truth = solve_scene(wanted), fine(wanted)
+    chosen = solution.model.discretisation["rod"]
+    assert chosen.modes[::2] == (1, 1)
+    fewer = replace(chosen, modes=(1, chosen.modes[1] - 1, 1))
+    coarser = replace(chosen, nodes=chosen.nodes - 2)
+    for changed in (fewer, coarser):
+        assert pose_distance(solve(build(wanted, {"rod": changed})), truth) > 0.5e-7
