@@ -4,7 +4,9 @@ scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Func
 Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
 """
 
-from cosserat_casadi.errors import CosseratError, Problem, SceneError, SolveError
+from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.export import export
+from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import discretise
 from cosserat_casadi.result_file import result, write_result
@@ -16,8 +18,10 @@ from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.solve import solve
 
 __all__ = [
+    "Compiled",
     "CosseratError",
     "Discretisation",
+    "ExportError",
     "Model",
     "Outcome",
     "Problem",
@@ -27,6 +31,8 @@ __all__ = [
     "SolveError",
     "build",
     "discretise",
+    "export",
+    "load",
     "parse_scene",
     "read_scene",
     "result",

@@ -1,7 +1,8 @@
-"""The command line: solve a scene, check a scene."""
+"""The command line: solve a scene, check a scene, export a scene."""
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from cosserat_casadi import report
-from cosserat_casadi.errors import CosseratError, SceneError
+from cosserat_casadi.codegen.export import check_export
+from cosserat_casadi.codegen.export import export as export_model
+from cosserat_casadi.errors import CosseratError, ExportError, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import build
 from cosserat_casadi.result_file import result_text
@@ -73,6 +76,27 @@ def check(scene: SceneFile, settings: Settings = None) -> None:
     report.print_check(Console(), build(read))
 
 
+@app.command()
+def export(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option(help="Folder to write: new, empty, or of an earlier export.")],
+    name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
+    settings: Settings = None,
+) -> None:
+    """Write a scene as C sources: equations, derivatives, solver. Exit codes: 0 written, 2 refused, 3 not solved.
+
+    Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
+    """
+    chosen = re.sub(r"\W", "_", scene.stem) if name is None else name
+    check_export(output, chosen)
+    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())))
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+    export_model(solution.model, output, chosen, error_estimate=solution.error_estimate)
+    report.print_export(Console(), solution, output)
+
+
 def main() -> None:
     """Entry point: errors become sentences and exit codes."""
     sys.exit(run(app))
@@ -83,7 +107,7 @@ def run(command: Callable[..., object]) -> int:
     console = Console(stderr=True)
     try:
         outcome = command(standalone_mode=False)
-    except SceneError as error:
+    except (SceneError, ExportError) as error:
         report.print_refusal(console, error)
         return REFUSED
     except CosseratError as error:

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.errors import SceneError
+from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.price import price, price_of_load
@@ -52,7 +52,21 @@ def print_check(console: Console, model: Model) -> None:
         )
 
 
-def print_refusal(console: Console, error: SceneError) -> None:
+def print_export(console: Console, solution: Solution, folder: Path) -> None:
+    """What was written, at what accuracy, and how to try it."""
+    model = solution.model
+    console.print(f"[bold]{escape(model.scene.title or 'Untitled scene')}[/]", highlight=False)
+    console.print(_discretisation_table(model))
+    estimate = "not known" if solution.error_estimate is None else f"{solution.error_estimate:.1e}"
+    console.print(
+        f"{model.size} unknowns, {model.inputs.size} inputs; estimated error of the tip pose at the scene's own "
+        f"inputs: {estimate}.",
+        highlight=False,
+    )
+    console.print(f"wrote {escape(str(folder))}; its README.md says how to compile and call it", highlight=False)
+
+
+def print_refusal(console: Console, error: SceneError | ExportError) -> None:
     """Every reason for which an input is refused."""
     count = len(error.problems)
     console.print(f"[bold red]Refused:[/] {count} problem{'s' if count != 1 else ''}.", highlight=False)

@@ -10,12 +10,11 @@ from cosserat_casadi.model.build import Model
 
 
 def external_functions(model: Model, names: Names) -> dict[str, ca.Function]:
-    """Functions that a loaded library offers, by symbol: (x, inputs) ↦ residual, tip; and the IGM."""
+    """Functions that a loaded library offers, by symbol: residual, tips and shapes."""
     found = {names.differentiable("residual"): model.residual}
     for rod in names.rods:
         found[names.differentiable("tip", rod)] = tip(model, rod)
         found[names.differentiable("shape", rod)] = model.shape[rod]
-        found[names.differentiable("igm", rod)] = model.igm[rod]
     return found
 
 

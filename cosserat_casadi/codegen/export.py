@@ -13,6 +13,7 @@ from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
 
@@ -40,22 +41,47 @@ def export(
     """
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.absolute().name) if name is None else name
-    names = library_names(chosen, tuple(model.frame.bases))
-    stale = check_folder(folder, MANIFEST)
-    write_folder(folder, folder_files(model, names.name, error_estimate), stale)
+    stale = check_export(folder, chosen)
+    write_folder(folder, folder_files(model, chosen, error_estimate), stale)
     return folder
+
+
+def check_export(directory: Path, name: str) -> set[str]:
+    """Refuse a name or a folder before any work is done for it.
+
+    Returns:
+        names of the files of an earlier export in the folder.
+
+    Raises:
+        ExportError: with every fault.
+    """
+    problems: list[Problem] = []
+    stale: set[str] = set()
+    try:
+        library_names(name, ())
+    except ExportError as error:
+        problems.extend(error.problems)
+    try:
+        stale = check_folder(directory, MANIFEST)
+    except ExportError as error:
+        problems.extend(error.problems)
+    if problems:
+        raise ExportError(*problems)
+    return stale
 
 
 def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
     names = library_names(name, tuple(model.frame.bases))
     functions = kernels(model, names)
-    generated = sources(functions, f"{name}_kernels")
+    generated = sources(functions, f"{name}_kernels", "int")
+    # casadi.external expects the integers that CasADi itself was built with.
+    derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
     generated[f"{name}_kernels.c"] = _prologue(names.name, names.macro) + generated[f"{name}_kernels.c"]
     files = {
         **library_sources(model, names, error_estimate),
         **generated,
-        f"{name}_derivatives.c": sources(differentiable(model, names), f"{name}_derivatives")[f"{name}_derivatives.c"],
+        f"{name}_derivatives.c": derivatives[f"{name}_derivatives.c"],
         "scene.toml": scene_text(model.scene),
     }
     described = manifest(model, names, functions, error_estimate)

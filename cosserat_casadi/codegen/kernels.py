@@ -11,7 +11,7 @@ import casadi as ca
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 
-GENERATOR = {"with_header": True, "static_aux": True, "casadi_int": "int", "avoid_stack": False}
+GENERATOR = {"with_header": True, "static_aux": True}
 
 
 def kernels(model: Model, names: Names) -> list[ca.Function]:
@@ -44,9 +44,9 @@ def scalar(function: ca.Function, name: str) -> ca.Function:
     return ca.Function(name, symbols, expressions, function.name_in(), function.name_out())
 
 
-def sources(functions: Sequence[ca.Function], stem: str) -> dict[str, str]:
-    """Text of ``stem.c`` and ``stem.h`` with these functions."""
-    generator = ca.CodeGenerator(stem, GENERATOR)
+def sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[str, str]:
+    """Text of ``stem.c`` and ``stem.h`` with these functions, with this C type for integers."""
+    generator = ca.CodeGenerator(stem, {**GENERATOR, "casadi_int": integer})
     for function in functions:
         generator.add(function)
     with tempfile.TemporaryDirectory() as folder:

@@ -10,8 +10,8 @@ from cosserat_casadi.errors import ExportError, Problem
 LONGEST = 48
 """Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""
 
-_C = """auto break case char const continue default do double else enum extern float for goto if inline int long register
-restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
+_C = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
 
 _CPP = """alignas alignof and asm bool catch class concept constexpr delete explicit export false friend main module
 mutable namespace new noexcept not nullptr operator or private protected public requires template this throw true try

@@ -45,10 +45,12 @@ class NewtonSettings:
 
     Attributes:
         tolerance: bound on the residual norm, see :func:`relative_norm`.
+        aim: residual norm at which to stop; between it and the tolerance full steps go on while they help.
         iterations: most steps tried.
     """
 
     tolerance: float = 1e-11
+    aim: float = 1e-13
     iterations: int = 60
 
 
@@ -88,22 +90,23 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
     def end(outcome: Outcome, iterations: int) -> NewtonResult:
         return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped)
 
-    for iteration in range(settings.iterations + 1):
+    iteration = -1
+    while True:
+        iteration += 1
         if not np.isfinite(norm):
             return end(Outcome.NOT_FINITE, iteration)
-        if norm <= settings.tolerance * _size(x):
-            return end(Outcome.CONVERGED, iteration)
-        if iteration == settings.iterations:
-            break
+        done = norm <= settings.tolerance * _size(x)
+        if norm <= settings.aim * _size(x) or iteration == settings.iterations:
+            return end(Outcome.CONVERGED if done else Outcome.MAX_ITERATIONS, iteration)
         if not keep:
             secant, jacobians, keep = Secant(equations.jacobian(x)), jacobians + 1, False
             if not np.all(np.isfinite(secant.jacobian)):
                 return end(Outcome.NOT_FINITE, iteration)
         step = secant.step(residual)
-        found = None if step is None else _search(equations, x, step, norm, 1.0 if keep else SHORTEST_STEP)
+        found = None if step is None else _search(equations, x, step, norm, 1.0 if keep or done else SHORTEST_STEP)
         if step is None or found is None:
-            if not keep:
-                return end(Outcome.SINGULAR, iteration + 1)
+            if done or not keep:
+                return end(Outcome.CONVERGED if done else Outcome.SINGULAR, iteration + 1)
             keep = False
             continue
         x, length, residual = found
@@ -112,7 +115,6 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         if length == 1.0:
             secant.steps.append(step)
         keep = length == 1.0 and norm <= KEPT_DECREASE * before and len(secant.steps) < KEPT_STEPS
-    return end(Outcome.MAX_ITERATIONS, settings.iterations)
 
 
 def _search(

@@ -1,0 +1,281 @@
+"""An exported folder, compiled: CasADi functions with exact derivatives, and the solver in C."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.solver.outcome import Outcome
+
+FLAGS = ("-O2", "-std=c99", "-fPIC", "-shared")
+
+OUTCOMES = (
+    Outcome.CONVERGED,
+    Outcome.MAX_ITERATIONS,
+    Outcome.NOT_FINITE,
+    Outcome.SINGULAR,
+    Outcome.LOAD_STALLED,
+)
+"""Statuses of the solver in C, in the order of their numbers."""
+
+
+class _Info(ctypes.Structure):
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("iterations", ctypes.c_int),
+        ("jacobians", ctypes.c_int),
+        ("residual_norm", ctypes.c_double),
+        ("load_factor", ctypes.c_double),
+    )
+
+
+@dataclass(frozen=True)
+class CompiledSolution:
+    """What the solver in C found.
+
+    Attributes:
+        q: unknowns; the last equilibrium on the way where it did not converge.
+        outcome: how it ended.
+        iterations: Newton steps tried.
+        jacobians: Jacobians factorised.
+        residual_norm: relative norm of the residual.
+        load_factor: share of the load that q carries.
+    """
+
+    q: FloatArray
+    outcome: Outcome
+    iterations: int
+    jacobians: int
+    residual_norm: float
+    load_factor: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether q is an equilibrium at the full load."""
+        return self.outcome is Outcome.CONVERGED
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """An exported folder as compiled functions.
+
+    Attributes:
+        library: the shared object.
+        manifest: what the folder says of itself.
+    """
+
+    library: Path
+    manifest: dict[str, Any]
+    _names: Names = field(repr=False)
+
+    @cached_property
+    def residual(self) -> ca.Function:
+        """(x, inputs) ↦ residual, with exact first and second derivatives."""
+        return self._external("residual")
+
+    @cached_property
+    def tip(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs) ↦ (position, quaternion) of the tip, with exact derivatives."""
+        return {rod: self._external("tip", rod) for rod in self._names.rods}
+
+    @cached_property
+    def shape(self) -> dict[str, ca.Function]:
+        """For each rod (x, inputs, X) ↦ (position, quaternion), with exact derivatives."""
+        return {rod: self._external("shape", rod) for rod in self._names.rods}
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return sum(int(entry["count"]) for entry in self.manifest["unknowns"])
+
+    @cached_property
+    def defaults(self) -> FloatArray:
+        """The scene's own inputs, stacked."""
+        return np.concatenate([np.zeros(0), *[entry["value"] for entry in self.manifest["inputs"]]])
+
+    def solve(self, inputs: npt.ArrayLike | None = None, start: npt.ArrayLike | None = None) -> CompiledSolution:
+        """Equilibrium by the solver in C.
+
+        Args:
+            inputs: stacked inputs; the scene's own by default.
+            start: unknowns to start from; the unloaded rod by default.
+
+        Raises:
+            ValueError: inputs or start are of the wrong size.
+        """
+        given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
+        info = _Info()
+        self._function("solve")(_pointer(given), _pointer(q), ctypes.byref(info))
+        return _solution(q, info)
+
+    def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
+        """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
+
+        Raises:
+            ValueError: an argument is of the wrong size.
+        """
+        old = _vector(before, len(self.defaults), "before")
+        given = _vector(inputs, len(self.defaults), "inputs")
+        q, info = _vector(start, self.size, "start").copy(), _Info()
+        self._function("follow")(_pointer(old), _pointer(given), _pointer(q), ctypes.byref(info))
+        return _solution(q, info)
+
+    def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
+        """Equilibria of many load cases, inputs of shape (count, size of the inputs).
+
+        Raises:
+            ValueError: the inputs are of the wrong size.
+        """
+        given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
+        if given.ndim != 2 or given.shape[1] != len(self.defaults):
+            raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
+        q, infos = np.zeros((len(given), self.size)), (_Info * len(given))()
+        self._function("solve_batch")(len(given), _pointer(given), _pointer(q), infos)
+        return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
+
+    def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
+        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip; None where q is no regular equilibrium.
+
+        Raises:
+            ValueError: an argument is of the wrong size.
+        """
+        given = _vector(inputs, len(self.defaults), "inputs")
+        unknowns = _vector(q, self.size, "q")
+        d_q, d_tip = np.zeros((len(given), self.size)), np.zeros((len(self._names.rods), len(given), 7))
+        status = self._function("solve_sensitivity")(
+            _pointer(given), _pointer(unknowns), _pointer(d_q), _pointer(d_tip)
+        )
+        if status != 0:
+            return None
+        return d_q.T, {rod: tip.T for rod, tip in zip(self._names.rods, d_tip, strict=True)}
+
+    @cached_property
+    def _handle(self) -> ctypes.CDLL:
+        return ctypes.CDLL(str(self.library))
+
+    def _function(self, word: str) -> Any:
+        return getattr(self._handle, self._names.function(word))
+
+    def _external(self, word: str, rod: str | None = None) -> ca.Function:
+        return ca.external(self._names.differentiable(word, rod), str(self.library))
+
+
+def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
+    """Compile an exported folder, once, and load it.
+
+    The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:
+    an object that some process has loaded is never written over.
+
+    Args:
+        directory: a folder written by :func:`cosserat_casadi.export`.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+
+    Raises:
+        ExportError: the folder is not one of an export, there is no compiler, or it fails.
+    """
+    folder = Path(directory)
+    described = _manifest(folder)
+    rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
+    names = Names(described["name"], tuple(rods))
+    return Compiled(_shared_object(folder, names, _compiler(compiler)), described, names)
+
+
+def cache_folder() -> Path:
+    """Where compiled libraries are kept: the cache folder of the user's platform."""
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "cosserat_casadi"
+
+
+def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
+    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
+    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    digest = hashlib.sha256("\0".join([compiler, *FLAGS]).encode())
+    for path in (*sources, *headers):
+        digest.update(_read(path))
+    target = cache_folder() / f"{names.name}-{digest.hexdigest()[:20]}.so"
+    if not target.exists():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _compile(compiler, sources, target)
+    return target
+
+
+def _compile(compiler: str, sources: list[Path], target: Path) -> None:
+    with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
+        made = Path(scratch) / target.name
+        command = [compiler, *FLAGS, *map(str, sources), "-o", str(made), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            problem = f"{compiler} could not compile it: {done.stderr.strip()[-800:]}"
+            raise ExportError(Problem(str(sources[0].parent), problem))
+        made.replace(target)
+
+
+def _compiler(wanted: str | None) -> str:
+    asked = wanted or os.environ.get("CC")
+    for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
+        found = shutil.which(candidate)
+        if found:
+            return found
+    problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
+    raise ExportError(Problem("compiler", problem, "install gcc or clang, or name one in the environment variable CC"))
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    remedy = "write one with cosserat export"
+    try:
+        described: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    except OSError:
+        raise ExportError(Problem(str(folder), f"holds no {MANIFEST} that can be read", remedy)) from None
+    except ValueError:
+        raise ExportError(Problem(str(folder / MANIFEST), "is not JSON", remedy)) from None
+    if not isinstance(described, dict) or not {"name", "unknowns", "inputs"} <= described.keys():
+        raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", remedy))
+    return described
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError:
+        raise ExportError(Problem(str(path), "is missing", "export the folder anew")) from None
+
+
+def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
+    vector = np.ascontiguousarray(value, dtype=np.float64).ravel()
+    if len(vector) != size:
+        raise ValueError(f"{name} must have {size} numbers, got {len(vector)}")
+    return vector
+
+
+def _pointer(array: FloatArray) -> Any:
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+def _solution(q: FloatArray, info: _Info) -> CompiledSolution:
+    return CompiledSolution(
+        q, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
+    )
