@@ -6,12 +6,13 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow lint format schema clean
+.PHONY: help demo test test-slow bench lint format schema clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
+	@echo "make bench      race the exported C against shooting solvers; writes the table of the README"
 	@echo "make format     format the sources"
 	@echo "make schema     write the JSON schema of the scene format anew"
 
@@ -33,6 +34,9 @@ test: $(STAMP) lint
 
 test-slow: $(STAMP)
 	$(BIN)/python -m pytest -n 2 -m slow
+
+bench: $(STAMP)
+	$(BIN)/python benchmarks/race.py --write
 
 format: $(STAMP)
 	$(BIN)/ruff check --fix .

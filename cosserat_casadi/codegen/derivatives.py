@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.codegen.kernels import scalar, tip
+from cosserat_casadi.codegen.kernels import kernel, tip
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 
@@ -22,7 +22,7 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
     """Each function with its forward and reverse derivatives, and the forward derivative of the latter."""
     found = []
     for symbol, function in external_functions(model, names).items():
-        plain = scalar(function, symbol)
+        plain = kernel(model, function, symbol)
         reverse = plain.reverse(1)
         found += [plain, plain.forward(1), reverse, reverse.forward(1)]
     return found

@@ -14,20 +14,37 @@ from cosserat_casadi.model.build import Model
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
+STRAIGHT = 25_000
+"""Instructions up to which a kernel is straight-line code: thrice as fast as loops, but compilers choke on more."""
+
+
 def kernels(model: Model, names: Names) -> list[ca.Function]:
-    """What the solver in C is made of, dense, with constants folded and common terms shared."""
-    found = [
-        scalar(model.path_residual, names.kernel("residual")),
-        scalar(model.path_jacobian, names.kernel("jacobian")),
-        scalar(model.path_rate, names.kernel("rate")),
-        scalar(model.path_tangent, names.kernel("tangent")),
-    ]
+    """What the solver in C is made of, with dense outputs."""
+    wanted = {
+        names.kernel("residual"): model.path_residual,
+        names.kernel("jacobian"): model.path_jacobian,
+        names.kernel("rate"): model.path_rate,
+        names.kernel("tangent"): model.path_tangent,
+    }
     for rod in names.rods:
-        found.append(scalar(model.igm[rod], names.kernel("igm", rod)))
-        found.append(scalar(tip(model, rod), names.kernel("tip", rod)))
-        found.append(scalar(model.tip_jacobian[rod], names.kernel("tip_jacobian", rod)))
-        found.append(scalar(model.shape[rod], names.kernel("shape", rod)))
-    return found
+        wanted[names.kernel("igm", rod)] = model.igm[rod]
+        wanted[names.kernel("tip", rod)] = tip(model, rod)
+        wanted[names.kernel("tip_jacobian", rod)] = model.tip_jacobian[rod]
+        wanted[names.kernel("shape", rod)] = model.shape[rod]
+    return [kernel(model, function, name) for name, function in wanted.items()]
+
+
+def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
+    """One function under the name it has in C: straight-line code if it is short, else loops."""
+    # The literal linear system is solved with pivoting, which has no scalar form.
+    literal = any(chosen.transport == "permuted" for chosen in model.discretisation.values())
+    if not literal:
+        straight = scalar(function, name)
+        if straight.n_instructions() <= STRAIGHT:
+            return straight
+    symbols = function.mx_in()
+    results = [ca.densify(result) for result in function.call(symbols)]
+    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
 
 
 def tip(model: Model, rod: str) -> ca.Function:
