@@ -38,6 +38,12 @@ class Shape:
         return directors(self.section_quaternion)
 
     @cached_property
+    def interval_rotations(self) -> Matrix:
+        """Rotation matrices of the sections at which the intervals begin, side by side, 3×(3·intervals)."""
+        columns = ca.vertcat(*[d[:, :-1] for d in self.section_directors])
+        return ca.reshape(columns, 3, columns.numel() // 3)
+
+    @cached_property
     def directors(self) -> tuple[Matrix, Matrix, Matrix]:
         """Directors d₁, d₂, d₃ at the nodes, three 3×M."""
         d1, d2, d3 = (self._at_nodes(d) for d in self.section_directors)
@@ -52,11 +58,13 @@ class Shape:
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
         strain = self.basis.linear_strain_rows(self.q)
-        scaled = [self.scale(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
+        length = self.basis.rod.length
+        pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
+        scaled = [self.scale(d, length * row) for d, row in pairs]
         total = scaled[0]
         for term in scaled[1:]:
             total = total + term
-        return self.basis.rod.length * total
+        return total
 
     @cached_property
     def position(self) -> Matrix:

@@ -15,9 +15,10 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import magnus
+from cosserat_casadi.maths.blocks import mirror_factors, unstack
 from cosserat_casadi.maths.permuted import permuted_system
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import StrainBasis
 
 
@@ -48,31 +49,45 @@ class IntervalKernels:
         return ca.Function("increment", [turn], [magnus.increment_quaternion(omega)], ["turn"], ["quaternion"])
 
     @cached_property
+    def rotation_pattern(self) -> ca.Sparsity:
+        """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis leaves that axis alone."""
+        quaternion = ca.SX.sym("quaternion", self.increment.sparsity_out(0))
+        return ca.sparsify(quaternion_to_matrix(quaternion)).sparsity()
+
+    @cached_property
     def pull(self) -> ca.Function:
-        """The map (turn, body moment) ↦ (T ∂Ω/∂turn)ᵀ moment: the generalised moment of the interval."""
-        turn, omega = self._rotation_vector()
-        moment = ca.SX.sym("moment", 3)
-        force = ca.cse(ca.jtimes(omega, turn, magnus.increment_tangent(omega).T @ moment, True))
-        return ca.Function("pull", [turn, moment], [force], ["turn", "moment"], ["force"])
+        """The map (turn, rotation, moment) ↦ (R T ∂Ω/∂turn)ᵀ moment: the generalised moment of the interval.
+
+        ``rotation`` is the matrix R of the section at which the interval begins, ``moment`` what passes the interval,
+        3×1, N m, base frame.
+        """
+        turn, omega, rotation, moment = self._arguments()
+        force = ca.cse(ca.jtimes(omega, turn, magnus.pulled_moment(omega, rotation.T @ moment), True))
+        return ca.Function("pull", [turn, rotation, moment], [force], ["turn", "rotation", "moment"], ["force"])
 
     @cached_property
     def variation(self) -> ca.Function:
-        """First and second derivatives of one interval: (turn, body moment) ↦ (E, T, W, H).
+        """First and second derivatives of one interval: (turn, rotation, moment) ↦ (A, V, H).
 
-        E = ∂Ω/∂turn, 3×size; T with δ(exp Ω^) = (T δΩ)^ exp Ω^, 3×3; W = ∂(Tᵀ moment)/∂Ω, 3×3; H = the second
-        derivative of Ω·(Tᵀ moment) with respect to the turn at fixed Tᵀ moment, size×size.
+        A = R T ∂Ω/∂turn, 3×size: δθ of the interval in the base frame. The pull Aᵀ moment changes with the turn, R and
+        the moment fixed, by Aᵀ V A + H: V of :func:`magnus.increment_stiffness` in the base frame, 3×3, and H, the
+        second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
-        turn, omega = self._rotation_vector()
-        moment, pulled = ca.SX.sym("moment", 3), ca.SX.sym("pulled", 3)
-        vector = ca.SX.sym("vector", omega.sparsity())
-        frame = ca.substitute(magnus.increment_tangent(vector), vector, omega)
-        pull = magnus.increment_tangent(vector).T @ moment
-        turning = ca.substitute(ca.jacobian(pull, vector), vector, omega)
+        turn, omega, rotation, moment = self._arguments()
+        pulled = ca.SX.sym("pulled", 3)
+        turning = (rotation @ magnus.increment_tangent(omega)) @ ca.jacobian(omega, turn)
+        stiffness = magnus.increment_stiffness(rotation @ omega, moment)
         second = ca.triu2symm(ca.triu(ca.hessian(ca.dot(omega, pulled), turn)[0]))
-        second = ca.substitute(second, pulled, frame.T @ moment)
-        outputs = ca.cse([ca.jacobian(omega, turn), frame, turning, second])
-        names = ["E", "T", "W", "H"]
-        return ca.Function("variation", [turn, moment], list(map(ca.sparsify, outputs)), ["turn", "moment"], names)
+        second = ca.substitute(second, pulled, magnus.pulled_moment(omega, rotation.T @ moment))
+        outputs = list(map(ca.sparsify, ca.cse([turning, stiffness, second])))
+        return ca.Function(
+            "variation", [turn, rotation, moment], outputs, ["turn", "rotation", "moment"], ["A", "V", "H"]
+        )
+
+    def _arguments(self) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+        """Symbols: turn, its rotation vector, rotation at the beginning, moment."""
+        turn, omega = self._rotation_vector()
+        return turn, omega, ca.SX.sym("rotation", self.rotation_pattern), ca.SX.sym("moment", 3)
 
     def _rotation_vector(self) -> tuple[ca.SX, ca.SX]:
         turn = ca.SX.sym("turn", self.size)
@@ -90,28 +105,34 @@ def interval_kernels(basis: StrainBasis) -> IntervalKernels:
     return IntervalKernels(basis.rod.turning_axes, basis.taylor_count)
 
 
-def turn_matrix(basis: StrainBasis) -> FloatArray:
-    """Matrix from q to the stacked turns of all intervals, shape (size·intervals, n)."""
-    rows = []
-    for matrices in basis.taylor_matrices:
-        for axis in basis.rod.turning_axes:
-            row = np.zeros((len(basis.grid.left_ends), basis.size))
+def turn_factors(basis: StrainBasis) -> tuple[ca.DM, ca.DM]:
+    """Factors (fold, half) of the matrix foldᵀ half from q to the turns of all intervals, stacked by components.
+
+    Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode enters
+    the sum or the difference of two mirrored intervals alone.
+    """
+    count, axes = len(basis.grid.left_ends), basis.rod.turning_axes
+    rows, mirror, signs = [np.zeros((0, basis.size))], [], []
+    for order, matrices in enumerate(basis.taylor_matrices):
+        for axis in axes:
+            row = np.zeros((count, basis.size))
             if axis in matrices:
                 row[:, basis.columns[axis]] = matrices[axis]
+            mirror.append(count * len(rows[1:]) + basis.grid.mirrored_intervals)
+            signs.append(np.full(count, (-1.0) ** order))
             rows.append(row)
-    return np.vstack(rows) if rows else np.zeros((0, basis.size))
+    if not mirror:
+        return ca.DM(0, 0), ca.DM(0, basis.size)
+    parities = np.concatenate([basis.parities(c) for c in basis.columns])
+    return mirror_factors(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
 
 
 def interval_turns(basis: StrainBasis, q: Matrix) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
-    rows = []
-    for intrinsic, matrices in zip(basis.intrinsic_taylor, basis.taylor_matrices, strict=True):
-        for axis in basis.rod.turning_axes:
-            row = ca.DM(intrinsic[:, axis]).T
-            if axis in matrices:
-                row = row + (ca.DM(matrices[axis]) @ q[basis.columns[axis]]).T
-            rows.append(row)
-    return ca.vertcat(*rows)
+    axes = list(basis.rod.turning_axes)
+    intrinsic = np.concatenate([taylor[:, axes].T for taylor in basis.intrinsic_taylor])
+    fold, half = turn_factors(basis)
+    return ca.DM(intrinsic) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 
 def transport(basis: StrainBasis, q: Matrix) -> Matrix:

@@ -259,9 +259,9 @@ def test_graph_budget() -> None:
     functions = (model.igm["rod"], model.residual, model.jacobian)
     assert model.size == 12
     igm, residual, jacobian = (model.operations(f) for f in functions)
-    assert igm <= 7_300
-    assert residual <= 7_300
-    assert jacobian <= 53_000
+    assert igm <= 5_500
+    assert residual <= 5_500
+    assert jacobian <= 34_500
 
 
 @pytest.mark.parametrize("basis", ["legendre", "chebyshev"])
