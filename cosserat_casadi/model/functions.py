@@ -54,11 +54,10 @@ def path_residual(frame: Frame) -> ca.Function:
 
 
 def path_jacobian(frame: Frame) -> ca.Function:
-    """(x, inputs, factor) ↦ (jacobian, residual)."""
+    """(x, inputs, factor) ↦ ∂ residual / ∂x."""
     a = _path_arguments(frame)
-    system = System(frame, a)
-    outputs = [system.jacobian, system.residual]
-    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian", "residual"])
+    outputs = [System(frame, a).jacobian]
+    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian"])
 
 
 def path_rate(frame: Frame) -> ca.Function:
@@ -80,7 +79,7 @@ def path_tangent(frame: Frame) -> ca.Function:
     """
     size, inputs = frame.layout.size, ca.MX.sym("inputs", frame.layout.size)
     unloaded, none = np.zeros(frame.size), np.zeros(size)
-    jacobian, _ = path_jacobian(frame)(unloaded, none, 0.0)
+    jacobian = path_jacobian(frame)(unloaded, none, 0.0)
     probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
     rates = path_rate(frame).map(size + 1)(unloaded, probes, 0.0, none, 1.0).full()
     response = -np.linalg.solve(jacobian.full(), rates) if frame.size else rates

@@ -85,6 +85,15 @@ class StrainBasis:
             result[row, e * modes : (e + 1) * modes] = values[row]
         return result
 
+    def degrees(self, component: int) -> npt.NDArray[np.int64]:
+        """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
+        modes = self.discretisation.modes[self.rod.admitted.index(component)]
+        return np.tile(np.arange(modes), self.discretisation.elements)
+
+    def parities(self, component: int) -> Array:
+        """1 for a polynomial that is even about the middle of its element, −1 for an odd one, shape (n_c,)."""
+        return np.where(self.degrees(component) % 2 == 0, 1.0, -1.0)
+
     @cached_property
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
@@ -142,8 +151,8 @@ class StrainBasis:
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
         return [
-            {c: per_interval[:, self.columns[c]] for c in self.columns if c < 3}
-            for per_interval in (self._taylor(self._sampled_modes))
+            {c: per_interval[:, self.columns[c]] * (self.degrees(c) >= order) for c in self.columns if c < 3}
+            for order, per_interval in enumerate(self._taylor(self._sampled_modes))
         ]
 
     @cached_property
