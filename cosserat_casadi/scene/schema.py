@@ -305,6 +305,11 @@ class Accuracy(Record):
     nodes: Annotated[Whole, Field(ge=2, le=1000)] | None = Field(
         None, description="intervals of the Chebyshev grid, a whole number"
     )
+    rotation: Literal["magnus4", "magnus6", "magnus8", "permuted"] | None = Field(
+        None,
+        description="how the rotation is integrated: products of exponentials of order 4, 6 or 8, or the literal "
+        "'permuted' linear system",
+    )
 
 
 # Rods
