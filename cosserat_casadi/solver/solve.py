@@ -13,7 +13,7 @@ from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
-from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, newton, relative_norm
+from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.stability import second_variation
@@ -133,7 +133,7 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
         settings: limits.
     """
     found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
-    strayed = found.damped or float(np.linalg.norm(found.x - start)) > NEAR
+    strayed = found.damped or length_of(found.x - start) > NEAR
     return None if found.outcome is not Outcome.CONVERGED or strayed else found
 
 
