@@ -1,0 +1,38 @@
+"""Exported libraries, made once for all tests of the generated C."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from tests.codegen.libraries import RECIPES, Exported, Recipe, exported
+
+
+@pytest.fixture(scope="session")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of one test run share."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "workshop"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def library(workshop: Path) -> Callable[[str], Exported]:
+    """An exported library by the name of its recipe."""
+
+    @cache
+    def made(name: str) -> Exported:
+        return exported(name, RECIPES[name], workshop)
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def export_recipe(workshop: Path) -> Callable[[str, Recipe], Exported]:
+    """An exported library of any recipe."""
+    return lambda name, recipe: exported(name, recipe, workshop)

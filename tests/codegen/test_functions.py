@@ -1,0 +1,138 @@
+"""Every function of a library, called as C calls it, against the model's own."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.maths.typing import FloatArray
+from tests.codegen.libraries import Exported
+
+Library = Callable[[str], Exported]
+
+EACH = pytest.mark.parametrize("name", ["planar", "spatial", "thick", "pinned", "pair", "fixed", "loops"])
+
+CONVERGED, NOT_FINITE, NOT_IN_EQUILIBRIUM = 0, 2, 5
+
+
+def call(made: Exported, symbol: str, *arguments: FloatArray | float | None) -> Any:
+    """Call a function of the library with arrays and numbers."""
+    pointer = ctypes.POINTER(ctypes.c_double)
+    given = []
+    for argument in arguments:
+        if isinstance(argument, float):
+            given.append(ctypes.c_double(argument))
+        else:
+            given.append(None if argument is None else argument.ctypes.data_as(pointer))
+    return getattr(made.handle, symbol)(*given)
+
+
+def results(
+    made: Exported, symbol: str, arguments: list[FloatArray | float], shapes: list[tuple[int, ...]]
+) -> list[Any]:
+    """What a function writes; matrices are stored column after column."""
+    rooms = [np.full(shape, np.nan, order="F") for shape in shapes]
+    call(made, symbol, *arguments, *rooms)
+    return rooms
+
+
+def assert_as(found: list[FloatArray], wanted: list[ca.DM]) -> None:
+    """Equal to 1e-12 of the largest entry: sums of large terms may cancel in single entries."""
+    assert len(found) == len(wanted)
+    for ours, theirs in zip(found, wanted, strict=True):
+        theirs = theirs.full().reshape(ours.shape, order="F")
+        if ours.size:
+            assert_allclose(ours, theirs, rtol=1e-12, atol=1e-12 * max(1.0, np.abs(theirs).max()))
+
+
+def points(made: Exported) -> list[tuple[FloatArray, FloatArray]]:
+    """Unknowns and inputs, the zero of both included."""
+    rng, n, m = np.random.default_rng(11), made.model.size, made.model.inputs.size
+    random = [(rng.uniform(-1.5, 1.5, n), rng.uniform(-2, 2, m)) for _ in range(4)]
+    return [(np.zeros(n), np.zeros(m)), *random]
+
+
+@EACH
+def test_residual_and_its_jacobians_vs_model(library: Library, name: str) -> None:
+    made = library(name)
+    model, n, m = made.model, made.model.size, made.model.inputs.size
+    for q, inputs in points(made):
+        assert_as(results(made, f"{name}_residual", [q, inputs], [(n,)]), [model.residual(q, inputs)])
+        found = results(made, f"{name}_residual_jacobian", [q, inputs], [(n, n), (n,)])
+        assert_as(found, list(model.jacobian(q, inputs)))
+        assert_as(results(made, f"{name}_input_jacobian", [q, inputs], [(n, m)]), [model.input_jacobian(q, inputs)])
+
+
+@EACH
+def test_functions_of_each_rod_vs_model(library: Library, name: str) -> None:
+    made = library(name)
+    model, n, m = made.model, made.model.size, made.model.inputs.size
+    rng = np.random.default_rng(12)
+    for rod, basis in model.frame.bases.items():
+        symbol = {word: made.names.function(word, rod) for word in ("igm", "tip", "tip_jacobian", "shape")}
+        for q, inputs in points(made):
+            found = results(made, symbol["tip"], [q, inputs], [(3,), (4,)])
+            assert_as(found, list(model.tip[rod](q, inputs))[:2])
+            found = results(made, symbol["tip_jacobian"], [q, inputs], [(7, n), (7, m)])
+            assert_as(found, list(model.tip_jacobian[rod](q, inputs)))
+            for X in (0.0, 1.0, 0.5, *basis.grid.nodes[1:3], *rng.uniform(0, 1, 3)):
+                found = results(made, symbol["shape"], [q, inputs, float(X)], [(3,), (4,)])
+                assert_as(found, list(model.shape[rod](q, inputs, X)))
+            own, position, quaternion = rng.uniform(-1, 1, basis.size), rng.uniform(-1, 1, 3), rng.standard_normal(4)
+            quaternion /= np.linalg.norm(quaternion)
+            arguments = [own, position, quaternion, inputs]
+            found = results(made, symbol["igm"], arguments, [(basis.size,), (3,), (3,)])
+            assert_as(found, list(model.igm[rod](*arguments)))
+
+
+@pytest.mark.parametrize("name", ["planar", "pair", "fixed"])
+def test_sensitivity_at_what_is_no_equilibrium_writes_nothing(library: Library, name: str) -> None:
+    made = library(name)
+    n, m, rods = made.model.size, made.model.inputs.size, len(made.model.frame.bases)
+    inputs = made.model.pack()
+    solved = made.compiled.solve(inputs).q
+    for q, status in ((solved + 1e-3, NOT_IN_EQUILIBRIUM), (np.full(n, np.nan), NOT_FINITE)):
+        rooms = [np.full(n * m + 1, 7.0), np.full(7 * m * rods + 1, 7.0)]
+        assert call(made, f"{name}_solve_sensitivity", inputs, q, *rooms) == status
+        assert all(np.all(room == 7.0) for room in rooms)
+    rooms = [np.full(n * m + 1, 7.0), np.full(7 * m * rods + 1, 7.0)]
+    assert call(made, f"{name}_solve_sensitivity", inputs, solved, *rooms) == CONVERGED
+    for room in rooms:
+        assert not np.any(room[:-1] == 7.0)
+        assert room[-1] == 7.0
+
+
+def test_results_that_may_be_null(library: Library) -> None:
+    made = library("planar")
+    inputs, q = made.model.pack(), np.zeros(3)
+    assert call(made, "planar_solve", inputs, q, None) == CONVERGED
+    assert_allclose(q, made.compiled.solve(inputs).q, rtol=0, atol=0)
+    assert call(made, "planar_solve_sensitivity", inputs, q, None, None) == CONVERGED
+    assert call(made, "planar_follow", inputs, 2 * inputs, q, None) == CONVERGED
+    assert_allclose(q, made.compiled.solve(2 * inputs).q, rtol=0, atol=1e-10)
+
+
+def test_scene_without_inputs_needs_no_pointer_to_them(library: Library) -> None:
+    made = library("fixed")
+    q = np.zeros(made.model.size)
+    assert call(made, "fixed_solve", None, q, None) == CONVERGED
+    assert_allclose(q, made.compiled.solve().q, rtol=0, atol=0)
+    again = q.copy()
+    assert call(made, "fixed_follow", None, None, again, None) == CONVERGED
+    assert_allclose(again, q, rtol=0, atol=1e-12)
+
+
+def test_every_status_has_its_own_sentence(library: Library) -> None:
+    made = library("planar")
+    text = made.handle.planar_status_text
+    text.restype = ctypes.c_char_p
+    sentences = [text(status).decode() for status in range(6)]
+    assert len(set(sentences)) == 6
+    assert sentences[0].startswith("Equilibrium found")
+    assert text(6) == text(-1) == b"No such status."

@@ -1,0 +1,204 @@
+"""The solver in C against the solver in Python: same outcomes, same tips, from every kind of start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Outcome, read_scene, solve
+from tests.codegen.libraries import Exported, Recipe
+from tests.conftest import case_files
+
+Library = Callable[[str], Exported]
+ExportRecipe = Callable[[str, Recipe], Exported]
+
+SPREAD = pytest.mark.parametrize(
+    ("name", "count", "scale"),
+    [("planar", 120, 4.0), ("spatial", 40, 1.0), ("thick", 30, 1.0), ("pair", 30, 2.0), ("pinned", 20, 2.0)],
+)
+"""Loads of each library: how many, how far from zero."""
+
+
+def assert_same(made: Exported, inputs: np.ndarray) -> Outcome:
+    """Both solvers end alike at these inputs."""
+    ours, theirs = made.compiled.solve(inputs), made.solve(inputs)
+    assert ours.outcome is theirs.outcome, (inputs, ours, theirs.message)
+    if ours.converged:
+        assert ours.load_factor == 1.0
+        assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+    return ours.outcome
+
+
+@SPREAD
+def test_random_loads_vs_python(library: Library, name: str, count: int, scale: float) -> None:
+    made = library(name)
+    outcomes = [assert_same(made, inputs) for inputs in made.loads(count, 1, scale)]
+    assert outcomes.count(Outcome.CONVERGED) >= 0.9 * count
+
+
+@pytest.mark.slow
+@SPREAD
+def test_many_random_loads_vs_python(library: Library, name: str, count: int, scale: float) -> None:
+    made = library(name)
+    for inputs in made.loads(10 * count, 2, 2 * scale):
+        assert_same(made, inputs)
+
+
+def test_scene_without_inputs_vs_python(library: Library) -> None:
+    assert assert_same(library("fixed"), np.zeros(0)) is Outcome.CONVERGED
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "pair"])
+def test_no_load_leaves_the_rod_as_it_is(library: Library, name: str) -> None:
+    made = library(name)
+    found = made.compiled.solve(np.zeros(made.model.inputs.size))
+    assert found.converged
+    assert_allclose(found.q, 0.0, rtol=0, atol=0)
+
+
+FAST = {"elastica_10", "follower_10", "rollup_1", "shear_GA2P2", "wrench_C_prebent_twisted"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=[] if path.stem in FAST else pytest.mark.slow)
+        for path in case_files("rods")
+    ],
+)
+def test_reference_cases_vs_python(export_recipe: ExportRecipe, path: Path) -> None:
+    """The cases on a discretisation too coarse for them: equal equations are asked for, not true ones."""
+    made = export_recipe(f"case_{path.stem}", Recipe(read_scene(path), 3, 6, "magnus4"))
+    assert_same(made, made.model.pack())
+
+
+def neighbours(made: Exported) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Loads and loads nearby."""
+    rng = np.random.default_rng(4)
+    return [(inputs, inputs + 0.005 * rng.standard_normal(inputs.shape)) for inputs in made.loads(15, 3)]
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "pair"])
+def test_start_nearby_vs_python(library: Library, name: str) -> None:
+    made = library(name)
+    warm, cold = 0, 0
+    for before, inputs in neighbours(made):
+        start = made.compiled.solve(before)
+        ours, theirs = made.compiled.solve(inputs, start.q), made.solve(inputs, start.q)
+        assert ours.converged
+        assert theirs.converged
+        assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+        warm, cold = warm + ours.iterations, cold + made.compiled.solve(inputs).iterations
+    assert warm < cold
+
+
+def test_start_astray_vs_python(library: Library) -> None:
+    """A start far from any equilibrium may not decide the branch."""
+    made = library("planar")
+    inputs, cold = made.model.pack(), made.compiled.solve()
+    for start in (np.full(3, 3.0), np.array([0.0, -8.0, 5.0]), np.full(3, 1e9), np.full(3, np.nan)):
+        found = made.compiled.solve(inputs, start)
+        assert found.converged
+        assert_allclose(found.q, cold.q, rtol=0, atol=1e-10)
+    assert_allclose(made.solve(inputs, np.full(3, 3.0)).x, cold.q, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "pair", "pinned"])
+def test_following_inputs_vs_python(library: Library, name: str) -> None:
+    made, values = library(name), library(name).model.inputs.unpack
+    ends = made.loads(16, 5)
+    for before, inputs in zip(ends[::2], ends[1::2], strict=True):
+        start = made.solve(before)
+        assert start.converged
+        theirs = solve(made.model, values(inputs), start=start)
+        ours = made.compiled.follow(before, inputs, start.x)
+        assert ours.outcome is theirs.outcome
+        if ours.converged:
+            assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+
+
+def test_following_from_what_is_no_equilibrium_corrects_it_first(library: Library) -> None:
+    made = library("planar")
+    before, inputs = made.loads(2, 6)
+    start = made.compiled.solve(before).q
+    moved = made.compiled.follow(before, inputs, start + 0.01)
+    assert moved.converged
+    assert_allclose(moved.q, made.compiled.follow(before, inputs, start).q, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "pair", "fixed"])
+def test_batch_vs_single_solves(library: Library, name: str) -> None:
+    made = library(name)
+    cases = np.repeat(made.loads(20, 7), 2, axis=0)[: 40 if made.model.inputs.size else 3]
+    single = [made.compiled.solve(inputs) for inputs in cases]
+    batch = made.compiled.solve_batch(cases)
+    assert len(batch) == len(cases)
+    for inputs, one, other in zip(cases, batch, single, strict=True):
+        assert one.outcome is other.outcome
+        assert_allclose(made.tips(one.q, inputs), made.tips(other.q, inputs), rtol=0, atol=1e-9 * made.length)
+
+
+def test_batch_goes_on_after_a_case_that_fails(library: Library) -> None:
+    made = library("planar")
+    cases = made.loads(5, 8)
+    cases[1], cases[3] = np.nan, 1e200
+    batch = made.compiled.solve_batch(cases)
+    assert [one.converged for one in batch] == [True, False, True, False, True]
+    assert batch[1].outcome is Outcome.NOT_FINITE
+    assert made.compiled.solve_batch(np.zeros((0, 3))) == []
+    assert_allclose(batch[4].q, made.compiled.solve(cases[4]).q, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("force", [-3000.0, 3000.0])
+def test_load_that_stalls_vs_python(library: Library, force: float) -> None:
+    """An arch whose keystone is pushed beyond what can be followed: the last equilibrium on the way, and where."""
+    made = library("arch")
+    inputs = force * ACROSS
+    ours, theirs = made.compiled.solve(inputs), made.solve(inputs)
+    assert ours.outcome is theirs.outcome is Outcome.LOAD_STALLED
+    assert 0.0 < ours.load_factor < 1.0
+    assert_allclose(ours.load_factor, theirs.load_factor, rtol=0, atol=1e-3)
+    there = made.model.path_residual(ours.q, inputs, ours.load_factor).full()
+    assert np.linalg.norm(there) <= 1e-10 * (1 + np.linalg.norm(ours.q))
+    assert np.linalg.norm(made.model.residual(ours.q, inputs).full()) > 1e-7
+
+
+ACROSS = np.array([0.8870, 0.0, -0.4618])
+"""Perpendicular to the chord of the arch."""
+
+
+@pytest.mark.parametrize("name", ["planar", "spatial", "thick", "pair", "pinned"])
+def test_sensitivity_vs_differences_and_vs_the_implicit_function_theorem(library: Library, name: str) -> None:
+    made = library(name)
+    model, step = made.model, 1e-5
+    for inputs in made.loads(3, 9):
+        q = made.compiled.solve(inputs).q
+        found = made.compiled.sensitivity(inputs, q)
+        assert found is not None
+        d_q, d_tip = found
+        jacobian, slopes = model.jacobian(q, inputs)[0].full(), model.input_jacobian(q, inputs).full()
+        assert_allclose(d_q, -np.linalg.solve(jacobian, slopes), rtol=1e-9, atol=1e-9)
+        for k in range(len(inputs)):
+            ends = [inputs.copy(), inputs.copy()]
+            ends[0][k] -= step
+            ends[1][k] += step
+            solved = [made.compiled.solve(end, q) for end in ends]
+            assert all(one.converged for one in solved)
+            assert_allclose(d_q[:, k], (solved[1].q - solved[0].q) / (2 * step), rtol=1e-4, atol=1e-5)
+            for rod, tip in model.tip.items():
+                poses = [
+                    np.concatenate([p.full()[:, 0] for p in tip(s.q, e)[:2]]) for s, e in zip(solved, ends, strict=True)
+                ]
+                assert_allclose(d_tip[rod][:, k], (poses[1] - poses[0]) / (2 * step), rtol=1e-4, atol=1e-5)
+
+
+def test_sensitivity_without_inputs_is_empty(library: Library) -> None:
+    made = library("fixed")
+    found = made.compiled.sensitivity([], made.compiled.solve().q)
+    assert found is not None
+    assert found[0].shape == (made.model.size, 0)
+    assert found[1]["rod"].shape == (7, 0)

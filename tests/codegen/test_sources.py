@@ -1,0 +1,94 @@
+"""The sources as text: they compile without a warning, hold no state, and say in the README what is true."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, attempt, gcc, run
+
+Library = Callable[[str], Exported]
+
+ALL = pytest.mark.parametrize("name", list(RECIPES))
+
+STRICT = (*C99, "-Werror")
+
+FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail"}
+"""What compilers themselves put in, besides what is used of libc."""
+
+MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
+
+
+@ALL
+def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
+    made = library(name)
+    for stem in (name, f"{name}_demo"):
+        # Warnings about what may be uninitialised come from the optimiser.
+        gcc(*STRICT, "-O2", "-c", made.folder / f"{stem}.c", "-o", tmp_path / "o")
+
+
+@pytest.mark.parametrize("flags", [("-DPLANAR_SINGLE",), ("-fopenmp",), ("-std=c11",)], ids=lambda flags: flags[0])
+def test_variants_compile_without_a_warning(library: Library, flags: tuple[str, ...], tmp_path: Path) -> None:
+    for stem in ("planar", "planar_demo"):
+        gcc(*STRICT, "-O2", *flags, "-c", library("planar").folder / f"{stem}.c", "-o", tmp_path / "o")
+
+
+@ALL
+def test_generated_sources_compile_without_a_warning(library: Library, name: str) -> None:
+    assert not library(name).warnings(*QUICK)
+
+
+@pytest.mark.parametrize(
+    "compiler",
+    [("gcc", "-x", "c", *STRICT), ("g++", "-x", "c++", "-std=c++11", *STRICT[1:])],
+    ids=["as C", "as C++"],
+)
+@ALL
+def test_header_stands_alone(library: Library, name: str, compiler: tuple[str, ...], tmp_path: Path) -> None:
+    if attempt("which", compiler[0]).returncode:
+        pytest.skip(f"{compiler[0]} is not installed")
+    run(*compiler, "-fsyntax-only", "-include", library(name).folder / f"{name}.h", "/dev/null", cwd=tmp_path)
+
+
+@ALL
+def test_library_holds_no_state_and_calls_only_mathematics(library: Library, name: str) -> None:
+    """No symbol in writable sections; nothing from outside but libm, memcpy and memset; all names its own."""
+    made = library(name)
+    for path in made.objects(*QUICK):
+        variables = [line.split() for line in run("objdump", "-t", path).splitlines() if " O " in line]
+        # Tables of functions lie in .data.rel.ro until they are relocated, and are read only from then on.
+        assert all(words[3].startswith((".rodata", ".data.rel.ro")) for words in variables), variables
+        symbols = [line.split()[-2:] for line in run("nm", path).splitlines()]
+        outside = {word for kind, word in symbols if kind == "U"} - {"_GLOBAL_OFFSET_TABLE_"}
+        strangers = {word for word in outside if not word.startswith(f"{name}_")} - FOREIGN - MATHS
+        assert not strangers
+        public = {word for kind, word in symbols if kind in "TVWR"}
+        assert all(word.startswith(f"{name}_") for word in public)
+
+
+@pytest.mark.parametrize("name", ["planar", "pair", "fixed"])
+def test_program_of_the_readme_vs_python(library: Library, name: str) -> None:
+    made = library(name)
+    blocks = re.findall(r"```c\n(.*?)```", (made.folder / "README.md").read_text(), re.DOTALL)
+    assert len(blocks) == 1
+    source = made.scratch / "readme.c"
+    source.write_text(blocks[0])
+    gcc(*STRICT, "-O2", "-c", source, "-I", made.folder, "-o", made.scratch / "readme.o")
+    printed = run(made.link([source], *QUICK))
+    inputs = made.model.pack()
+    wanted = made.tips(made.solve(inputs).x, inputs)[0]
+    assert_allclose(np.array(printed.split(), dtype=float), wanted, rtol=0, atol=1e-9 * made.length)
+
+
+def test_shell_line_of_the_readme(library: Library, tmp_path: Path) -> None:
+    """The first shell block builds and runs the demo, exactly as printed."""
+    made = library("tiny")
+    for path in made.folder.iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    line = re.findall(r"```sh\n(.*?)```", (made.folder / "README.md").read_text(), re.DOTALL)[0]
+    assert '"status": "converged"' in run("sh", "-c", line, cwd=tmp_path)
