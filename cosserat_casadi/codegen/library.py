@@ -183,5 +183,7 @@ def _listed(numbers: list[float]) -> str:
 
 
 def _comment(text: str) -> str:
-    """A title that cannot end the comment it stands in."""
-    return " ".join(text.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").split())
+    """A title that cannot end the comment it stands in, splice its line, or change the direction of what follows."""
+    printable = "".join(character if character.isprintable() else " " for character in text)
+    harmless = printable.replace("\\", "/").replace("??/", "?? /").replace("*/", "* /").replace("/*", "/ *")
+    return " ".join(harmless.split())

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.scene.schema import shown
 
 LONGEST = 48
 """Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""
@@ -17,8 +19,19 @@ _CPP = """alignas alignof and asm bool catch class concept constexpr delete expl
 mutable namespace new noexcept not nullptr operator or private protected public requires template this throw true try
 typeid typename using virtual xor casadi"""
 
+_HEADERS = """assert complex ctype errno fenv inttypes iso646 limits locale math setjmp signal stdarg stdbool
+stddef stdint stdio stdlib string tgmath threads time"""
+
+_BUILD = "all c clean edit_cache help install m package rebuild_cache test"
+
 KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
 """Words of C and C++, and of what is linked with them, that a library may not be called."""
+
+TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
+"""Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
+
+FUNCTIONS = ("igm", "tip", "tip_jacobian", "shape")
+"""Functions that every rod has."""
 
 
 @dataclass(frozen=True)
@@ -52,15 +65,56 @@ class Names:
         return self.function(f"f_{word}", rod)
 
 
-def library_names(name: str, rods: tuple[str, ...]) -> Names:
+def library_names(name: str, rods: tuple[str, ...] = (), inputs: tuple[str, ...] = ()) -> Names:
     """Names of an exported library.
 
+    Args:
+        name: the library.
+        rods: names of the rods.
+        inputs: names of the inputs.
+
     Raises:
-        ExportError: the name is no C identifier that two languages and a linker agree on.
+        ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
+            would have one name.
     """
+    names = Names(name, rods)
+    problems = [*_name_problems(name), *_symbol_problems(names), *_macro_problems(inputs)]
+    if problems:
+        raise ExportError(*problems)
+    return names
+
+
+def _name_problems(name: str) -> Iterator[Problem]:
     remedy = "use letters, digits and underscores, a letter first, such as --name finger"
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or "__" in name or len(name) > LONGEST:
-        raise ExportError(Problem("--name", f"{name!r} is no name for a C library", remedy))
-    if name.lower() in KEYWORDS:
-        raise ExportError(Problem("--name", f"{name!r} is a word of C or C++", remedy))
-    return Names(name, rods)
+    # A trailing underscore would become a double one, which C++ keeps for itself and CasADi refuses.
+    sound = re.fullmatch(r"[A-Za-z](_?[A-Za-z0-9])*", name)
+    if not sound or len(name) > LONGEST:
+        yield Problem("--name", f"{shown(name)} is no name for a C library", remedy)
+    elif name.lower() in KEYWORDS:
+        yield Problem("--name", f"{name!r} is a word of C or C++", remedy)
+    elif name.lower() in TAKEN:
+        yield Problem("--name", f"{name!r} is taken by C or its tools", remedy)
+
+
+def _symbol_problems(names: Names) -> Iterator[Problem]:
+    if len(names.rods) < 2:
+        return
+    owners: dict[str, str] = {}
+    for i, rod in enumerate(names.rods):
+        where = f"rods[{i}].name"
+        if "__" in rod:
+            yield Problem(where, f"{rod!r} cannot be part of a C symbol", "without two underscores in a row")
+        clashing = [owners[s] for s in (names.function(word, rod) for word in FUNCTIONS) if s in owners]
+        if clashing:
+            problem = f"{rod!r} gives a function the name that rod {clashing[0]!r} gives another"
+            yield Problem(where, problem, "rename one of the rods")
+        owners.update({names.function(word, rod): rod for word in FUNCTIONS})
+
+
+def _macro_problems(inputs: tuple[str, ...]) -> Iterator[Problem]:
+    first: dict[str, str] = {}
+    for name in inputs:
+        other = first.setdefault(name.upper(), name)
+        if other != name:
+            problem = f"{name!r} and {other!r} differ in case alone, macros in C do not"
+            yield Problem("inputs", problem, "rename one of the loads")
