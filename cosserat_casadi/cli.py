@@ -15,6 +15,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn
 from cosserat_casadi import report
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
+from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.load_cases import read_load_cases, spread
@@ -93,7 +94,9 @@ def export(
     """
     chosen = re.sub(r"\W", "_", scene.stem) if name is None else name
     check_export(output, chosen)
-    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())))
+    read = read_scene(scene, tuple(settings or ()))
+    library_names(chosen, tuple(rod.name for rod in read.rods), read.input_names())
+    solution = _solve_with_progress(read)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
