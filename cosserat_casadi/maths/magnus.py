@@ -157,26 +157,26 @@ def pulled_moment(omega: Matrix, moment: Matrix) -> Matrix:
     return moment + cross(omega, cubic * cross(omega, moment) - linear * moment)
 
 
-def increment_stiffness(omega: Matrix, moment: Matrix) -> Matrix:
-    """The form V with ∂(Tᵀ M)/∂Ω = Tᵀ V T: how the work of a moment on an increment changes with the increment.
+def increment_stiffness(omega: Matrix, moment: Matrix, rotation: Matrix) -> Matrix:
+    """The form R V Rᵀ with ∂(Tᵀ M)/∂Ω = Tᵀ V T: how the work of a moment on an increment changes with the increment.
 
     V = ½ M^ − k (Ω^ M^ + M^ Ω^) + (M·Ω) h/(2b) Ω^², where b = (1 − cos θ)/θ², c = (θ − sin θ)/θ³,
-    h = (c − 2 (1 − 2 b)/θ²)/θ² and k = (c + θ² h)/(4 b). Only Ω and M enter, so that the form turns with them into
-    any frame.
+    h = (c − 2 (1 − 2 b)/θ²)/θ² and k = (c + θ² h)/(4 b). Only Ω and M enter, so that the form turns with them.
 
     Args:
         omega: rotation vector Ω, 3×1, rad.
-        moment: M, 3×1, in the same frame.
+        moment: R M, 3×1, in the frame to which R leads from that of Ω.
+        rotation: R, 3×3.
 
     Returns:
-        V, 3×3.
+        R V Rᵀ, 3×3.
     """
-    square = ca.sumsqr(omega)
-    inverse = 1 / horner(_HALF_SINE, square) ** 2
+    square, turned = ca.sumsqr(omega), rotation @ omega
+    half = 0.5 / horner(_HALF_SINE, square) ** 2
     second = horner(_SECOND, square)
-    k = (horner(_ANGLE_MINUS_SINE, square) + square * second) * inverse / 2
-    bent = ca.dot(moment, omega) * second * inverse / 2 * omega - k * moment
-    product = hat(omega) @ hat(bent)
+    k = half * (horner(_ANGLE_MINUS_SINE, square) + square * second)
+    bent = half * second * ca.dot(moment, turned) * turned - k * moment
+    product = hat(turned) @ hat(bent)
     return hat(moment / 2) + product + product.T
 
 

@@ -154,9 +154,9 @@ class Tangent:
         # follow has the other sign, and is lacking above.
         dead, following = (statics.couple_covector(follower) for follower in (False, True))
         if dead is not None:
-            matrix = matrix - ca.tril(self._commutator(dead), False) / unit
+            matrix = matrix - ca.tril(self._commutator(dead / unit), False)
         if following is not None:
-            matrix = matrix + ca.triu(self._commutator(following), False) / unit
+            matrix = matrix + ca.triu(self._commutator(following / unit), False)
         return matrix
 
     def _moment_variation(self) -> Matrix:
@@ -192,12 +192,11 @@ class Tangent:
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
         wrenches = [w for w in self.igm.statics.wrenches if w.follower]
-        parts = [self._following_force(w, w.force) for w in wrenches if w.force is not None]
+        basis = self.igm.shape.basis
+        parts = [self._following_force(w, w.force / basis.energy_unit) for w in wrenches if w.force is not None]
         if not parts:
             return None
-        basis = self.igm.shape.basis
-        total = sum(parts[1:], parts[0]) / -basis.energy_unit
-        return ca.horzcat(total, ca.DM(basis.size, basis.size - self.angular_size))
+        return ca.horzcat(-sum(parts[1:], parts[0]), ca.DM(basis.size, basis.size - self.angular_size))
 
     def _following_force(self, wrench: Wrench, force: Matrix) -> Matrix:
         """Sum of δtᵀ δn̂, n×n_a: δrᵀ (δθ × f) wherever the force acts."""

@@ -76,8 +76,8 @@ class IntervalKernels:
         turn, omega, rotation, moment = self._arguments()
         pulled = ca.SX.sym("pulled", 3)
         turning = (rotation @ magnus.increment_tangent(omega)) @ ca.jacobian(omega, turn)
-        stiffness = magnus.increment_stiffness(rotation @ omega, moment)
-        second = ca.triu2symm(ca.triu(ca.hessian(ca.dot(omega, pulled), turn)[0]))
+        stiffness = magnus.increment_stiffness(omega, moment, rotation)
+        second = ca.triu2symm(ca.triu(ca.jacobian(ca.jtimes(omega, turn, pulled, True), turn)))
         second = ca.substitute(second, pulled, magnus.pulled_moment(omega, rotation.T @ moment))
         outputs = list(map(ca.sparsify, ca.cse([turning, stiffness, second])))
         return ca.Function(

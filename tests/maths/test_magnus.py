@@ -133,7 +133,7 @@ def test_pulled_moment_vs_transpose_of_the_frechet_derivative(omega):
 @pytest.mark.parametrize("omega", OMEGAS)
 def test_increment_stiffness_vs_differences_of_the_frechet_derivative(omega):
     moment, step = np.array([0.7, -1.2, 0.4]), 1e-5
-    form = magnus.increment_stiffness(ca.DM(omega), ca.DM(moment)).full()
+    form = magnus.increment_stiffness(ca.DM(omega), ca.DM(moment), ca.DM.eye(3)).full()
     tangent = magnus.increment_tangent(ca.DM(omega)).full()
     columns = [
         (pulled_by_expm(omega + d, moment) - pulled_by_expm(omega - d, moment)) / (2 * step) for d in step * np.eye(3)
@@ -145,15 +145,17 @@ def test_increment_stiffness_vs_differences_of_the_frechet_derivative(omega):
 def test_increment_stiffness_vs_ad(omega):
     v, moment = ca.SX.sym("v", 3), ca.DM([0.7, -1.2, 0.4])
     tangent = magnus.increment_tangent(v)
-    difference = ca.jacobian(tangent.T @ moment, v) - tangent.T @ magnus.increment_stiffness(v, moment) @ tangent
+    form = magnus.increment_stiffness(v, moment, ca.DM.eye(3))
+    difference = ca.jacobian(tangent.T @ moment, v) - tangent.T @ form @ tangent
     assert_allclose(ca.Function("f", [v], [difference])(omega).full(), 0.0, rtol=0, atol=2e-15)
 
 
-def test_increment_stiffness_vs_its_turned_arguments():
-    omega, moment = np.array([0.3, -0.2, 0.5]), np.array([0.7, -1.2, 0.4])
-    R = expm(hat([1.0, 0.4, -0.6]))
-    turned = magnus.increment_stiffness(ca.DM(R @ omega), ca.DM(R @ moment)).full()
-    assert_allclose(turned, R @ magnus.increment_stiffness(ca.DM(omega), ca.DM(moment)).full() @ R.T, atol=1e-15)
+@pytest.mark.parametrize("omega", OMEGAS)
+def test_increment_stiffness_in_a_turned_frame_vs_its_turned_matrix(omega):
+    moment, R = np.array([0.7, -1.2, 0.4]), expm(hat([1.0, 0.4, -0.6]))
+    here = magnus.increment_stiffness(ca.DM(omega), ca.DM(moment), ca.DM.eye(3)).full()
+    turned = magnus.increment_stiffness(ca.DM(omega), ca.DM(R @ moment), ca.DM(R)).full()
+    assert_allclose(turned, R @ here @ R.T, rtol=0, atol=1e-15)
 
 
 def pulled_by_expm(omega, moment):
