@@ -21,7 +21,6 @@ from cosserat_casadi.maths.blocks import (
     block_diagonal,
     cumulative_sum,
     hat_operator,
-    mirror_factors,
     reversed_places,
 )
 from cosserat_casadi.maths.rotation import cross, hat
@@ -179,15 +178,12 @@ class Tangent:
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
         basis, covector = self.igm.shape.basis, self.igm.statics.force_covector
-        phi = basis.at_nodes[component]
+        fold, half = basis.node_factors(component)
         if covector is None:
-            return ca.DM(phi.shape[1], self.angular_size)
+            return ca.DM(half.shape[1], self.angular_size)
         lever = cross(self.igm.shape.directors[component - 3], covector)
         share = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)]) @ self.rotation
-        scaled = phi * (-basis.rod.length / basis.energy_unit)
-        signs = np.ones(basis.grid.size)
-        fold, half = mirror_factors(scaled, basis.grid.mirrored_nodes, signs, basis.parities(component))
-        return half.T @ (fold @ share)
+        return (half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share)
 
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
