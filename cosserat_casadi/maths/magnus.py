@@ -158,10 +158,10 @@ class Increment:
             moment: M, 3×1, in the same frame as Ω.
         """
         square = ca.sumsqr(self.omega)
-        inverse = 1 / self.half_sine**2
+        half = 0.5 / self.half_sine**2
         second = horner(_SECOND, square)
-        k = (self.cubic + square * second) * inverse / 2
-        bent = ca.dot(moment, self.omega) * second * inverse / 2 * self.omega - k * moment
+        k = half * (self.cubic + square * second)
+        bent = half * second * ca.dot(moment, self.omega) * self.omega - k * moment
         product = hat(self.omega) @ hat(bent)
         return hat(moment / 2) + product + product.T
 

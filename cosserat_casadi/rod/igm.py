@@ -94,8 +94,8 @@ class InverseGeometricModel:
                 parts.append(ca.DM.zeros(basis.at_nodes[c].shape[1], 1))
                 continue
             share = dot(self.shape.directors[c - 3], covector).T
-            weight = ca.DM(basis.at_nodes[c] * (-basis.rod.length / basis.energy_unit))
-            parts.append(weight.T @ share)
+            fold, half = basis.node_factors(c)
+            parts.append((half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share))
         return ca.vertcat(*parts)
 
     def _linear_size(self) -> int:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
+from cosserat_casadi.maths.blocks import mirror_factors
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -100,6 +101,11 @@ class StrainBasis:
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
         return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.rod.admitted}
 
+    def node_factors(self, component: int) -> tuple[ca.DM, ca.DM]:
+        """Factors (fold, half) of Φ_c at the nodes, foldᵀ half: modes meet sums or differences of mirrored nodes."""
+        signs = np.ones(self.grid.size)
+        return mirror_factors(self.at_nodes[component], self.grid.mirrored_nodes, signs, self.parities(component))
+
     @cached_property
     def stiffness(self) -> Array:
         """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit.
@@ -137,7 +143,8 @@ class StrainBasis:
         for c in (3, 4, 5):
             row = ca.DM(intrinsic[:, c]).T if np.any(intrinsic[:, c]) else None
             if c in self.columns:
-                moving = (ca.DM(self.at_nodes[c]) @ q[self.columns[c]]).T
+                fold, half = self.node_factors(c)
+                moving = (fold.T @ (half @ q[self.columns[c]])).T
                 row = moving if row is None else row + moving
             rows.append(row)
         return rows

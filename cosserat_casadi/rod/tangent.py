@@ -21,7 +21,6 @@ from cosserat_casadi.maths.blocks import (
     block_diagonal,
     cumulative_sum,
     hat_operator,
-    mirror_factors,
     reversed_places,
 )
 from cosserat_casadi.maths.rotation import cross, hat
@@ -153,9 +152,9 @@ class Tangent:
         # follow has the other sign, and is lacking above.
         dead, following = (statics.couple_covector(follower) for follower in (False, True))
         if dead is not None:
-            matrix = matrix - ca.tril(self._commutator(dead), False) / unit
+            matrix = matrix - ca.tril(self._commutator(dead / unit), False)
         if following is not None:
-            matrix = matrix + ca.triu(self._commutator(following), False) / unit
+            matrix = matrix + ca.triu(self._commutator(following / unit), False)
         return matrix
 
     def _moment_variation(self) -> Matrix:
@@ -178,25 +177,21 @@ class Tangent:
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
         basis, covector = self.igm.shape.basis, self.igm.statics.force_covector
-        phi = basis.at_nodes[component]
+        fold, half = basis.node_factors(component)
         if covector is None:
-            return ca.DM(phi.shape[1], self.angular_size)
+            return ca.DM(half.shape[1], self.angular_size)
         lever = cross(self.igm.shape.directors[component - 3], covector)
         share = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)]) @ self.rotation
-        scaled = phi * (-basis.rod.length / basis.energy_unit)
-        signs = np.ones(basis.grid.size)
-        fold, half = mirror_factors(scaled, basis.grid.mirrored_nodes, signs, basis.parities(component))
-        return half.T @ (fold @ share)
+        return (half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share)
 
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
         wrenches = [w for w in self.igm.statics.wrenches if w.follower]
-        parts = [self._following_force(w, w.force) for w in wrenches if w.force is not None]
+        basis = self.igm.shape.basis
+        parts = [self._following_force(w, w.force / basis.energy_unit) for w in wrenches if w.force is not None]
         if not parts:
             return None
-        basis = self.igm.shape.basis
-        total = sum(parts[1:], parts[0]) / -basis.energy_unit
-        return ca.horzcat(total, ca.DM(basis.size, basis.size - self.angular_size))
+        return ca.horzcat(-sum(parts[1:], parts[0]), ca.DM(basis.size, basis.size - self.angular_size))
 
     def _following_force(self, wrench: Wrench, force: Matrix) -> Matrix:
         """Sum of δtᵀ δn̂, n×n_a: δrᵀ (δθ × f) wherever the force acts."""

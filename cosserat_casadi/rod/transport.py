@@ -86,7 +86,7 @@ class IntervalKernels:
         pulled = ca.SX.sym("pulled", 3)
         turning = (rotation @ made.tangent) @ ca.jacobian(omega, turn)
         stiffness = replace(made, omega=rotation @ made.omega).stiffness(moment)
-        second = ca.triu2symm(ca.triu(ca.hessian(ca.dot(omega, pulled), turn)[0]))
+        second = ca.triu2symm(ca.triu(ca.jacobian(ca.jtimes(omega, turn, pulled, True), turn)))
         second = ca.substitute(second, pulled, made.pulled(rotation.T @ moment))
         outputs = list(map(ca.sparsify, ca.cse([turning, stiffness, second])))
         return ca.Function("variation", symbols, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)

@@ -82,6 +82,15 @@ def test_turn_factors_vs_taylor_matrices(admitted, breaks, nodes, transport):
     assert half.nnz() <= (0.5 if nodes % 2 == 0 else 0.55) * nodes * basis.grid.elements * sum(modes)
 
 
+@pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.3, 1.0)])
+def test_node_factors_vs_shape_functions_at_the_nodes(breaks):
+    basis = strain_basis(rod(REISSNER), modes=4, nodes=6, breaks=breaks)
+    for c in basis.columns:
+        fold, half = basis.node_factors(c)
+        assert_allclose((fold.T @ half).full(), basis.at_nodes[c], rtol=0, atol=1e-14)
+        assert half.nnz() <= 4 * (len(breaks) - 1) * 4
+
+
 def test_increment_vs_expm_of_its_rotation_vector():
     kernels, turn, _ = kernels_at((0, 1, 2), 3, 0.6)
     omega = magnus.rotation_increment([ca.DM(a) for a in turn.reshape(3, 3)]).full().ravel()
