@@ -58,7 +58,7 @@ class ContinuationSettings:
     """
 
     newton: NewtonSettings = field(default_factory=NewtonSettings)
-    longest: float = 2.0
+    longest: float = 4.0
     shortest: float = 1e-7
     steps: int = 400
     quick: int = 2

@@ -19,7 +19,7 @@ from cosserat_casadi.solver.secant import Secant
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_STEP = 2.0**-12
 
-KEPT_DECREASE = 0.3
+KEPT_DECREASE = 0.5
 """A Jacobian is kept while a step leaves at most this share of the residual."""
 
 KEPT_STEPS = 12
