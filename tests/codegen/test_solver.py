@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Outcome, read_scene, solve
+from cosserat_casadi import Outcome, load, read_scene, solve
 from tests.codegen.libraries import Exported, Recipe
 from tests.conftest import case_files
 
@@ -130,6 +131,25 @@ def test_following_from_what_is_no_equilibrium_corrects_it_first(library: Librar
     assert_allclose(moved.q, made.compiled.follow(before, inputs, start).q, rtol=0, atol=1e-10)
 
 
+def test_unknowns_whose_norm_overflows_are_no_equilibrium(library: Library) -> None:
+    """Beside them any residual is small: a relative tolerance alone would accept them."""
+    made = library("arch")
+    inputs, far = made.model.pack(), np.array([-1.0, -1.0, -1.0, -1.0, 1e154, -1.34e154])
+    assert made.compiled.follow(inputs, inputs, far).outcome is Outcome.NOT_FINITE
+    assert made.compiled.sensitivity(inputs, far) is None
+    assert made.compiled.solve(inputs, far).converged
+
+
+@pytest.mark.parametrize("small", [1.0, 1e-3])
+def test_following_from_a_huge_load_ends_exactly_at_the_small_one(library: Library, small: float) -> None:
+    """A pull along the rod of any size leaves it straight; what is small beside it may not be lost on the way."""
+    made = library("planar")
+    huge, inputs = np.array([0.0, 0.0, 1e16]), np.array([0.9, 0.0, small])
+    found = made.compiled.follow(huge, inputs, np.zeros(3))
+    assert found.converged
+    assert_allclose(found.q, made.compiled.solve(inputs).q, rtol=0, atol=1e-9)
+
+
 @pytest.mark.parametrize("name", ["planar", "spatial", "pair", "fixed"])
 def test_batch_vs_single_solves(library: Library, name: str) -> None:
     made = library(name)
@@ -194,6 +214,23 @@ def test_sensitivity_vs_differences_and_vs_the_implicit_function_theorem(library
                     np.concatenate([p.full()[:, 0] for p in tip(s.q, e)[:2]]) for s, e in zip(solved, ends, strict=True)
                 ]
                 assert_allclose(d_tip[rod][:, k], (poses[1] - poses[0]) / (2 * step), rtol=1e-4, atol=1e-5)
+
+
+def test_loaded_folder_vs_model(library: Library, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a user loads it, derivatives included: residual and tip with their Jacobians by ``casadi.external``."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    made = library("tiny")
+    loaded, model = load(made.folder), made.model
+    inputs, q = made.loads(1, 10)[0], np.array([0.4, -0.7])
+    x = ca.MX.sym("x", 2)
+    slope = ca.Function("slope", [x], [ca.jacobian(loaded.residual(x, inputs), x)])
+    turn = ca.Function("turn", [x], [ca.jacobian(loaded.tip["rod"](x, inputs)[0], x)])
+    assert_allclose(loaded.residual(q, inputs).full(), model.residual(q, inputs).full(), rtol=1e-12, atol=1e-12)
+    assert_allclose(slope(q).full(), model.jacobian(q, inputs)[0].full(), rtol=1e-12, atol=1e-12)
+    wanted = model.tip_jacobian["rod"](q, inputs)[0].full()[:3]
+    assert_allclose(turn(q).full(), wanted, rtol=1e-12, atol=1e-12)
+    for case in made.loads(20, 11):
+        assert_allclose(loaded.solve(case).q, made.solve(case).x, rtol=0, atol=1e-9)
 
 
 def test_sensitivity_without_inputs_is_empty(library: Library) -> None:
