@@ -6,13 +6,14 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow lint format schema clean
+.PHONY: help demo test test-slow lint format schema generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make format     format the sources"
+	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema of the scene format anew"
 
 $(STAMP): pyproject.toml
@@ -40,6 +41,10 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
+
+# Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.
+generated: $(STAMP)
+	$(BIN)/python -m pytest tests/codegen/test_generated.py --update-generated
 
 clean:
 	rm -rf $(VENV) build out .pytest_cache .mypy_cache .ruff_cache .hypothesis
