@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow bench lint format schema clean
+.PHONY: help demo test test-slow bench lint format schema generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
@@ -14,6 +14,7 @@ help:
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make bench      race the exported C against shooting solvers; writes the table of the README"
 	@echo "make format     format the sources"
+	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema of the scene format anew"
 
 $(STAMP): pyproject.toml
@@ -44,6 +45,10 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
+
+# Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.
+generated: $(STAMP)
+	$(BIN)/python -m pytest tests/codegen/test_generated.py --update-generated
 
 clean:
 	rm -rf $(VENV) build out .pytest_cache .mypy_cache .ruff_cache .hypothesis

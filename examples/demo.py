@@ -8,7 +8,15 @@ from pathlib import Path
 
 from cosserat_casadi.cli import app, run
 
-SCENES = ("nitinol_wire", "silicone_finger", "precurved_tube", "fishing_rod", "loaded_strip")
+SCENES = (
+    "planar_strip",
+    "nitinol_wire",
+    "silicone_finger",
+    "follower_reissner",
+    "precurved_tube",
+    "fishing_rod",
+    "loaded_strip",
+)
 
 
 def main() -> int:

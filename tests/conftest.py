@@ -18,3 +18,7 @@ def case_files(folder: str) -> list[Path]:
 @pytest.fixture(scope="session")
 def examples() -> list[Path]:
     return sorted((ROOT / "examples").glob("*.toml"))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-generated", action="store_true", help="write the folders in generated/ anew")

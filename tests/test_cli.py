@@ -196,3 +196,102 @@ def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
     both = cosserat("tune", "wire.toml", "--output", "tuned.toml", cwd=wire)
     assert both.returncode == 2
     assert not (wire / "tuned.toml").exists()
+
+
+# Export
+
+
+def test_export_writes_a_folder_and_says_how_to_go_on(wire: Path) -> None:
+    done = cosserat("export", "wire.toml", "--output", "c", "--set", "accuracy.tolerance=1e-3", cwd=wire)
+    assert done.returncode == 0, done.stdout + done.stderr
+    told = " ".join(done.stdout.split())
+    for words in ("A wire", "unknowns, 3 inputs", "estimated error", "wrote c;", "README.md says how to compile"):
+        assert words in told
+    assert "Traceback" not in done.stderr
+    manifest = json.loads((wire / "c" / "manifest.json").read_text())
+    assert manifest["files"] == sorted(path.name for path in (wire / "c").iterdir())
+    assert manifest["name"] == "wire"
+    assert manifest["tolerance"] == 1e-3
+    assert 0 < manifest["error_estimate"] <= 1e-3
+    assert (wire / "c" / "wire.h").exists()
+    assert sorted(p.name for p in wire.iterdir()) == ["c", "wire.toml"]
+
+
+def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> None:
+    """The folder holds the scene as it was changed; a fixed discretisation is used as it is."""
+    changes = ('wire.strain="planar"', "accuracy.modes=2", "accuracy.nodes=5")
+    fixed = ("--output", "c", *(word for change in changes for word in ("--set", change)))
+    first = cosserat("export", "wire.toml", *fixed, cwd=wire)
+    assert first.returncode == 0, first.stderr
+    second = cosserat(
+        "export",
+        "wire.toml",
+        *fixed,
+        "--name",
+        "arm",
+        "--set",
+        "push.force=[0.1,0,0]",
+        "--set",
+        "wire.length=0.3",
+        cwd=wire,
+    )
+    assert second.returncode == 0, second.stderr
+    names = {path.name for path in (wire / "c").iterdir()}
+    assert "arm.h" in names
+    assert not [name for name in names if name.startswith("wire")]
+    manifest = json.loads((wire / "c" / "manifest.json").read_text())
+    assert manifest["discretisation"]["wire"]["modes"] == [2]
+    assert manifest["discretisation"]["wire"]["nodes"] == 5
+    assert manifest["inputs"][0]["value"] == [0.1, 0, 0]
+    kept = read_scene(wire / "c" / "scene.toml")
+    assert kept.rods[0].length == 0.3
+    assert kept == read_scene(wire / "wire.toml", (*changes, "push.force=[0.1,0,0]", "wire.length=0.3"))
+
+
+def test_export_refuses_name_and_folder_at_once(wire: Path) -> None:
+    (wire / "thesis").mkdir()
+    (wire / "thesis" / "chapter.tex").write_text("mine")
+    done = cosserat("export", "wire.toml", "--output", "thesis", "--name", "2fast", cwd=wire)
+    assert done.returncode == 2
+    assert "Refused: 2 problems." in done.stderr
+    for words in (
+        "--name: '2fast' is no name for a C library",
+        "--output: ",
+        "chapter.tex",
+        "a new or an empty folder",
+    ):
+        assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert [p.name for p in (wire / "thesis").iterdir()] == ["chapter.tex"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["wire.toml"], "output"),
+        (["missing.toml", "--output", "c"], "missing.toml"),
+        (["wire.toml", "--output", "wire.toml"], "--output"),
+        (["wire.toml", "--output", "no/such"], "make it first"),
+        (["wire.toml", "--output", "c", "--name", "double"], "is a word of C or C++"),
+        (["wire.toml", "--output", "c", "--set", "push.force=[0,0"], "--set push.force"),
+        (["twins.toml", "--output", "c"], "differ in case alone"),
+    ],
+)
+def test_export_refusals(wire: Path, arguments: list[str], words: str) -> None:
+    twin = '[[loads]]\nname = "Push"\nkind = "tip_wrench"\nrod = "wire"\nforce = [0, 0, 1]\n'
+    (wire / "twins.toml").write_text(SCENE + twin)
+    done = cosserat("export", *arguments, cwd=wire)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["twins.toml", "wire.toml"]
+
+
+def test_export_of_what_cannot_be_solved_writes_nothing(wire: Path) -> None:
+    text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
+    (wire / "hard.toml").write_text(text)
+    done = cosserat("export", "hard.toml", "--output", "c", "--set", "accuracy.modes=3", cwd=wire)
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert "Nothing was written." in done.stderr
+    assert "Traceback" not in done.stderr
+    assert sorted(p.name for p in wire.iterdir()) == ["hard.toml", "wire.toml"]

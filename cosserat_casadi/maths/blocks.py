@@ -13,6 +13,9 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
+Places = npt.NDArray[np.int64]
+"""Indices of rows."""
+
 
 def stack(field: Matrix) -> Matrix:
     """Column of m·k entries from an m×k field."""
@@ -67,9 +70,7 @@ def reversed_places(columns: Matrix, places: int) -> Matrix:
     return ca.vertcat(*[part[::-1, :] for part in parts])
 
 
-def mirror_factors(
-    matrix: FloatArray, mirror: npt.NDArray[np.int64], signs: FloatArray, parities: FloatArray
-) -> tuple[ca.DM, ca.DM]:
+def mirror_factors(matrix: FloatArray, mirror: Places, signs: FloatArray, parities: FloatArray) -> tuple[ca.DM, ca.DM]:
     """Factors (fold, half) with foldᵀ half = matrix, where products with even and odd columns cost half.
 
     Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns meet signed sums of mirrored rows,
@@ -87,11 +88,26 @@ def mirror_factors(
     rows = np.arange(len(matrix))
     first, middle = rows[rows < mirror], rows[rows == mirror]
     second, sign = mirror[first], signs[first, None]
-    identity, even = np.eye(len(matrix)), parities > 0
-    fold = [identity[first] + sign * identity[second], identity[first] - sign * identity[second], identity[middle]]
+    even = parities > 0
     half = [
         (matrix[first] + sign * matrix[second]) / 2 * even,
         (matrix[first] - sign * matrix[second]) / 2 * ~even,
         matrix[middle] * (signs[middle, None] == parities),
     ]
-    return ca.sparsify(ca.DM(np.vstack(fold))), ca.sparsify(ca.DM(np.vstack(half)))
+    return _fold(first, second, signs[first], middle), sparse(np.vstack(half))
+
+
+def sparse(matrix: FloatArray) -> ca.DM:
+    """A matrix without its zeros; far faster than through a dense one where it is large."""
+    rows, columns = np.nonzero(matrix)
+    return ca.DM.triplet(rows.tolist(), columns.tolist(), ca.DM(matrix[rows, columns]), *matrix.shape)
+
+
+def _fold(first: Places, second: Places, signs: FloatArray, middle: Places) -> ca.DM:
+    """Signed sums of mirrored rows, then their differences, then the rows that mirror themselves."""
+    pairs, count = np.arange(len(first)), 2 * len(first) + len(middle)
+    rows = np.concatenate([pairs, pairs, len(pairs) + pairs, len(pairs) + pairs, np.arange(2 * len(pairs), count)])
+    columns = np.concatenate([first, second, first, second, middle])
+    ones = np.ones(len(first))
+    entries = np.concatenate([ones, signs, ones, -signs, np.ones(len(middle))])
+    return ca.DM.triplet(rows.tolist(), columns.tolist(), ca.DM(entries), count, count)

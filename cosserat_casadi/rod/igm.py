@@ -15,7 +15,7 @@ from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.transport import interval_kernels, turn_factors
+from cosserat_casadi.rod.transport import interval_kernels
 from cosserat_casadi.rod.wrenches import ActuationStress
 
 
@@ -79,7 +79,7 @@ class InverseGeometricModel:
         force: Matrix = ca.DM.zeros(basis.size, 1)
         if moment is not None and basis.rod.turning_axes:
             pulled = interval_kernels(basis).pull.map(moment.shape[1])(*self.shape.interval_arguments, moment)
-            fold, half = turn_factors(basis)
+            fold, half = basis.turn_factors
             force = force + (half / -basis.energy_unit).T @ (fold @ stack(pulled))
         return force + self._linear_force(self.statics.force_covector)
 

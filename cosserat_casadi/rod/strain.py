@@ -96,6 +96,28 @@ class StrainBasis:
         return np.where(self.degrees(component) % 2 == 0, 1.0, -1.0)
 
     @cached_property
+    def turn_factors(self) -> tuple[ca.DM, ca.DM]:
+        """Factors (fold, half) of the matrix foldᵀ half from q to the turns of all intervals, stacked by components.
+
+        Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode
+        enters the sum or the difference of two mirrored intervals alone.
+        """
+        count, axes = len(self.grid.left_ends), self.rod.turning_axes
+        rows, mirror, signs = [np.zeros((0, self.size))], [], []
+        for order, matrices in enumerate(self.taylor_matrices):
+            for axis in axes:
+                row = np.zeros((count, self.size))
+                if axis in matrices:
+                    row[:, self.columns[axis]] = matrices[axis]
+                mirror.append(count * len(rows[1:]) + self.grid.mirrored_intervals)
+                signs.append(np.full(count, (-1.0) ** order))
+                rows.append(row)
+        if not mirror:
+            return ca.DM(0, 0), ca.DM(0, self.size)
+        parities = np.concatenate([self.parities(c) for c in self.columns])
+        return mirror_factors(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
+
+    @cached_property
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)

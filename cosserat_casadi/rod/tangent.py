@@ -26,7 +26,7 @@ from cosserat_casadi.maths.blocks import (
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels, turn_factors
+from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
 
 
@@ -59,7 +59,7 @@ class Tangent:
     @cached_property
     def turn_factors(self) -> tuple[ca.DM, ca.DM]:
         """Factors of the derivative of the stacked turns with respect to the angular coordinates."""
-        fold, half = turn_factors(self.igm.shape.basis)
+        fold, half = self.igm.shape.basis.turn_factors
         return fold, half[:, : self.angular_size]
 
     @cached_property

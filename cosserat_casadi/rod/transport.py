@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import magnus
-from cosserat_casadi.maths.blocks import mirror_factors, unstack
+from cosserat_casadi.maths.blocks import unstack
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -122,33 +122,11 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
     return IntervalKernels(axes, count)
 
 
-def turn_factors(basis: StrainBasis) -> tuple[ca.DM, ca.DM]:
-    """Factors (fold, half) of the matrix foldᵀ half from q to the turns of all intervals, stacked by components.
-
-    Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode enters
-    the sum or the difference of two mirrored intervals alone.
-    """
-    count, axes = len(basis.grid.left_ends), basis.rod.turning_axes
-    rows, mirror, signs = [np.zeros((0, basis.size))], [], []
-    for order, matrices in enumerate(basis.taylor_matrices):
-        for axis in axes:
-            row = np.zeros((count, basis.size))
-            if axis in matrices:
-                row[:, basis.columns[axis]] = matrices[axis]
-            mirror.append(count * len(rows[1:]) + basis.grid.mirrored_intervals)
-            signs.append(np.full(count, (-1.0) ** order))
-            rows.append(row)
-    if not mirror:
-        return ca.DM(0, 0), ca.DM(0, basis.size)
-    parities = np.concatenate([basis.parities(c) for c in basis.columns])
-    return mirror_factors(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
-
-
 def interval_turns(basis: StrainBasis, q: Matrix) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     axes = list(basis.rod.turning_axes)
     intrinsic = np.concatenate([taylor[:, axes].T for taylor in basis.intrinsic_taylor])
-    fold, half = turn_factors(basis)
+    fold, half = basis.turn_factors
     return ca.DM(intrinsic) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 

@@ -93,7 +93,8 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
     iteration = -1
     while True:
         iteration += 1
-        if not np.isfinite(norm):
+        # Beside unknowns without a finite norm every residual would be small.
+        if not np.isfinite(norm) or not np.isfinite(_size(x)):
             return end(Outcome.NOT_FINITE, iteration)
         done = norm <= settings.tolerance * _size(x)
         if norm <= settings.aim * _size(x) or iteration == settings.iterations:

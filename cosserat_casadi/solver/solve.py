@@ -170,10 +170,15 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
 def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
     """From an equilibrium of the scene to other inputs, on the straight line between them."""
     change = after - before
+
+    def at(t: float) -> FloatArray:
+        # Exact at both ends, however far apart they are.
+        return (1.0 - t) * before + t * after
+
     return Path(
-        residual=lambda x, t: _column(model.path_residual(x, before + t * change, 1.0)),
-        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, before + t * change, 1.0).full()),
-        rate=lambda x, t: _column(model.path_rate(x, before + t * change, 1.0, change, 0.0)),
+        residual=lambda x, t: _column(model.path_residual(x, at(t), 1.0)),
+        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, at(t), 1.0).full()),
+        rate=lambda x, t: _column(model.path_rate(x, at(t), 1.0, change, 0.0)),
         start=start,
     )
 

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
-from cosserat_casadi.rod.transport import IntervalKernels, interval_turns, turn_factors
+from cosserat_casadi.rod.transport import IntervalKernels, interval_turns
 
 MOMENT = np.array([0.7, -1.2, 0.4])
 CASES = [((0, 1, 2), 2), ((0, 1, 2), 3), ((0, 1, 2), 4), ((1,), 1), ((0, 2), 3), ((0, 1, 2), 1)]
@@ -68,7 +68,7 @@ def test_variation_of_the_pull_vs_ad(axes, count, size):
 @pytest.mark.parametrize("admitted", [PLANAR, KIRCHHOFF, REISSNER, (2, 4)])
 def test_turn_factors_vs_taylor_matrices(admitted, breaks, nodes, transport):
     basis = strain_basis(rod(admitted, CURVED), modes=4, nodes=nodes, breaks=breaks, transport=transport)
-    fold, half = turn_factors(basis)
+    fold, half = basis.turn_factors
     q = np.random.default_rng(0).uniform(-1, 1, basis.size)
     rows = [
         intrinsic[:, axis] + (matrices[axis] @ q[basis.columns[axis]] if axis in matrices else 0.0)

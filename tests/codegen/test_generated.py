@@ -1,0 +1,196 @@
+"""The folders in generated/ are what this version writes: drift of the generated C shows in a diff.
+
+`make generated` writes them anew. By default each is rebuilt from its own scene and discretisation, without solving,
+and every file is compared. Constants in the kernels carry the rounding of the linear algebra that made them, which
+another processor does differently: there, and with another CasADi, the kernels are compared by what they compute.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Discretisation, Model, build, export, parse_scene, read_scene, solve, solve_scene
+from cosserat_casadi.codegen.export import folder_files
+from cosserat_casadi.codegen.folder import check_folder
+from cosserat_casadi.codegen.manifest import MANIFEST
+from tests.conftest import ROOT
+
+FOLDER = ROOT / "generated"
+
+ARITHMETIC = "arithmetic.txt"
+"""Name of the file that tells which rounding the constants in the kernels have."""
+
+COARSE = ("accuracy.tolerance=1e-4",)
+"""Small enough to be kept and read."""
+
+GENERATED = {
+    "planar_strip": ("planar_strip.toml", COARSE),
+    "nitinol_wire": ("nitinol_wire.toml", COARSE),
+    "follower_reissner": ("follower_reissner.toml", COARSE),
+    "precurved_tube": ("precurved_tube.toml", COARSE),
+}
+"""Scene file and overrides of each folder."""
+
+ANEW = "run `make generated` and commit what it writes"
+
+COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)
+
+
+def arithmetic() -> str:
+    """Fingerprint of the rounding of NumPy's linear algebra and functions on this machine."""
+    random, digest = np.random.default_rng(0), hashlib.sha256()
+    for size in range(2, 41):
+        a, b = random.standard_normal((2, size, size))
+        wide = a[: size // 2 + 1]
+        for result in (a @ b, a @ b[:, 0], wide @ b, wide @ wide.T, np.linalg.solve(a, b), np.cos(a), np.sin(a)):
+            digest.update(result.tobytes())
+    return digest.hexdigest()
+
+
+def write() -> None:
+    """Solve every scene for its discretisation and write its folder; remove those that are no longer wanted."""
+    FOLDER.mkdir(exist_ok=True)
+    for name, (file, overrides) in GENERATED.items():
+        solution = solve_scene(read_scene(ROOT / "examples" / file, overrides))
+        assert solution.converged, solution.message
+        export(solution.model, FOLDER / name, name, error_estimate=solution.error_estimate)
+    for stale in (path for path in FOLDER.iterdir() if path.is_dir() and path.name not in GENERATED):
+        for file in check_folder(stale, MANIFEST):
+            (stale / file).unlink()
+        stale.rmdir()
+    (FOLDER / ARITHMETIC).write_text(arithmetic() + "\n")
+
+
+@pytest.fixture(scope="session")
+def generated(pytestconfig: pytest.Config) -> Path:
+    if pytestconfig.getoption("--update-generated"):
+        write()
+    if not FOLDER.is_dir():
+        pytest.fail(f"the folder generated/ is missing: {ANEW}", pytrace=False)
+    return FOLDER
+
+
+@pytest.fixture(params=GENERATED)
+def folder(request: pytest.FixtureRequest, generated: Path) -> Path:
+    found: Path = generated / request.param
+    if not (found / MANIFEST).is_file():
+        pytest.fail(f"generated/{request.param} is missing or has no {MANIFEST}: {ANEW}", pytrace=False)
+    return found
+
+
+def manifest(folder: Path) -> dict[str, Any]:
+    described: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    return described
+
+
+def rebuilt(folder: Path) -> Model:
+    """The model of a folder, from its scene and the discretisation in its manifest."""
+    chosen = {
+        rod: Discretisation(**{**kept, "modes": tuple(kept["modes"]), "breaks": tuple(kept["breaks"])})
+        for rod, kept in manifest(folder)["discretisation"].items()
+    }
+    return build(parse_scene((folder / "scene.toml").read_text(encoding="utf-8")), chosen)
+
+
+def is_kernel(name: str) -> bool:
+    """Whether a file holds constants that linear algebra made."""
+    return name.endswith(("_kernels.c", "_derivatives.c"))
+
+
+def without_rounding(name: str, text: str) -> str:
+    """A text without what depends on the last digits of constants: how many instructions are left of them."""
+    if name != MANIFEST:
+        return text
+    described = json.loads(text)
+    for entry in described["functions"]:
+        del entry["instructions"]
+    return json.dumps(described)
+
+
+def differing(committed: dict[str, str], fresh: dict[str, str], exact: bool) -> list[str]:
+    """What is wrong with the committed files, one line each."""
+    lines = [f"{name} is missing" for name in sorted(fresh.keys() - committed.keys())]
+    lines += [f"{name} is stale: this version does not write it" for name in sorted(committed.keys() - fresh.keys())]
+    for name in sorted(fresh.keys() & committed.keys()):
+        one, other = committed[name], fresh[name]
+        if not exact:
+            if is_kernel(name):
+                continue
+            one, other = without_rounding(name, one), without_rounding(name, other)
+        if one != other:
+            lines.append(f"{name} differs from what this version writes")
+    return lines
+
+
+def test_every_folder_is_one_of_the_table(generated: Path) -> None:
+    found = {path.name for path in generated.iterdir()}
+    wrong = sorted(found ^ {*GENERATED, ARITHMETIC})
+    assert not wrong, f"missing or stale in generated/: {', '.join(wrong)}; {ANEW}"
+
+
+def test_scene_is_that_of_the_example(folder: Path) -> None:
+    file, overrides = GENERATED[folder.name]
+    committed = parse_scene((folder / "scene.toml").read_text(encoding="utf-8"))
+    if committed != read_scene(ROOT / "examples" / file, overrides):
+        pytest.fail(f"examples/{file} is not the scene in generated/{folder.name}: {ANEW}", pytrace=False)
+
+
+def test_files_are_what_this_version_writes(folder: Path, generated: Path) -> None:
+    described = manifest(folder)
+    theirs, ours = described["versions"]["casadi"], ca.CasadiMeta.version()
+    if theirs != ours:
+        pytest.skip(f"generated/{folder.name} was written with CasADi {theirs}, this is {ours}")
+    exact = (generated / ARITHMETIC).read_text().strip() == arithmetic()
+    fresh = folder_files(rebuilt(folder), described["name"], described["error_estimate"])
+    committed = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
+    wrong = differing(committed, fresh, exact)
+    if wrong:
+        pytest.fail("\n".join([f"generated/{folder.name}: {ANEW}", *wrong]), pytrace=False)
+    if not exact:
+        pytest.skip("linear algebra rounds differently here: kernels are compared by what they compute")
+
+
+@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+def test_committed_sources_give_the_tip_of_this_version(folder: Path, tmp_path: Path) -> None:
+    """Compiled as their README says but for the optimisation, which takes longer than the run."""
+    solution, name = solve(rebuilt(folder)), manifest(folder)["name"]
+    assert solution.converged
+    sources = [str(folder / f"{name}{part}.c") for part in ("_demo", "", "_kernels")]
+    program = str(tmp_path / name)
+    assert COMPILER is not None
+    subprocess.run([COMPILER, "-O0", *sources, "-lm", "-o", program], check=True, timeout=300)
+    printed = subprocess.run([program, "--repeat", "1"], capture_output=True, text=True, check=True, timeout=60)
+    result = json.loads(printed.stdout)
+    assert result["status"] == "converged"
+    length = solution.model.scene.rods[0].length
+    assert_allclose(result["tip"], solution.tip().position[0], rtol=0, atol=1e-9 * length)
+
+
+# The comparison itself
+
+
+def test_missing_stale_and_changed_files_are_named() -> None:
+    text = json.dumps({"functions": [{"name": "f", "instructions": 3}]})
+    fewer = json.dumps({"functions": [{"name": "f", "instructions": 2}]})
+    fresh = {"a.h": "1", "a_kernels.c": "x=0.1;", MANIFEST: text}
+    assert differing(fresh, fresh, True) == []
+    assert differing({**fresh, "b.h": ""}, fresh, True) == ["b.h is stale: this version does not write it"]
+    assert differing({"a.h": "1", MANIFEST: text}, fresh, False) == ["a_kernels.c is missing"]
+    assert differing({**fresh, "a.h": "2"}, fresh, False) == ["a.h differs from what this version writes"]
+    rounded = {**fresh, "a_kernels.c": "x=0.2;", MANIFEST: fewer}
+    assert differing(rounded, fresh, False) == []
+    assert [line.split()[0] for line in differing(rounded, fresh, True)] == ["a_kernels.c", MANIFEST]
+
+
+def test_arithmetic_is_the_same_every_time() -> None:
+    assert arithmetic() == arithmetic()
