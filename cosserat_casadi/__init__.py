@@ -16,6 +16,7 @@ from cosserat_casadi.solver.accuracy import solve_scene
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.solve import solve
+from cosserat_casadi.solver.tuning import Tuning, tune
 
 __all__ = [
     "Compiled",
@@ -29,6 +30,7 @@ __all__ = [
     "SceneError",
     "Solution",
     "SolveError",
+    "Tuning",
     "build",
     "discretise",
     "export",
@@ -39,5 +41,6 @@ __all__ = [
     "scene_from_dict",
     "solve",
     "solve_scene",
+    "tune",
     "write_result",
 ]

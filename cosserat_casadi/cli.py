@@ -15,13 +15,18 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn
 from cosserat_casadi import report
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
-from cosserat_casadi.errors import CosseratError, ExportError, SceneError
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.load_cases import read_load_cases, spread
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.result_file import result_text
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.writing import scene_text
 from cosserat_casadi.solver.accuracy import solve_scene
 from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.tuning import tune as tune_scene
 
 REFUSED = 2
 """Exit code: the input is refused, nothing was written."""
@@ -89,12 +94,48 @@ def export(
     """
     chosen = re.sub(r"\W", "_", scene.stem) if name is None else name
     check_export(output, chosen)
-    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())))
+    read = read_scene(scene, tuple(settings or ()))
+    library_names(chosen, tuple(rod.name for rod in read.rods), read.input_names())
+    solution = _solve_with_progress(read)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
     export_model(solution.model, output, chosen, error_estimate=solution.error_estimate)
     report.print_export(Console(), solution, output)
+
+
+@app.command()
+def tune(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed here (TOML).")],
+    tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
+    over: Annotated[Path | None, typer.Option(help="Load cases: CSV with columns such as push.force.x.")] = None,
+    ranges: Annotated[
+        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input.")
+    ] = None,
+    samples: Annotated[int, typer.Option(min=1, max=100_000, help="Load cases spread over the ranges.")] = 32,
+    settings: Settings = None,
+) -> None:
+    """Find the smallest discretisation for many load cases. Exit codes: 0 written, 2 refused, 3 tolerance not met."""
+    read = read_scene(scene, tuple(settings or ()))
+    layout = input_layout(read)
+    check_writable(output, "--output")
+    if (over is None) == (not ranges):
+        raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
+    cases = spread(ranges or [], samples, layout) if over is None else read_load_cases(over, layout)
+    with _progress() as bar:
+        task = bar.add_task("Tuning", total=None)
+        tuning = tune_scene(
+            read,
+            [layout.unpack(case) for case in cases],
+            tolerance,
+            lambda done, total: bar.update(task, completed=done, total=total),
+        )
+    report.print_tuning(Console(), tuning, layout, cases)
+    if not tuning.met:
+        raise typer.Exit(NOT_FOUND)
+    write_atomically(output, scene_text(tuning.scene).encode())
+    Console().print(f"wrote {output}", highlight=False)
 
 
 def main() -> None:
@@ -145,7 +186,7 @@ def _draw(solution: Solution, path: Path) -> None:
     save_plot(solution, path)
 
 
-def _solve_with_progress(scene: Scene) -> Solution:
+def _progress() -> Progress:
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
@@ -153,7 +194,11 @@ def _solve_with_progress(scene: Scene) -> Solution:
         TaskProgressColumn(),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+def _solve_with_progress(scene: Scene) -> Solution:
+    with _progress() as bar:
         task = bar.add_task("Building the model", total=1.0)
         return solve_scene(
             scene,

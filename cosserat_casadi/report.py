@@ -13,9 +13,11 @@ from rich.table import Table
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.price import price, price_of_load
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.tuning import Tuning
 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
@@ -64,6 +66,26 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
         highlight=False,
     )
     console.print(f"wrote {escape(str(folder))}; its README.md says how to compile and call it", highlight=False)
+
+
+def print_tuning(console: Console, tuning: Tuning, layout: InputLayout, cases: FloatArray) -> None:
+    """The discretisation chosen, and the load case that is worst on it."""
+    worst = tuning.solutions[tuning.worst]
+    console.print(_discretisation_table(worst.model))
+    failed = [s for s in tuning.solutions if not s.converged]
+    tolerance = tuning.scene.accuracy.tolerance
+    if failed:
+        verdict = f"[bold red]{len(failed)} of {len(cases)} load cases did not converge.[/]"
+    elif tuning.met:
+        verdict = f"[bold green]All {len(cases)} load cases are within {tolerance:g}.[/]"
+    else:
+        verdict = f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]"
+    console.print(verdict, highlight=False)
+    values = ", ".join(
+        f"{name} = {value.T.squeeze().tolist()}" for name, value in layout.unpack(cases[tuning.worst]).items()
+    )
+    said = worst.message if worst.error_estimate is None else f"estimated error {worst.error_estimate:.1e}"
+    console.print(f"Worst case, number {tuning.worst + 1}: {escape(values)}: {said}", highlight=False)
 
 
 def print_refusal(console: Console, error: SceneError | ExportError) -> None:

@@ -174,3 +174,25 @@ def test_demo_solves_every_example() -> None:
     listed = (ROOT / "examples" / "demo.py").read_text()
     for path in (ROOT / "examples").glob("*.toml"):
         assert f'"{path.stem}"' in listed
+
+
+def test_tune_fixes_a_discretisation_for_a_set_of_loads(wire: Path) -> None:
+    (wire / "loads.csv").write_text("push.force.x,push.force.y\n0.1,0\n0,0.3\n")
+    done = cosserat(
+        "tune", "wire.toml", "--output", "tuned.toml", "--tolerance", "1e-4", "--over", "loads.csv", cwd=wire
+    )
+    assert done.returncode == 0, done.stderr
+    assert "All 2 load cases are within 0.0001" in done.stdout
+    tuned = read_scene(wire / "tuned.toml")
+    assert tuned.accuracy.modes is not None
+    assert tuned.accuracy.nodes is not None
+    assert solve(build(tuned)).converged
+
+
+def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
+    done = cosserat("tune", "wire.toml", "--output", "tuned.toml", "--range", "pull.x=0:1", cwd=wire)
+    assert done.returncode == 2
+    assert "'pull.x' is not an input of this scene" in done.stderr
+    both = cosserat("tune", "wire.toml", "--output", "tuned.toml", cwd=wire)
+    assert both.returncode == 2
+    assert not (wire / "tuned.toml").exists()

@@ -20,10 +20,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.manifest import MANIFEST
-from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.outcome import Outcome
+
+REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC", "-shared")
 
@@ -218,8 +220,12 @@ def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
         digest.update(_read(path))
     target = cache_folder() / f"{names.name}-{digest.hexdigest()[:20]}.so"
     if not target.exists():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _compile(compiler, sources, target)
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            _compile(compiler, sources, target)
+        except OSError as error:
+            remedy = "name a folder for it in the environment variable XDG_CACHE_HOME"
+            raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
     return target
 
 
@@ -227,7 +233,10 @@ def _compile(compiler: str, sources: list[Path], target: Path) -> None:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / target.name
         command = [compiler, *FLAGS, *map(str, sources), "-o", str(made), "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        except OSError as error:
+            raise ExportError(Problem("compiler", f"{compiler} cannot be run: {error.strerror}", REMEDY)) from None
         if done.returncode:
             problem = f"{compiler} could not compile it: {done.stderr.strip()[-800:]}"
             raise ExportError(Problem(str(sources[0].parent), problem))
@@ -241,7 +250,7 @@ def _compiler(wanted: str | None) -> str:
         if found:
             return found
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
-    raise ExportError(Problem("compiler", problem, "install gcc or clang, or name one in the environment variable CC"))
+    raise ExportError(Problem("compiler", problem, REMEDY))
 
 
 def _manifest(folder: Path) -> dict[str, Any]:
@@ -250,11 +259,22 @@ def _manifest(folder: Path) -> dict[str, Any]:
         described: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     except OSError:
         raise ExportError(Problem(str(folder), f"holds no {MANIFEST} that can be read", remedy)) from None
-    except ValueError:
+    except (ValueError, RecursionError):
         raise ExportError(Problem(str(folder / MANIFEST), "is not JSON", remedy)) from None
-    if not isinstance(described, dict) or not {"name", "unknowns", "inputs"} <= described.keys():
+    if not _is_manifest(described):
         raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", remedy))
     return described
+
+
+def _is_manifest(described: Any) -> bool:
+    """Whether what is read of a manifest is there."""
+    try:
+        library_names(described["name"])
+        rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
+        numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+    except (ExportError, KeyError, TypeError, ValueError):
+        return False
+    return rods and all(value.ndim == 1 for value in numbers)
 
 
 def _read(path: Path) -> bytes:

@@ -40,7 +40,7 @@ def export(
         ExportError: the name or the folder is refused; nothing was written.
     """
     folder = Path(directory)
-    chosen = re.sub(r"\W", "_", folder.absolute().name) if name is None else name
+    chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
     write_folder(folder, folder_files(model, chosen, error_estimate), stale)
     return folder
@@ -58,7 +58,7 @@ def check_export(directory: Path, name: str) -> set[str]:
     problems: list[Problem] = []
     stale: set[str] = set()
     try:
-        library_names(name, ())
+        library_names(name)
     except ExportError as error:
         problems.extend(error.problems)
     try:
@@ -72,7 +72,7 @@ def check_export(directory: Path, name: str) -> set[str]:
 
 def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
-    names = library_names(name, tuple(model.frame.bases))
+    names = library_names(name, tuple(model.frame.bases), model.inputs.names)
     functions = kernels(model, names)
     generated = sources(functions, f"{name}_kernels", "int")
     # casadi.external expects the integers that CasADi itself was built with.

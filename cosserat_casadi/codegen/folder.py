@@ -25,21 +25,21 @@ def check_folder(directory: Path, manifest: str) -> set[str]:
     Raises:
         ExportError: the path is a file, holds foreign files, or cannot be written to.
     """
-    if not directory.exists():
+    if not os.path.lexists(directory):
         _check_parent(directory)
         return set()
     if not directory.is_dir():
-        raise ExportError(Problem("--output", f"{directory} is a file", "name a folder"))
-    if not os.access(directory, os.W_OK | os.X_OK):
-        raise ExportError(Problem("--output", f"the folder {directory} cannot be written to"))
-    held = {path.name for path in directory.iterdir()}
+        raise ExportError(Problem("--output", f"{directory} is no folder", "name one"))
+    if not os.access(directory, os.R_OK | os.W_OK | os.X_OK):
+        raise ExportError(Problem("--output", f"the folder {directory} cannot be written to", "name another"))
     ours = _listed(directory / manifest)
-    foreign = sorted(held - ours)
+    held = {path.name: path.name in ours and path.is_file() for path in directory.iterdir()}
+    foreign = sorted(name for name, known in held.items() if not known)
     if foreign:
         shown = ", ".join(foreign[:5]) + (" …" if len(foreign) > 5 else "")
         problem = f"the folder {directory} holds files that no export wrote: {shown}"
         raise ExportError(Problem("--output", problem, "name a new or an empty folder"))
-    return held
+    return set(held)
 
 
 def write_folder(directory: Path, files: Mapping[str, str], stale: set[str]) -> None:
@@ -74,11 +74,15 @@ def _restore(directory: Path, written: set[str], before: Mapping[str, bytes]) ->
 
 
 def _listed(manifest: Path) -> set[str]:
+    """Names of the files of an earlier export; none where the manifest is damaged or someone else's."""
     try:
-        files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
-        return {str(name) for name in files}
-    except (OSError, ValueError, KeyError, TypeError):
+        described = json.loads(manifest.read_text(encoding="utf-8"))
+        files, versions = described["files"], described["versions"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()
+    if not isinstance(versions, dict) or "cosserat_casadi" not in versions or not isinstance(files, list):
+        return set()
+    return {name for name in files if isinstance(name, str)}
 
 
 def _check_parent(directory: Path) -> None:
@@ -86,4 +90,4 @@ def _check_parent(directory: Path) -> None:
     if not parent.is_dir():
         raise ExportError(Problem("--output", f"the folder {parent} does not exist", "make it first"))
     if not os.access(parent, os.W_OK):
-        raise ExportError(Problem("--output", f"the folder {parent} cannot be written to"))
+        raise ExportError(Problem("--output", f"the folder {parent} cannot be written to", "name another"))

@@ -11,7 +11,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
-from cosserat_casadi.codegen.names import ROD_FUNCTIONS, Names
+from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import ContinuationSettings
@@ -117,12 +117,9 @@ def _texts() -> dict[str, str]:
 
 def _input_words(model: Model, names: Names) -> dict[str, str]:
     entries = input_entries(model)
-    capitals = [entry["name"].upper() for entry in entries]
     macros, rows = [], []
     for entry in entries:
-        # Loads whose names differ in case alone keep it.
-        word = entry["name"] if capitals.count(entry["name"].upper()) > 1 else entry["name"].upper()
-        macro = f"{names.macro}_INPUT_{word.replace('.', '_')}"
+        macro = f"{names.macro}_INPUT_{entry['name'].replace('.', '_').upper()}"
         count, axes = len(entry["value"]), f"{entry['axes']} axes"
         macros.append(f"#define {macro} {entry['first']} /* {count} numbers, {entry['unit']}, {axes} */")
         span = f"{entry['first']} … {entry['first'] + count - 1}"
@@ -155,7 +152,7 @@ def _unknown_words(model: Model) -> dict[str, str]:
 
 
 def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
-    words = {word: names.function(word, rod) for word in ROD_FUNCTIONS}
+    words = {word: names.function(word, rod) for word in ("igm", "tip", "tip_jacobian", "shape")}
     kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
     basics = {"name": names.name, "rod": rod, "coordinates": model.frame.bases[rod].size}
     return {**words, **kernels, **basics}
@@ -186,7 +183,7 @@ def _listed(numbers: list[float]) -> str:
 
 
 def _comment(text: str) -> str:
-    """A title that cannot end the comment it stands in, nor hide a part of it, nor run on into the next line."""
-    visible = "".join(character if character.isprintable() else " " for character in text)
-    plain = visible.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").replace("??/", "?? /")
-    return " ".join(plain.split())
+    """A title that cannot end the comment it stands in, splice its line, or change the direction of what follows."""
+    printable = "".join(character if character.isprintable() else " " for character in text)
+    harmless = printable.replace("\\", "/").replace("??/", "?? /").replace("*/", "* /").replace("/*", "/ *")
+    return " ".join(harmless.split())

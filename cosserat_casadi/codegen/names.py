@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.scene.schema import shown
 
 LONGEST = 48
 """Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""
@@ -17,24 +19,21 @@ _CPP = """alignas alignof and asm bool catch class concept constexpr delete expl
 mutable namespace new noexcept not nullptr operator or private protected public requires template this throw true try
 typeid typename using virtual xor casadi"""
 
+_HEADERS = """assert complex ctype errno fenv inttypes iso646 limits locale math setjmp signal stdarg stdbool
+stddef stdint stdio stdlib string tgmath threads time"""
+
+_BUILD = "all c clean edit_cache help install m package rebuild_cache test"
+
 KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
 """Words of C and C++, and of what is linked with them, that a library may not be called."""
 
-_HEADERS = """assert complex ctype dlfcn errno fcntl fenv features float inttypes iso646 limits locale malloc math
-memory memory_resource omp pthread sched setjmp signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib
-stdnoreturn string strings tgmath threads time uchar unistd values wchar wctype"""
+TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
+"""Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
 
-_TARGETS = "all clean depend edit_cache help install list_install_components package preinstall rebuild_cache test"
+FUNCTIONS = ("igm", "tip", "tip_jacobian", "shape")
+"""Functions that every rod has."""
 
-_LIBRARIES = "c dl gcc gomp m rt"
-
-TAKEN = frozenset(_HEADERS.split()) | frozenset(_TARGETS.split()) | frozenset(_LIBRARIES.split())
-"""Headers that NAME.h would hide, targets of the build that CMake keeps, libraries that libNAME would hide."""
-
-ROD_FUNCTIONS = ("igm", "tip", "tip_jacobian", "shape")
-"""Functions that each rod has."""
-
-_QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
+QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
 sparsity_out work work_bytes"""
 """What CasADi appends to the name of a function."""
 
@@ -70,31 +69,62 @@ class Names:
         return self.function(f"f_{word}", rod)
 
 
-def library_names(name: str, rods: tuple[str, ...]) -> Names:
+def library_names(name: str, rods: tuple[str, ...] = (), inputs: tuple[str, ...] = ()) -> Names:
     """Names of an exported library.
 
+    Args:
+        name: the library.
+        rods: names of the rods.
+        inputs: names of the inputs.
+
     Raises:
-        ExportError: the name is no C identifier that two languages and a linker agree on, or hides what builds need,
-            or two rods would have functions of the same name.
+        ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
+            would have one name.
     """
+    names = Names(name, rods)
+    problems = [*_name_problems(name), *_symbol_problems(names), *_macro_problems(inputs)]
+    if problems:
+        raise ExportError(*problems)
+    return names
+
+
+def _name_problems(name: str) -> Iterator[Problem]:
     remedy = "use letters, digits and underscores, a letter first, such as --name finger"
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or "__" in name or len(name) > LONGEST:
-        raise ExportError(Problem("--name", f"{name!r} is no name for a C library", remedy))
-    if name.lower() in KEYWORDS:
-        raise ExportError(Problem("--name", f"{name!r} is a word of C or C++", remedy))
-    if name.lower() in TAKEN:
-        raise ExportError(Problem("--name", f"{name!r} is a standard header, a library or a target of CMake", remedy))
-    _check_rods(rods)
-    return Names(name, rods)
+    # A trailing underscore would become a double one, which C++ keeps for itself and CasADi refuses.
+    sound = re.fullmatch(r"[A-Za-z](_?[A-Za-z0-9])*", name)
+    if not sound or len(name) > LONGEST:
+        yield Problem("--name", f"{shown(name)} is no name for a C library", remedy)
+    elif name.lower() in KEYWORDS:
+        yield Problem("--name", f"{name!r} is a word of C or C++", remedy)
+    elif name.lower() in TAKEN:
+        yield Problem("--name", f"{name!r} is taken by C or its tools", remedy)
 
 
-def _check_rods(rods: tuple[str, ...]) -> None:
-    """Refuse rods such as B and jacobian_B: the tip_jacobian of one is named as the tip of the other."""
-    owner: dict[str, str] = {}
-    for rod in rods:
-        functions = [f"{word}_{rod}" for word in ROD_FUNCTIONS]
-        for symbol in [*functions, *(f"{function}_{query}" for function in functions for query in _QUERIES.split())]:
-            if symbol in owner:
-                problem = f"{owner[symbol]!r} and {rod!r} would both have a C function {symbol}"
-                raise ExportError(Problem("rods", problem, "rename one of them"))
-            owner[symbol] = rod
+def _symbol_problems(names: Names) -> Iterator[Problem]:
+    if len(names.rods) < 2:
+        return
+    owners: dict[str, str] = {}
+    for i, rod in enumerate(names.rods):
+        where = f"rods[{i}].name"
+        if "__" in rod:
+            yield Problem(where, f"{rod!r} cannot be part of a C symbol", "without two underscores in a row")
+        symbols = _symbols(names, rod)
+        clashing = [owners[symbol] for symbol in symbols if symbol in owners]
+        if clashing:
+            problem = f"{rod!r} gives a function the name that rod {clashing[0]!r} gives another"
+            yield Problem(where, problem, "rename one of the rods")
+        owners.update(dict.fromkeys(symbols, rod))
+
+
+def _symbols(names: Names, rod: str) -> list[str]:
+    functions = [names.function(word, rod) for word in FUNCTIONS]
+    return functions + [f"{function}_{query}" for function in functions for query in QUERIES.split()]
+
+
+def _macro_problems(inputs: tuple[str, ...]) -> Iterator[Problem]:
+    first: dict[str, str] = {}
+    for name in inputs:
+        other = first.setdefault(name.upper(), name)
+        if other != name:
+            problem = f"{name!r} and {other!r} differ in case alone, macros in C do not"
+            yield Problem("inputs", problem, "rename one of the loads")

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 
 def stack(field: Matrix) -> Matrix:
@@ -64,3 +65,33 @@ def reversed_places(columns: Matrix, places: int) -> Matrix:
     """Stacked fields with the order of the places turned round."""
     parts = ca.vertsplit(columns, places)
     return ca.vertcat(*[part[::-1, :] for part in parts])
+
+
+def mirror_factors(
+    matrix: FloatArray, mirror: npt.NDArray[np.int64], signs: FloatArray, parities: FloatArray
+) -> tuple[ca.DM, ca.DM]:
+    """Factors (fold, half) with foldᵀ half = matrix, where products with even and odd columns cost half.
+
+    Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns meet signed sums of mirrored rows,
+    odd ones differences: ``fold`` forms both, ``half`` holds the entries, without what is not zero by rounding alone.
+
+    Args:
+        matrix: k×n.
+        mirror: the row that mirrors each row, an involution, shape (k,).
+        signs: 1 or −1, the same for both of a pair, shape (k,).
+        parities: 1 for an even column, −1 for an odd one, shape (n,).
+
+    Returns:
+        fold and half, sparse.
+    """
+    rows = np.arange(len(matrix))
+    first, middle = rows[rows < mirror], rows[rows == mirror]
+    second, sign = mirror[first], signs[first, None]
+    identity, even = np.eye(len(matrix)), parities > 0
+    fold = [identity[first] + sign * identity[second], identity[first] - sign * identity[second], identity[middle]]
+    half = [
+        (matrix[first] + sign * matrix[second]) / 2 * even,
+        (matrix[first] - sign * matrix[second]) / 2 * ~even,
+        matrix[middle] * (signs[middle, None] == parities),
+    ]
+    return ca.sparsify(ca.DM(np.vstack(fold))), ca.sparsify(ca.DM(np.vstack(half)))

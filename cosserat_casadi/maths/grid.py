@@ -81,6 +81,16 @@ class Grid:
         first = np.arange(self.elements)[:, None] * self.intervals
         return (first + np.arange(self.intervals + 1)).ravel().astype(np.int64)
 
+    @cached_property
+    def mirrored_intervals(self) -> Indices:
+        """Index of the interval that mirrors each one about the middle of its element, shape (E·N,)."""
+        return np.arange(self.elements * self.intervals).reshape(self.elements, -1)[:, ::-1].ravel().astype(np.int64)
+
+    @cached_property
+    def mirrored_nodes(self) -> Indices:
+        """Index of the node that mirrors each one about the middle of its element, shape (M,)."""
+        return np.arange(self.size).reshape(self.elements, -1)[:, ::-1].ravel().astype(np.int64)
+
     def node_at(self, abscissa: float) -> int:
         """Index of the node that ends the element whose tip is at ``abscissa`` (a break, not 0)."""
         element = self.breaks.index(abscissa)

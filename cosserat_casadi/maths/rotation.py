@@ -35,15 +35,12 @@ _ARCTANGENT = [(-1) ** n / (2 * n + 1) for n in range(_TERMS)]
 _BERNOULLI = "1/6 1/30 1/42 1/30 5/66 691/2730 7/6 3617/510 43867/798 174611/330 854513/138"
 _COTANGENT = [float(Fraction(b) / factorial(2 * n + 2)) for n, b in enumerate(_BERNOULLI.split())]
 
-_HALF_ANGLE_COSINE = _COSINE[:10]
-_HALF_ANGLE_SINE = _SINE[:9]
-
 # The arctangent series is used up to tan²(θ/2) of this: the first term left out is 2⁻⁶⁶ / 23.
 _ARCTANGENT_LIMIT = 1.0 / 64.0
 
 
-def _horner(coefficients: Sequence[float], u: Matrix) -> Matrix:
-    """Value of Σ coefficients[n] uⁿ."""
+def horner(coefficients: Sequence[float], u: Matrix) -> Matrix:
+    """Value of Σ coefficients[n] uⁿ, entrywise in u."""
     value = coefficients[-1]
     for coefficient in reversed(coefficients[:-1]):
         value = coefficient + u * value
@@ -53,7 +50,7 @@ def _horner(coefficients: Sequence[float], u: Matrix) -> Matrix:
 def _entire(u: Matrix, coefficients: Sequence[float], closed_form: Callable[[Matrix], Matrix]) -> Matrix:
     """An entire function of ``u ≥ 0``: its series for ``u < 1``, its closed form elsewhere."""
     small = u < 1
-    return ca.if_else(small, _horner(coefficients, u), closed_form(ca.if_else(small, 1, u)))
+    return ca.if_else(small, horner(coefficients, u), closed_form(ca.if_else(small, 1, u)))
 
 
 def _cosine(u: Matrix) -> Matrix:
@@ -294,7 +291,7 @@ def _arctangent_ratio(s: Matrix, w: Matrix) -> Matrix:
     near = s < _ARCTANGENT_LIMIT * w * w
     safe_w = ca.if_else(near, w, 1)
     safe_root = ca.sqrt(ca.if_else(near, 1, s))
-    series = _horner(_ARCTANGENT, s / (safe_w * safe_w)) / safe_w
+    series = horner(_ARCTANGENT, s / (safe_w * safe_w)) / safe_w
     return ca.if_else(near, series, ca.atan2(safe_root, w) / safe_root)
 
 
@@ -371,22 +368,6 @@ def left_tangent_inverse(v: Matrix) -> Matrix:
     """
     skew = hat(v)
     return ca.DM.eye(3) - skew / 2 + _cotangent(dot(v, v)) * (skew @ skew)
-
-
-def half_angle_series(u: Matrix) -> tuple[Matrix, Matrix]:
-    """Taylor polynomials of ``cos √u`` and ``sin √u / √u``, without a branch.
-
-    For products of many small rotations, where ``u`` is the square of half the angle of one of them.
-    The error is below 1e-16 for ``u ≤ 1`` (a rotation of 2 rad), 1e-13 for ``u ≤ 2.5`` (3.1 rad), and
-    grows without bound beyond: the caller sees to the range.
-
-    Args:
-        u: any shape, entrywise.
-
-    Returns:
-        The two values, each shaped as ``u``.
-    """
-    return _horner(_HALF_ANGLE_COSINE, u), _horner(_HALF_ANGLE_SINE, u)
 
 
 def quaternion_from_tangent(tangent: npt.ArrayLike) -> FloatArray:

@@ -75,7 +75,7 @@ class Model:
 
     @cached_property
     def path_jacobian(self) -> ca.Function:
-        """(x, inputs, factor) ↦ (jacobian, residual) of the scene at a load factor."""
+        """(x, inputs, factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
         return functions.path_jacobian(self.frame)
 
     @cached_property

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import casadi as ca
 import numpy as np
 
@@ -23,6 +25,11 @@ def _path_arguments(frame: Frame) -> Arguments:
 
 def _listed(arguments: Arguments) -> list[Matrix]:
     return [arguments.x, arguments.inputs, arguments.factor]
+
+
+def _name(word: str, rod: str) -> str:
+    """Name of a rod's function; CasADi takes no two underscores in a row."""
+    return re.sub("_+", "_", f"{word}_{rod}")
 
 
 def residual(frame: Frame) -> ca.Function:
@@ -54,11 +61,10 @@ def path_residual(frame: Frame) -> ca.Function:
 
 
 def path_jacobian(frame: Frame) -> ca.Function:
-    """(x, inputs, factor) ↦ (jacobian, residual)."""
+    """(x, inputs, factor) ↦ ∂ residual / ∂x."""
     a = _path_arguments(frame)
-    system = System(frame, a)
-    outputs = [system.jacobian, system.residual]
-    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian", "residual"])
+    outputs = [System(frame, a).jacobian]
+    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian"])
 
 
 def path_rate(frame: Frame) -> ca.Function:
@@ -80,7 +86,7 @@ def path_tangent(frame: Frame) -> ca.Function:
     """
     size, inputs = frame.layout.size, ca.MX.sym("inputs", frame.layout.size)
     unloaded, none = np.zeros(frame.size), np.zeros(size)
-    jacobian, _ = path_jacobian(frame)(unloaded, none, 0.0)
+    jacobian = path_jacobian(frame)(unloaded, none, 0.0)
     probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
     rates = path_rate(frame).map(size + 1)(unloaded, probes, 0.0, none, 1.0).full()
     response = -np.linalg.solve(jacobian.full(), rates) if frame.size else rates
@@ -106,7 +112,7 @@ def igm(frame: Frame, rod: str) -> ca.Function:
         rotation @ model.statics.base_moment,
     ]
     return ca.Function(
-        f"igm_{rod}",
+        _name("igm", rod),
         [q, position, quaternion, inputs],
         outputs,
         ["q", "base_position", "base_quaternion", "inputs"],
@@ -122,7 +128,7 @@ def tip(frame: Frame, rod: str) -> ca.Function:
     position = base.position + rotate(ca.MX(base.quaternion), pose.position)
     outputs = [position, quaternion, quaternion_to_matrix(quaternion)]
     names = ["position", "quaternion", "rotation"]
-    return ca.Function(f"tip_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+    return ca.Function(_name("tip", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
 def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
@@ -147,7 +153,7 @@ def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
         own = ca.horzcat(before, ca.vertcat(moved, world), after)
     outputs = [ca.densify(own), ca.DM.zeros(7, frame.layout.size)]
     names = ["d_pose_d_x", "d_pose_d_inputs"]
-    return ca.Function(f"tip_jacobian_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+    return ca.Function(_name("tip_jacobian", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
 def shape(frame: Frame, rod: str) -> ca.Function:
@@ -164,7 +170,7 @@ def shape(frame: Frame, rod: str) -> ca.Function:
     local = place.quaternion @ row
     quaternion = quaternion_product(ca.MX(base.quaternion), local / ca.sqrt(ca.sumsqr(local)))
     names = ["position", "quaternion"]
-    return ca.Function(f"shape_{rod}", [a.x, a.inputs, X], [position, quaternion], ["x", "inputs", "X"], names)
+    return ca.Function(_name("shape", rod), [a.x, a.inputs, X], [position, quaternion], ["x", "inputs", "X"], names)
 
 
 def fields(frame: Frame, rod: str) -> ca.Function:
@@ -183,7 +189,7 @@ def fields(frame: Frame, rod: str) -> ca.Function:
         rotation @ model.statics.base_moment,
     ]
     names = ["position", "quaternion", "internal_wrench", "base_force", "base_moment"]
-    return ca.Function(f"fields_{rod}", [a.x, a.inputs], outputs, ["x", "inputs"], names)
+    return ca.Function(_name("fields", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
 def energy(frame: Frame) -> ca.Function:

@@ -11,6 +11,9 @@ from cosserat_casadi.rod.discretisation import Discretisation
 DEFAULT_MODES = 6
 """Polynomials per strain component where neither the scene nor the tolerance says."""
 
+DEFAULT_TRANSPORT = "magnus6"
+"""Integration method of the rotation where nobody says."""
+
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
     """Abscissae at which a rod is cut: its ends and the sections at which a load makes a jump."""
@@ -31,7 +34,7 @@ def discretise(
     scene: scenes.Scene,
     modes: int | Sequence[int] | None = None,
     nodes: int | None = None,
-    transport: str = "magnus6",
+    transport: str | None = None,
 ) -> dict[str, Discretisation]:
     """A discretisation for every rod: what is given here, else what the scene fixes, else a default.
 
@@ -43,6 +46,7 @@ def discretise(
     """
     modes = scene.accuracy.modes if modes is None else modes
     nodes = scene.accuracy.nodes if nodes is None else nodes
+    transport = transport or scene.accuracy.rotation or DEFAULT_TRANSPORT
     chosen = DEFAULT_MODES if modes is None else modes
     found = {}
     for rod in scene.rods:

@@ -15,7 +15,7 @@ from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.transport import interval_kernels, interval_turns, turn_matrix
+from cosserat_casadi.rod.transport import interval_kernels, turn_factors
 from cosserat_casadi.rod.wrenches import ActuationStress
 
 
@@ -73,22 +73,14 @@ class InverseGeometricModel:
         covector = self.statics.force_covector
         return self.energy if covector is None else self.energy - ca.dot(covector, self.shape.tangent)
 
-    @cached_property
-    def body_moment(self) -> Matrix | None:
-        """Internal moment of each interval in the frame of the section at its beginning, 3×(intervals)."""
-        moment = self.statics.interval_moment
-        if moment is None:
-            return None
-        return ca.vertcat(*[ca.sum1(d[:, :-1] * moment) for d in self.shape.section_directors])
-
     def _transposed_force(self) -> Matrix:
         """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""
-        basis, moment = self.shape.basis, self.body_moment
+        basis, moment = self.shape.basis, self.statics.interval_moment
         force: Matrix = ca.DM.zeros(basis.size, 1)
         if moment is not None and basis.rod.turning_axes:
-            kernel = interval_kernels(basis).pull.map(moment.shape[1])
-            pulled = stack(kernel(interval_turns(basis, self.shape.q), moment))
-            force = force - ca.sparsify(ca.DM(turn_matrix(basis) / basis.energy_unit)).T @ pulled
+            pulled = interval_kernels(basis).pull.map(moment.shape[1])(*self.shape.interval_arguments, moment)
+            fold, half = turn_factors(basis)
+            force = force + (half / -basis.energy_unit).T @ (fold @ stack(pulled))
         return force + self._linear_force(self.statics.force_covector)
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
@@ -102,8 +94,8 @@ class InverseGeometricModel:
                 parts.append(ca.DM.zeros(basis.at_nodes[c].shape[1], 1))
                 continue
             share = dot(self.shape.directors[c - 3], covector).T
-            weight = ca.DM(basis.at_nodes[c] * (-basis.rod.length / basis.energy_unit))
-            parts.append(weight.T @ share)
+            fold, half = basis.node_factors(c)
+            parts.append((half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share))
         return ca.vertcat(*parts)
 
     def _linear_size(self) -> int:

@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi.maths.rotation import directors
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import StrainBasis
-from cosserat_casadi.rod.transport import transport
+from cosserat_casadi.rod.transport import Increments, increments, transport
 
 
 @dataclass(frozen=True)
@@ -26,16 +26,31 @@ class Shape:
         basis: the matrices of the rod.
         q: strain coordinates, n×1.
         section_quaternion: quaternions of the distinct sections, 4×(intervals + 1).
+        steps: rotations of the intervals between them; None where the rotation is not their product.
     """
 
     basis: StrainBasis
     q: Matrix
     section_quaternion: Matrix
+    steps: Increments | None
 
     @cached_property
     def section_directors(self) -> tuple[Matrix, Matrix, Matrix]:
         """Directors of the distinct sections, three 3×(intervals + 1)."""
         return directors(self.section_quaternion)
+
+    @cached_property
+    def interval_rotations(self) -> Matrix:
+        """Rotation matrices of the sections at which the intervals begin, side by side, 3×(3·intervals)."""
+        columns = ca.vertcat(*[d[:, :-1] for d in self.section_directors])
+        return ca.reshape(columns, 3, columns.numel() // 3)
+
+    @property
+    def interval_arguments(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+        """Turn, Ω, factors and rotation at the beginning of every interval, as the kernels of derivatives take them."""
+        if self.steps is None:
+            raise ValueError("this rod's rotation is not a product of increments")
+        return self.steps.turn, self.steps.omega, self.steps.factors, self.interval_rotations
 
     @cached_property
     def directors(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -52,11 +67,13 @@ class Shape:
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
         strain = self.basis.linear_strain_rows(self.q)
-        scaled = [self.scale(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
+        length = self.basis.rod.length
+        pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
+        scaled = [self.scale(d, length * row) for d, row in pairs]
         total = scaled[0]
         for term in scaled[1:]:
             total = total + term
-        return self.basis.rod.length * total
+        return total
 
     @cached_property
     def position(self) -> Matrix:
@@ -93,4 +110,6 @@ class Shape:
 
 def shape(basis: StrainBasis, q: Matrix) -> Shape:
     """Forward sweep of report (2.17) in the base frame."""
-    return Shape(basis, q, transport(basis, q))
+    product = bool(basis.rod.turning_axes) and basis.discretisation.transport != "permuted"
+    steps = increments(basis, q) if product else None
+    return Shape(basis, q, transport(basis, q, steps), steps)

@@ -42,9 +42,15 @@ class Statics:
     @cached_property
     def moment_covector(self) -> Matrix | None:
         """T × n̂ + ĉ, 3×M, conjugate to the variations of the rotations of the nodes, N m; None without loads."""
-        couples = [self._couple_covector(w, w.moment) for w in self.wrenches if w.moment is not None]
         force = self.force_covector
-        return _total([*([] if force is None else [cross(self.shape.tangent, force)]), *couples])
+        lever = None if force is None else cross(self.shape.tangent, force)
+        parts = [lever, self.couple_covector(follower=False), self.couple_covector(follower=True)]
+        return _total([part for part in parts if part is not None])
+
+    def couple_covector(self, follower: bool) -> Matrix | None:
+        """ĉ of the dead or of the follower moments, 3×M, N m; None without any."""
+        wrenches = [w for w in self.wrenches if w.follower == follower]
+        return _total([self._couple_covector(w, w.moment) for w in wrenches if w.moment is not None])
 
     @cached_property
     def interval_moment(self) -> Matrix | None:

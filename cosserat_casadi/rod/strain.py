@@ -17,6 +17,7 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
+from cosserat_casadi.maths.blocks import mirror_factors
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -85,11 +86,25 @@ class StrainBasis:
             result[row, e * modes : (e + 1) * modes] = values[row]
         return result
 
+    def degrees(self, component: int) -> npt.NDArray[np.int64]:
+        """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
+        modes = self.discretisation.modes[self.rod.admitted.index(component)]
+        return np.tile(np.arange(modes), self.discretisation.elements)
+
+    def parities(self, component: int) -> Array:
+        """1 for a polynomial that is even about the middle of its element, −1 for an odd one, shape (n_c,)."""
+        return np.where(self.degrees(component) % 2 == 0, 1.0, -1.0)
+
     @cached_property
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
         return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.rod.admitted}
+
+    def node_factors(self, component: int) -> tuple[ca.DM, ca.DM]:
+        """Factors (fold, half) of Φ_c at the nodes, foldᵀ half: modes meet sums or differences of mirrored nodes."""
+        signs = np.ones(self.grid.size)
+        return mirror_factors(self.at_nodes[component], self.grid.mirrored_nodes, signs, self.parities(component))
 
     @cached_property
     def stiffness(self) -> Array:
@@ -128,7 +143,8 @@ class StrainBasis:
         for c in (3, 4, 5):
             row = ca.DM(intrinsic[:, c]).T if np.any(intrinsic[:, c]) else None
             if c in self.columns:
-                moving = (ca.DM(self.at_nodes[c]) @ q[self.columns[c]]).T
+                fold, half = self.node_factors(c)
+                moving = (fold.T @ (half @ q[self.columns[c]])).T
                 row = moving if row is None else row + moving
             rows.append(row)
         return rows
@@ -142,8 +158,8 @@ class StrainBasis:
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
         return [
-            {c: per_interval[:, self.columns[c]] for c in self.columns if c < 3}
-            for per_interval in (self._taylor(self._sampled_modes))
+            {c: per_interval[:, self.columns[c]] * (self.degrees(c) >= order) for c in self.columns if c < 3}
+            for order, per_interval in enumerate(self._taylor(self._sampled_modes))
         ]
 
     @cached_property

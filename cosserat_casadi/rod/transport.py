@@ -8,17 +8,23 @@ member, kept as the oracle.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import magnus
+from cosserat_casadi.maths.blocks import mirror_factors, unstack
 from cosserat_casadi.maths.permuted import permuted_system
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import StrainBasis
+
+ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
+
+KEPT = {"never_inline": True}
+"""Kernels stay functions when a model is expanded to scalars: generated code calls them in place of repeating them."""
 
 
 @dataclass(frozen=True)
@@ -43,48 +49,59 @@ class IntervalKernels:
 
     @cached_property
     def increment(self) -> ca.Function:
-        """The map turn ↦ quaternion of the increment."""
+        """The map turn ↦ (quaternion, omega, factors): increment, its Ω, and the factors of its derivatives, 2×1."""
         turn, omega = self._rotation_vector()
-        return ca.Function(
-            "increment", [turn], [magnus.increment_quaternion(omega)], ["turn"], ["quaternion"], {"never_inline": True}
-        )
+        made = magnus.increment(omega)
+        outputs = [made.quaternion, ca.sparsify(omega), ca.vertcat(made.half_sine, made.cubic)]
+        return ca.Function("increment", [turn], ca.cse(outputs), ["turn"], ["quaternion", "omega", "factors"], KEPT)
+
+    @cached_property
+    def rotation_pattern(self) -> ca.Sparsity:
+        """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis leaves that axis alone."""
+        quaternion = ca.SX.sym("quaternion", self.increment.sparsity_out(0))
+        return ca.sparsify(quaternion_to_matrix(quaternion)).sparsity()
 
     @cached_property
     def pull(self) -> ca.Function:
-        """The map (turn, body moment) ↦ (T ∂Ω/∂turn)ᵀ moment: the generalised moment of the interval."""
-        turn, omega = self._rotation_vector()
-        moment = ca.SX.sym("moment", 3)
-        force = ca.cse(ca.jtimes(omega, turn, magnus.increment_tangent(omega).T @ moment, True))
-        return ca.Function("pull", [turn, moment], [force], ["turn", "moment"], ["force"], {"never_inline": True})
+        """The map (turn, omega, factors, rotation, moment) ↦ (R T ∂Ω/∂turn)ᵀ moment: generalised moment of an interval.
+
+        ``omega`` and ``factors`` are those of :attr:`increment`, ``rotation`` is the matrix R of the section at which
+        the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
+        """
+        symbols, made, rotation, moment = self._arguments()
+        turn, omega = self._rotation_vector(symbols[0])
+        force = ca.cse(ca.jtimes(omega, turn, made.pulled(rotation.T @ moment), True))
+        return ca.Function("pull", symbols, [force], ARGUMENTS, ["force"], KEPT)
 
     @cached_property
     def variation(self) -> ca.Function:
-        """First and second derivatives of one interval: (turn, body moment) ↦ (E, T, W, H).
+        """First and second derivatives of one interval: (turn, omega, factors, rotation, moment) ↦ (A, V, H).
 
-        E = ∂Ω/∂turn, 3×size; T with δ(exp Ω^) = (T δΩ)^ exp Ω^, 3×3; W = ∂(Tᵀ moment)/∂Ω, 3×3; H = the second
-        derivative of Ω·(Tᵀ moment) with respect to the turn at fixed Tᵀ moment, size×size.
+        A = R T ∂Ω/∂turn, 3×size: δθ of the interval in the base frame. The pull Aᵀ moment changes with the turn, R and
+        the moment fixed, by Aᵀ V A + H: V of :meth:`magnus.Increment.stiffness` in the base frame, 3×3, and H, the
+        second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
-        turn, omega = self._rotation_vector()
-        moment, pulled = ca.SX.sym("moment", 3), ca.SX.sym("pulled", 3)
-        vector = ca.SX.sym("vector", omega.sparsity())
-        frame = ca.substitute(magnus.increment_tangent(vector), vector, omega)
-        pull = magnus.increment_tangent(vector).T @ moment
-        turning = ca.substitute(ca.jacobian(pull, vector), vector, omega)
-        second = ca.triu2symm(ca.triu(ca.hessian(ca.dot(omega, pulled), turn)[0]))
-        second = ca.substitute(second, pulled, frame.T @ moment)
-        outputs = ca.cse([ca.jacobian(omega, turn), frame, turning, second])
-        names = ["E", "T", "W", "H"]
-        return ca.Function(
-            "variation",
-            [turn, moment],
-            list(map(ca.sparsify, outputs)),
-            ["turn", "moment"],
-            names,
-            {"never_inline": True},
-        )
+        symbols, made, rotation, moment = self._arguments()
+        turn, omega = self._rotation_vector(symbols[0])
+        pulled = ca.SX.sym("pulled", 3)
+        turning = (rotation @ made.tangent) @ ca.jacobian(omega, turn)
+        stiffness = replace(made, omega=rotation @ made.omega).stiffness(moment)
+        second = ca.triu2symm(ca.triu(ca.jacobian(ca.jtimes(omega, turn, pulled, True), turn)))
+        second = ca.substitute(second, pulled, made.pulled(rotation.T @ moment))
+        outputs = list(map(ca.sparsify, ca.cse([turning, stiffness, second])))
+        return ca.Function("variation", symbols, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
 
-    def _rotation_vector(self) -> tuple[ca.SX, ca.SX]:
-        turn = ca.SX.sym("turn", self.size)
+    def _arguments(self) -> tuple[list[ca.SX], magnus.Increment, ca.SX, ca.SX]:
+        """Symbols of the arguments, and from them the increment, the rotation at the beginning, the moment."""
+        turn, omega = ca.SX.sym("turn", self.size), ca.SX.sym("omega", self.increment.sparsity_out(1))
+        factors, rotation = ca.SX.sym("factors", 2), ca.SX.sym("rotation", self.rotation_pattern)
+        moment = ca.SX.sym("moment", 3)
+        made = magnus.Increment(omega, factors[0], factors[1])
+        return [turn, omega, factors, rotation, moment], made, rotation, moment
+
+    def _rotation_vector(self, turn: ca.SX | None = None) -> tuple[ca.SX, ca.SX]:
+        """The turn, a new symbol unless given, and its rotation vector Ω."""
+        turn = ca.SX.sym("turn", self.size) if turn is None else turn
         alphas = []
         for part in ca.vertsplit(turn, len(self.axes)) if self.axes else []:
             alpha = ca.SX(3, 1)
@@ -105,47 +122,74 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
     return IntervalKernels(axes, count)
 
 
-def turn_matrix(basis: StrainBasis) -> FloatArray:
-    """Matrix from q to the stacked turns of all intervals, shape (size·intervals, n)."""
-    rows = []
-    for matrices in basis.taylor_matrices:
-        for axis in basis.rod.turning_axes:
-            row = np.zeros((len(basis.grid.left_ends), basis.size))
+def turn_factors(basis: StrainBasis) -> tuple[ca.DM, ca.DM]:
+    """Factors (fold, half) of the matrix foldᵀ half from q to the turns of all intervals, stacked by components.
+
+    Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode enters
+    the sum or the difference of two mirrored intervals alone.
+    """
+    count, axes = len(basis.grid.left_ends), basis.rod.turning_axes
+    rows, mirror, signs = [np.zeros((0, basis.size))], [], []
+    for order, matrices in enumerate(basis.taylor_matrices):
+        for axis in axes:
+            row = np.zeros((count, basis.size))
             if axis in matrices:
                 row[:, basis.columns[axis]] = matrices[axis]
+            mirror.append(count * len(rows[1:]) + basis.grid.mirrored_intervals)
+            signs.append(np.full(count, (-1.0) ** order))
             rows.append(row)
-    return np.vstack(rows) if rows else np.zeros((0, basis.size))
+    if not mirror:
+        return ca.DM(0, 0), ca.DM(0, basis.size)
+    parities = np.concatenate([basis.parities(c) for c in basis.columns])
+    return mirror_factors(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
 
 
 def interval_turns(basis: StrainBasis, q: Matrix) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
-    rows = []
-    for intrinsic, matrices in zip(basis.intrinsic_taylor, basis.taylor_matrices, strict=True):
-        for axis in basis.rod.turning_axes:
-            row = ca.DM(intrinsic[:, axis]).T
-            if axis in matrices:
-                row = row + (ca.DM(matrices[axis]) @ q[basis.columns[axis]]).T
-            rows.append(row)
-    return ca.vertcat(*rows)
+    axes = list(basis.rod.turning_axes)
+    intrinsic = np.concatenate([taylor[:, axes].T for taylor in basis.intrinsic_taylor])
+    fold, half = turn_factors(basis)
+    return ca.DM(intrinsic) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 
-def transport(basis: StrainBasis, q: Matrix) -> Matrix:
-    """Quaternions base_Q_section of the distinct sections, 4×(intervals + 1), the first the identity."""
+@dataclass(frozen=True)
+class Increments:
+    """Rotations of all intervals.
+
+    Attributes:
+        turn: Taylor coefficients, size×intervals, rad.
+        quaternion: increments, 4×intervals.
+        omega: rotation vectors, 3×intervals, rad.
+        factors: of their derivatives, 2×intervals.
+    """
+
+    turn: Matrix
+    quaternion: Matrix
+    omega: Matrix
+    factors: Matrix
+
+
+def increments(basis: StrainBasis, q: Matrix) -> Increments:
+    """Rotations of all intervals for given strain coordinates."""
+    turns = interval_turns(basis, q)
+    return Increments(turns, *interval_kernels(basis).increment.map(turns.shape[1])(turns))
+
+
+def transport(basis: StrainBasis, q: Matrix, steps: Increments | None) -> Matrix:
+    """Quaternions base_Q_section of the distinct sections, 4×(intervals + 1), the first the identity.
+
+    Args:
+        basis: matrices of the rod.
+        q: strain coordinates.
+        steps: rotations of the intervals; None for a rod that does not turn, or to solve the literal system.
+    """
     if not basis.rod.turning_axes:
         return ca.repmat(ca.DM([1, 0, 0, 0]), 1, len(basis.grid.left_ends) + 1)
-    if basis.discretisation.transport == "permuted":
+    if steps is None:
         return _permuted_transport(basis, q)
-    return _product_of_increments(basis, q)
-
-
-def _product_of_increments(basis: StrainBasis, q: Matrix) -> Matrix:
-    kernels = interval_kernels(basis)
-    count = len(basis.grid.left_ends)
-    increments = kernels.increment.map(count)(interval_turns(basis, q))
-    chain = _chain(kernels.increment.sparsity_out(0))
-    identity = ca.DM([1, 0, 0, 0])
-    start = ca.project(identity, kernels.increment.sparsity_out(0))
-    return ca.horzcat(start, chain.mapaccum(count)(start, increments))
+    pattern = interval_kernels(basis).increment.sparsity_out(0)
+    start = ca.project(ca.DM([1, 0, 0, 0]), pattern)
+    return ca.horzcat(start, _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion))
 
 
 def _chain(pattern: ca.Sparsity) -> ca.Function:

@@ -39,6 +39,9 @@ PRESETS: dict[str, tuple[int, ...]] = {"planar": (1,), "kirchhoff": (0, 1, 2), "
 NOT_YET = "is part of the scene format but this version cannot solve it yet"
 """What is said of words that the format knows and this version does not."""
 
+ROUNDING = 1e-15
+"""Norms as near to 1 as this are left as they are: what is read, written and read again stays the same."""
+
 Path = tuple[str | int, ...]
 Quadruple = tuple[float, float, float, float]
 Triple = tuple[float, float, float]
@@ -197,11 +200,15 @@ def _unit_quaternion(value: Quadruple) -> Quadruple:
     norm = math.hypot(*value)
     if abs(norm - 1.0) > 1e-6:
         raise _refusal([Fault((), f"must have norm 1, got norm {norm:.9g}", "divide it by its norm; order w, x, y, z")])
+    if abs(norm - 1.0) <= ROUNDING:
+        return value
     w, x, y, z = value
     return (w / norm, x / norm, y / norm, z / norm)
 
 
 def _direction(value: Triple) -> Triple:
+    if abs(math.hypot(*value) - 1.0) <= ROUNDING:
+        return value
     largest = max(map(abs, value))
     if largest == 0.0:
         raise _refusal([Fault((), "must not be zero", "a direction, such as [1, 0, 0]")])
@@ -304,6 +311,11 @@ class Accuracy(Record):
     )
     nodes: Annotated[Whole, Field(ge=2, le=1000)] | None = Field(
         None, description="intervals of the Chebyshev grid, a whole number"
+    )
+    rotation: Literal["magnus4", "magnus6", "magnus8", "permuted"] | None = Field(
+        None,
+        description="how the rotation is integrated: products of exponentials of order 4, 6 or 8, or the literal "
+        "'permuted' linear system",
     )
 
 

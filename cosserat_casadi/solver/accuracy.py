@@ -101,9 +101,11 @@ class _Climb:
         """Rotation integrator of the witness that suits the tolerance."""
         return "magnus8" if self.tolerance < TIGHT else "magnus6"
 
-    def solve(self, modes: int | tuple[int, ...], nodes: int, below: Solution | None) -> Solution:
+    def solve(
+        self, modes: int | tuple[int, ...], nodes: int, below: Solution | None, transport: str | None = None
+    ) -> Solution:
         """Solution on a rung, from one with fewer modes where that is near, else from the unloaded scene."""
-        model = self._build(discretise(self.scene, modes, nodes, self.transport))
+        model = self._build(discretise(self.scene, modes, nodes, transport or self.transport))
         if below is not None:
             near = _polish(model, prolong(below, model), below.inputs)
             if near is not None:
@@ -163,7 +165,7 @@ class _Climb:
         modes = DEFAULT_MODES if self.scene.accuracy.modes is None else self.scene.accuracy.modes
         most = modes if isinstance(modes, int) else max(modes)
         nodes = nodes_for(most) if self.scene.accuracy.nodes is None else self.scene.accuracy.nodes
-        coarse = self.solve(modes, nodes, None)
+        coarse = self.solve(modes, nodes, None, self.scene.accuracy.rotation)
         if not coarse.converged:
             return coarse
         finer = modes + 4 if isinstance(modes, int) else tuple(m + 4 for m in modes)
@@ -200,7 +202,8 @@ def solve_scene(
         SceneError: a value is refused.
     """
     climb = _Climb(scene, values, progress, report)
-    chosen = scene.accuracy.modes is not None or scene.accuracy.nodes is not None
+    accuracy = scene.accuracy
+    chosen = any(choice is not None for choice in (accuracy.modes, accuracy.nodes, accuracy.rotation))
     return climb.fixed() if chosen else climb.ladder()
 
 

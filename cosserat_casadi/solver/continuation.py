@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, newton
+from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, length_of, newton
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.secant import newton_step
 
@@ -58,7 +58,7 @@ class ContinuationSettings:
     """
 
     newton: NewtonSettings = field(default_factory=NewtonSettings)
-    longest: float = 2.0
+    longest: float = 4.0
     shortest: float = 1e-7
     steps: int = 400
     quick: int = 2
@@ -97,12 +97,12 @@ def follow(
     limits = settings or ContinuationSettings()
     here, tangent = _depart(path, limits)
     iterations, t, step = here.iterations, 0.0, 1.0
-    if here.outcome is Outcome.CONVERGED and not np.isfinite(np.linalg.norm(tangent)):
+    if here.outcome is Outcome.CONVERGED and not np.isfinite(length_of(tangent)):
         here = replace(here, outcome=Outcome.NOT_FINITE)
     if here.outcome is not Outcome.CONVERGED:
         return ContinuationResult(here.x, here.outcome, here.residual_norm, iterations, t)
     for _ in range(limits.steps):
-        step = min(step, 1.0 - t, limits.longest / max(float(np.linalg.norm(tangent)), 1e-12))
+        step = min(step, 1.0 - t, limits.longest / max(length_of(tangent), 1e-12))
         if step < min(limits.shortest, 1.0 - t):
             break
         target = 1.0 if t + step > 1.0 - 1e-12 else t + step
@@ -132,8 +132,8 @@ def _trusted(trial: NewtonResult, x: FloatArray, predicted: FloatArray, limits: 
     """Whether a corrected point lies on the path and not on some other."""
     if trial.outcome is not Outcome.CONVERGED or trial.jacobians > limits.slow or trial.damped:
         return False
-    correction = float(np.linalg.norm(trial.x - x - predicted))
-    return correction <= 0.3 + 0.5 * float(np.linalg.norm(predicted))
+    correction = length_of(trial.x - x - predicted)
+    return correction <= 0.3 + 0.5 * length_of(predicted)
 
 
 def _tangent(path: Path, x: FloatArray, t: float) -> FloatArray:

@@ -19,7 +19,7 @@ from cosserat_casadi.solver.secant import Secant
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_STEP = 2.0**-12
 
-KEPT_DECREASE = 0.3
+KEPT_DECREASE = 0.5
 """A Jacobian is kept while a step leaves at most this share of the residual."""
 
 KEPT_STEPS = 12
@@ -85,7 +85,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
     """
     x, damped, jacobians, keep = start, False, 0, False
     residual, secant = equations.residual(x), Secant(np.zeros((0, 0)))
-    norm = _norm(residual)
+    norm = length_of(residual)
 
     def end(outcome: Outcome, iterations: int) -> NewtonResult:
         return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped)
@@ -110,7 +110,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
             keep = False
             continue
         x, length, residual = found
-        norm, before = _norm(residual), norm
+        norm, before = length_of(residual), norm
         damped = damped or length < 1.0
         if length == 1.0:
             secant.steps.append(step)
@@ -125,7 +125,7 @@ def _search(
     while length >= shortest:
         trial = x + length * step
         residual = equations.residual(trial)
-        trial_norm = _norm(residual)
+        trial_norm = length_of(residual)
         if np.isfinite(trial_norm) and trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm:
             return trial, length, residual
         length /= 2
@@ -134,14 +134,14 @@ def _search(
 
 def relative_norm(residual: FloatArray, x: FloatArray) -> float:
     """2-norm of the dimensionless residual over one plus that of the unknowns: what rounding scales with."""
-    return _norm(residual) / _size(x)
+    return length_of(residual) / _size(x)
 
 
 def _size(x: FloatArray) -> float:
-    return 1.0 + _norm(x)
+    return 1.0 + length_of(x)
 
 
-def _norm(vector: FloatArray) -> float:
+def length_of(vector: FloatArray) -> float:
     """2-norm; infinite where the squares overflow, which the line search takes for a step too long."""
     with np.errstate(over="ignore", invalid="ignore"):
         return float(np.sqrt(vector @ vector))

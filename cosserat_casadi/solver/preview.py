@@ -64,7 +64,7 @@ class Preview:
     @cached_property
     def jacobian(self) -> FloatArray:
         """Jacobian at the witness, shape (n, n)."""
-        return _numbers(self.model.path_jacobian(self.witness.x, self._inputs, 1.0)[0])
+        return _numbers(self.model.path_jacobian(self.witness.x, self._inputs, 1.0))
 
     @cached_property
     def tips(self) -> FloatArray:

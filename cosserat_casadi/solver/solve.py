@@ -13,7 +13,7 @@ from cosserat_casadi.errors import SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
-from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, newton, relative_norm
+from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.stability import second_variation
@@ -108,7 +108,7 @@ def _with_stability(solution: Solution) -> Solution:
     model = solution.model
     if not model.has_potential(solution.inputs):
         return solution
-    jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0)[0].full()
+    jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
     test = second_variation(jacobian, model.frame.strain_size)
     notes = {
         (True, False): "",
@@ -133,7 +133,7 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
         settings: limits.
     """
     found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
-    strayed = found.damped or float(np.linalg.norm(found.x - start)) > NEAR
+    strayed = found.damped or length_of(found.x - start) > NEAR
     return None if found.outcome is not Outcome.CONVERGED or strayed else found
 
 
@@ -160,7 +160,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
     none = np.zeros(model.inputs.size)
     return Path(
         residual=lambda x, t: _column(model.path_residual(x, inputs, t)),
-        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, inputs, t)[0].full()),
+        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, inputs, t).full()),
         rate=lambda x, t: _column(model.path_rate(x, inputs, t, none, 1.0)),
         start=model.unloaded(),
         tangent=_column(model.path_tangent(inputs)),
@@ -172,7 +172,7 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
     change = after - before
     return Path(
         residual=lambda x, t: _column(model.path_residual(x, before + t * change, 1.0)),
-        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, before + t * change, 1.0)[0].full()),
+        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, before + t * change, 1.0).full()),
         rate=lambda x, t: _column(model.path_rate(x, before + t * change, 1.0, change, 0.0)),
         start=start,
     )

@@ -140,13 +140,6 @@ def test_cmake_build_install_and_find_package(library: Library, options: tuple[s
     assert_allclose(q, expected, rtol=0, atol=1e-3 if single else 1e-9)
 
 
-def test_loads_whose_names_differ_in_case_alone(export_recipe: ExportRecipe) -> None:
-    loads = [push(force=[0.9, 0.0, 0.0]), push(name="Push", force=[0.0, 0.0, -0.4])]
-    made = export_recipe("cases", Recipe(scene(*loads, strain="planar"), 2, 4))
-    assert not made.warnings(*QUICK)
-    assert_allclose(made.compiled.solve().q, made.solve(made.model.pack()).x, rtol=0, atol=1e-9)
-
-
 @pytest.mark.parametrize("rods", [("B", "jacobian_B"), ("arm", "arm_work"), ("arm", "Arm"), ("solve", "tip")])
 def test_rods_with_names_that_look_like_functions(
     export_recipe: ExportRecipe, rods: tuple[str, str], tmp_path: Path

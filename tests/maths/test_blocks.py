@@ -101,3 +101,23 @@ def test_stack_vs_numpy_ravel(kind):
     field = normal(3, 5)
     assert_allclose(evaluated(kind, blocks.stack, field).ravel(), field.ravel(), rtol=0, atol=0)
     assert_allclose(evaluated(kind, lambda x: blocks.unstack(blocks.stack(x), 3), field), field, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("count", [1, 2, 5, 6])
+def test_mirror_factors_vs_even_and_odd_columns(count, sign):
+    x = np.linspace(-1, 1, count) if count > 1 else np.zeros(1)
+    columns = np.stack([np.ones(count), x, x**2, x**3], axis=1)
+    parities = sign * np.array([1.0, -1.0, 1.0, -1.0])
+    fold, half = blocks.mirror_factors(columns, np.arange(count)[::-1], np.full(count, sign), parities)
+    assert_allclose((fold.T @ half).full(), columns, rtol=0, atol=1e-15)
+    assert half.nnz() == 4 * (count // 2) + count % 2
+    assert fold.nnz() == 4 * (count // 2) + count % 2
+
+
+def test_mirror_factors_vs_rounding_of_the_entries():
+    """What breaks the mirror by rounding is left out."""
+    columns = np.array([[1.0, 0.5], [0.0, 1e-16], [1.0 + 2e-16, -0.5]])
+    fold, half = blocks.mirror_factors(columns, np.array([2, 1, 0]), np.ones(3), np.array([1.0, -1.0]))
+    assert half.nnz() == 2
+    assert_allclose((fold.T @ half).full(), columns, rtol=0, atol=3e-16)

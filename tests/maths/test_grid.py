@@ -117,3 +117,13 @@ def test_element_of_vs_comparison_with_breaks(grid):
     X = np.concatenate([np.linspace(0, 1, 33), grid.breaks])
     expected = [max(0, sum(x > b for b in grid.breaks[:-1]) - 1) for x in X]
     assert grid.element_of(X).tolist() == expected
+
+
+@ALL_GRIDS
+def test_mirrored_nodes_and_intervals_vs_reflected_abscissae(grid):
+    def reflected(X):
+        a, b = np.asarray(grid.breaks[:-1]), np.asarray(grid.breaks[1:])
+        return ((a + b)[:, None] - X.reshape(grid.elements, -1)).ravel()
+
+    assert_allclose(grid.nodes[grid.mirrored_nodes], reflected(grid.nodes), rtol=1e-14, atol=1e-15)
+    assert_allclose(grid.left_ends[grid.mirrored_intervals], reflected(grid.right_ends), rtol=1e-14, atol=1e-15)

@@ -101,14 +101,14 @@ def test_symbolic_increment_vs_numeric_increment(symbol, count):
 
 @pytest.mark.parametrize("omega", OMEGAS)
 def test_increment_quaternion_vs_expm(omega):
-    w, x, y, z = magnus.increment_quaternion(ca.DM(omega)).full().ravel()
+    w, x, y, z = magnus.increment(ca.DM(omega)).quaternion.full().ravel()
     assert_allclose(np.linalg.norm([w, x, y, z]), 1.0, rtol=4e-16, atol=0)
     assert_allclose(Rotation.from_quat([x, y, z, w]).as_matrix(), expm(hat(omega)), rtol=0, atol=2e-15)
 
 
 @pytest.mark.parametrize("omega", OMEGAS)
 def test_increment_tangent_vs_frechet_derivative_of_expm(omega):
-    tangent = magnus.increment_tangent(ca.DM(omega)).full()
+    tangent = magnus.increment(ca.DM(omega)).tangent.full()
     for i, direction in enumerate(np.eye(3)):
         value, derivative = expm_frechet(hat(omega), hat(direction))
         assert_allclose(hat(tangent[:, i]), derivative @ value.T, rtol=0, atol=5e-14)
@@ -119,8 +119,65 @@ def test_increment_tangent_vs_finite_differences(omega):
     step = 1e-5
     for i, d in enumerate(step * np.eye(3)):
         difference = (expm(hat(omega + d)) - expm(hat(omega - d))) / (2 * step) @ expm(hat(omega)).T
-        column = magnus.increment_tangent(ca.DM(omega)).full()[:, i]
+        column = magnus.increment(ca.DM(omega)).tangent.full()[:, i]
         assert_allclose(hat(column), difference, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("omega", OMEGAS)
+def test_pulled_moment_vs_transpose_of_the_frechet_derivative(omega):
+    moment = np.array([0.7, -1.2, 0.4])
+    pulled = magnus.increment(ca.DM(omega)).pulled(ca.DM(moment)).full().ravel()
+    assert_allclose(pulled, pulled_by_expm(np.array(omega), moment), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("omega", OMEGAS)
+def test_increment_stiffness_vs_differences_of_the_frechet_derivative(omega):
+    moment, step = np.array([0.7, -1.2, 0.4]), 1e-5
+    form = magnus.increment(ca.DM(omega)).stiffness(ca.DM(moment)).full()
+    tangent = magnus.increment(ca.DM(omega)).tangent.full()
+    columns = [
+        (pulled_by_expm(omega + d, moment) - pulled_by_expm(omega - d, moment)) / (2 * step) for d in step * np.eye(3)
+    ]
+    assert_allclose(tangent.T @ form @ tangent, np.stack(columns, axis=1), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("omega", OMEGAS)
+def test_increment_stiffness_vs_ad(omega):
+    v, moment = ca.SX.sym("v", 3), ca.DM([0.7, -1.2, 0.4])
+    tangent = magnus.increment(v).tangent
+    difference = ca.jacobian(tangent.T @ moment, v) - tangent.T @ magnus.increment(v).stiffness(moment) @ tangent
+    assert_allclose(ca.Function("f", [v], [difference])(omega).full(), 0.0, rtol=0, atol=2e-15)
+
+
+def test_increment_stiffness_vs_its_turned_arguments():
+    omega, moment = np.array([0.3, -0.2, 0.5]), np.array([0.7, -1.2, 0.4])
+    R = expm(hat([1.0, 0.4, -0.6]))
+    turned = magnus.increment(ca.DM(R @ omega)).stiffness(ca.DM(R @ moment)).full()
+    assert_allclose(turned, R @ magnus.increment(ca.DM(omega)).stiffness(ca.DM(moment)).full() @ R.T, atol=1e-15)
+
+
+def pulled_by_expm(omega, moment):
+    """Tᵀ moment from Fréchet derivatives of the matrix exponential."""
+    derivatives = [expm_frechet(hat(omega), hat(d)) for d in np.eye(3)]
+    spins = [derivative @ value.T for value, derivative in derivatives]
+    return np.array([np.array([s[2, 1], s[0, 2], s[1, 0]]) @ moment for s in spins])
+
+
+def test_order_six_vs_its_nested_commutators():
+    """The series of Blanes, Casas and Ros as matrices, with [a, b] the commutator."""
+
+    def bracket(a, b):
+        return a @ b - b @ a
+
+    alphas = np.random.default_rng(11).uniform(-1, 1, (3, 3))
+    a1, a2, a3 = (-hat(a) for a in alphas)
+    c12 = bracket(a1, a2)
+    first = -20 * a1 - a3 + c12
+    expected = a1 + a3 / 12 + bracket(first, a2 - bracket(a1, 2 * a3 + c12) / 60) / 240
+    omega = magnus.rotation_increment([ca.DM(a) for a in alphas]).full().ravel()
+    # The published form closes with a nested bracket of order h⁷, which the series cut at order six leaves out.
+    dropped = bracket(-a3 + c12, bracket(a1, 2 * a3 + c12)) / -60 / 240
+    assert_allclose(-hat(omega), expected - dropped, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("count", COUNTS)

@@ -341,14 +341,6 @@ def test_rotation_log_on_exact_half_turns(axis, casadi_derivatives):
         casadi_derivatives(lambda x: rotation.rotation_log(ca.reshape(x, 3, 3)), flat, symbol)
 
 
-@pytest.mark.parametrize(("u", "accuracy"), [(0.0, 0.0), (1e-12, 1.2e-16), (0.3, 2e-16), (1.0, 3e-16), (2.5, 1e-13)])
-def test_half_angle_series(u, accuracy):
-    cosine, sine = (float(value) for value in rotation.half_angle_series(ca.DM(u)))
-    root = np.sqrt(u)
-    assert_allclose(cosine, np.cos(root), rtol=accuracy, atol=accuracy)
-    assert_allclose(sine, np.sinc(root / np.pi), rtol=accuracy, atol=accuracy)
-
-
 def intermediate_values(expression, x, point):
     """The value of every operation in an SX expression."""
     found, waiting = {}, [entry for row in ca.vertsplit(expression) for entry in ca.horzsplit(row)]

@@ -1,0 +1,127 @@
+"""Sets of load cases: rows of a CSV file, or points spread evenly over ranges of the inputs.
+
+A column is ``load.field.axis`` with axis x, y or z, and ``load.field.axis.degree`` for a Legendre coefficient beyond
+the constant one. Inputs without a column keep the scene's values.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout
+
+AXES = ("x", "y", "z")
+
+
+def column_places(layout: InputLayout) -> dict[str, int]:
+    """Where each column stands in the stacked inputs."""
+    places = {}
+    for name, place, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
+        for k in range(default.size):
+            degree = f".{k // 3}" if k >= 3 else ""
+            places[f"{name}.{AXES[k % 3]}{degree}"] = place.start + k
+    return places
+
+
+def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
+    """Load cases of a CSV file with a header, shape (count, size of the inputs), SI units.
+
+    Raises:
+        SceneError: with every fault: a column that is no input, a row of another length, what is not a finite number.
+    """
+    try:
+        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
+    filled = [(number, row) for number, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
+    if len(filled) < 2:
+        raise SceneError(Problem(str(path), "holds no load case", "give a header and one row for each case"))
+    header, places = [cell.strip() for cell in filled[0][1]], column_places(layout)
+    problems = _header_problems(str(path), header, places)
+    cases = np.tile(layout.pack(), (len(filled) - 1, 1))
+    for case, (number, row) in zip(cases, filled[1:], strict=True):
+        problems += _fill(case, f"{path}, line {number}", header, row, places)
+    if problems:
+        raise SceneError(*problems)
+    return cases
+
+
+def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray:
+    """Load cases spread evenly over a box, shape (count, size of the inputs).
+
+    The points are the multiples of an irrational direction, modulo one (the additive recurrence with the generalised
+    golden ratio), so that any number of them covers the box; the corner of all upper ends comes first.
+
+    Args:
+        ranges: ``column=low:high``, such as ``push.force.x=-1:1``.
+        count: number of points, at least 1.
+        layout: the inputs.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    places, problems = column_places(layout), list[Problem]()
+    bounds: dict[int, tuple[float, float]] = {}
+    for text in ranges:
+        column, _, ends = text.partition("=")
+        low, high = (_number(end) for end in (ends.partition(":")[0], ends.partition(":")[2]))
+        if column.strip() not in places:
+            problems.append(_no_column("--range", column.strip(), places))
+        elif low is None or high is None:
+            problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
+        else:
+            bounds[places[column.strip()]] = low, high
+    if problems:
+        raise SceneError(*problems)
+    cases = np.tile(layout.pack(), (count, 1))
+    shares = _additive_recurrence(count, len(bounds))
+    for (place, (low_end, high_end)), share in zip(bounds.items(), shares.T, strict=True):
+        cases[:, place] = low_end + share * (high_end - low_end)
+    return cases
+
+
+def _additive_recurrence(count: int, dimension: int) -> FloatArray:
+    root = 2.0
+    for _ in range(60):
+        root = (1 + root) ** (1 / (dimension + 1))
+    steps = root ** -np.arange(1.0, dimension + 1)
+    return np.vstack([np.ones((1, dimension)), (0.5 + np.arange(1, count)[:, None] * steps) % 1.0])
+
+
+def _header_problems(where: str, header: list[str], places: dict[str, int]) -> list[Problem]:
+    problems = [_no_column(where, column, places) for column in header if column not in places]
+    repeated = sorted({column for column in header if header.count(column) > 1})
+    return problems + [Problem(where, f"has the column {column} twice") for column in repeated]
+
+
+def _no_column(where: str, column: str, places: dict[str, int]) -> Problem:
+    return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {', '.join(places) or 'none'}")
+
+
+def _fill(case: FloatArray, where: str, header: list[str], row: list[str], places: dict[str, int]) -> list[Problem]:
+    if len(row) != len(header):
+        return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
+    problems = []
+    for column, cell in zip(header, row, strict=True):
+        number = _number(cell)
+        if number is None:
+            problems.append(Problem(where, f"{column} must be a finite number, got {cell!r}"))
+        elif column in places:
+            case[places[column]] = number
+    return problems
+
+
+def _number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None

@@ -1,0 +1,356 @@
+"""An exported folder, compiled and loaded, gives the functions of the model it was made from."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, load, solve
+from cosserat_casadi.codegen import compiled
+from cosserat_casadi.codegen.compiled import FLAGS, cache_folder
+from cosserat_casadi.codegen.manifest import MANIFEST
+from tests.scenes import WEIGHT, push, scene
+
+COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)
+
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+
+SCENES: dict[str, tuple[Scene, int]] = {
+    "planar": (scene(push(), WEIGHT, strain="planar", inputs=["push.force"]), 3),
+    "kirchhoff": (scene(push(frame="body", moment=[0.1, 0.2, -0.1])), 2),
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A model, the folder it was exported to, where that was compiled, and what was loaded."""
+
+    name: str
+    model: Model
+    folder: Path
+    cache: Path
+    loaded: Compiled
+
+
+QUICK = tuple("-O0" if flag == "-O2" else flag for flag in FLAGS)
+"""Flags for tests of what is computed, not of how fast."""
+
+
+def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiled libraries go to a folder of this test, and are compiled in little time."""
+    monkeypatch.setattr(compiled, "FLAGS", QUICK)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    monkeypatch.delenv("CC", raising=False)
+
+
+@pytest.fixture(scope="session", params=SCENES)
+def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Pair:
+    wanted, modes = SCENES[request.param]
+    model = build(wanted, discretise(wanted, modes, 6))
+    place = tmp_path_factory.mktemp(request.param)
+    with pytest.MonkeyPatch.context() as patch:
+        cached(place / "cache", patch)
+        folder = export(model, place / "arm")
+        return Pair(request.param, model, folder, cache_folder(), load(folder))
+
+
+def flat(function: ca.Function, outputs: int) -> ca.Function:
+    """One vector of all arguments ↦ one vector of the first results."""
+    sizes = [function.numel_in(i) for i in range(function.n_in())]
+    joined = ca.MX.sym("p", sum(sizes))
+    arguments = ca.vertsplit(joined, np.cumsum([0, *sizes]).tolist())
+    results = function.call(arguments)[:outputs]
+    return ca.Function("flat", [joined], [ca.vertcat(*map(ca.densify, results))])
+
+
+def orders(function: ca.Function, outputs: int) -> ca.Function:
+    """(arguments, weights) ↦ value, Jacobian, and Hessian of the combination of the results with these weights."""
+    whole = flat(function, outputs)
+    p, weights = ca.MX.sym("p", whole.size1_in(0)), ca.MX.sym("weights", whole.size1_out(0))
+    value = whole(p)
+    hessian, _ = ca.hessian(ca.dot(weights, value), p)
+    return ca.Function("orders", [p, weights], [value, ca.jacobian(value, p), hessian])
+
+
+def points(model: Model, extra: tuple[float, ...] = ()) -> Iterator[np.ndarray]:
+    """Arguments: strain and load each random and zero."""
+    x = 0.7 * np.random.default_rng(5).standard_normal(model.size)
+    inputs = model.pack() + 0.1 * np.random.default_rng(6).standard_normal(model.inputs.size)
+    for strain in (x, 0 * x):
+        for loads in (inputs, 0 * inputs):
+            yield np.concatenate([strain, loads, extra])
+
+
+def assert_same(loaded: ca.Function, own: ca.Function, arguments: Iterator[np.ndarray], outputs: int) -> None:
+    found, expected = orders(loaded, outputs), orders(own, outputs)
+    weights = np.random.default_rng(7).standard_normal(found.size1_in(1))
+    for point in arguments:
+        for one, other in zip(found(point, weights), expected(point, weights), strict=True):
+            assert one.shape == other.shape
+            assert np.all(np.isfinite(one.full()))
+            assert_allclose(one.full(), other.full(), rtol=1e-10, atol=1e-11 * (1 + np.abs(other.full()).max()))
+
+
+@needs_compiler
+def test_residual(pair: Pair) -> None:
+    loaded, own = pair.loaded.residual, pair.model.residual
+    assert (loaded.name_in(), loaded.name_out()) == (own.name_in(), own.name_out())
+    assert_same(loaded, own, points(pair.model), 1)
+
+
+@needs_compiler
+def test_tip(pair: Pair) -> None:
+    loaded, own = pair.loaded.tip["rod"], pair.model.tip["rod"]
+    assert (loaded.name_in(), loaded.name_out()) == (own.name_in(), own.name_out()[:2])
+    assert_same(loaded, own, points(pair.model), 2)
+
+
+@needs_compiler
+@pytest.mark.parametrize("X", [0.0, 0.37, 1.0])
+def test_shape(pair: Pair, X: float) -> None:
+    loaded, own = pair.loaded.shape["rod"], pair.model.shape["rod"]
+    assert (loaded.name_in(), loaded.name_out()) == (own.name_in(), own.name_out())
+    assert_same(loaded, own, points(pair.model, (X,)), 2)
+
+
+@needs_compiler
+def test_shape_at_the_tip_is_the_tip(pair: Pair) -> None:
+    for point in points(pair.model):
+        x, inputs = point[: pair.model.size], point[pair.model.size :]
+        at_tip = pair.loaded.shape["rod"](x, inputs, 1.0)
+        for one, other in zip(at_tip, pair.loaded.tip["rod"](x, inputs), strict=True):
+            assert_allclose(one.full(), other.full(), rtol=0, atol=1e-12)
+
+
+@needs_compiler
+def test_what_the_folder_says_of_itself(pair: Pair) -> None:
+    assert pair.loaded.size == pair.model.size
+    assert_allclose(pair.loaded.defaults, pair.model.pack(), rtol=0, atol=0)
+    assert pair.loaded.library.parent == pair.cache
+    assert pair.loaded.manifest == json.loads((pair.folder / MANIFEST).read_text())
+    assert set(pair.loaded.tip) == set(pair.loaded.shape) == {"rod"}
+
+
+def reach(model: Model, residual: ca.Function, tip: ca.Function, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Smallest inputs that bring the tip to a place, with the equilibrium as a constraint."""
+    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    miss = (tip(x, inputs)[0] - wanted)[[0, 2]]  # a rod that keeps its length and plane reaches no more than these
+    problem = {
+        "x": ca.vertcat(x, inputs),
+        "f": ca.sumsqr(inputs) / 2,
+        "g": ca.vertcat(residual(x, inputs), miss),
+    }
+    quiet = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-10}}
+    solver = ca.nlpsol("reach", "ipopt", problem, quiet)
+    found = solver(x0=np.zeros(model.size + model.inputs.size), lbg=0, ubg=0)
+    assert solver.stats()["success"]
+    return found["x"].full()[:, 0], found["lam_g"].full()[:, 0]
+
+
+@needs_compiler
+def test_optimum_with_the_residual_as_a_constraint(pair: Pair) -> None:
+    """The force that brings the tip to a place: exact second derivatives reach ipopt through the compiled functions."""
+    force = {"planar": [0.7, 0.0, -0.3], "kirchhoff": [0.2, 0.3, -0.1]}[pair.name]
+    model, wanted = pair.model, solve(pair.model, {"push.force": force}).tip().position[0]
+    found, multipliers = reach(model, pair.loaded.residual, pair.loaded.tip["rod"], wanted)
+    expected, expected_multipliers = reach(model, model.residual, model.tip["rod"], wanted)
+    assert_allclose(found, expected, rtol=0, atol=1e-8)
+    assert_allclose(multipliers, expected_multipliers, rtol=0, atol=1e-7)
+    if pair.name == "planar":
+        assert_allclose(model.inputs.unpack(found[model.size :])["push.force"][:, 0], force, rtol=0, atol=1e-7)
+
+
+# The compiled object
+
+
+@pytest.fixture
+def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An exported folder beside an empty cache."""
+    cached(tmp_path / "cache", monkeypatch)
+    given = scene(push(), strain="planar")
+    return export(build(given, discretise(given, 2, 4)), tmp_path / "strip")
+
+
+def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the objects that would have been compiled."""
+    made: list[str] = []
+
+    def pretend(compiler: str, sources: list[Path], target: Path) -> None:
+        made.append(target.name)
+        target.write_bytes(b"")
+
+    monkeypatch.setattr(compiled, "_compile", pretend)
+    return made
+
+
+@needs_compiler
+def test_the_object_is_compiled_once(strip: Path, tmp_path: Path) -> None:
+    before = {path.name: path.read_bytes() for path in strip.iterdir()}
+    first = load(strip).library
+    written = first.stat().st_mtime_ns
+    assert [path.name for path in cache_folder().iterdir()] == [first.name]
+    assert load(str(strip)).library == first
+    copied = shutil.copytree(strip, tmp_path / "elsewhere")
+    assert load(copied).library == first
+    assert first.stat().st_mtime_ns == written
+    assert {path.name: path.read_bytes() for path in strip.iterdir()} == before
+
+
+@needs_compiler
+@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+def test_a_changed_source_gives_another_object(strip: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = pretended(monkeypatch)
+    first = load(strip).library
+    with (strip / f"strip{ending}").open("a") as stream:
+        stream.write("\n")
+    second = load(strip).library
+    assert second != first
+    assert first.exists()
+    assert made == [first.name, second.name]
+
+
+@needs_compiler
+def test_a_demo_is_no_part_of_the_object(strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pretended(monkeypatch)
+    first = load(strip).library
+    (strip / "strip_demo.c").write_text("not C")
+    assert load(strip).library == first
+
+
+@needs_compiler
+def test_the_compiler_may_be_named(strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert COMPILER is not None
+    made = pretended(monkeypatch)
+    default = load(strip).library
+    assert load(strip, COMPILER).library == default
+    monkeypatch.setenv("CC", COMPILER)
+    assert load(strip).library == default
+    assert made == [default.name]
+
+
+@needs_compiler
+def test_other_flags_give_another_object(strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pretended(monkeypatch)
+    quick = load(strip).library
+    monkeypatch.setattr(compiled, "FLAGS", FLAGS)
+    assert load(strip).library != quick
+
+
+# Refusals
+
+
+def refusal(folder: Path, compiler: str | None = None) -> tuple[str, str, str]:
+    """Where, problem and remedy of the only fault."""
+    with pytest.raises(ExportError) as caught:
+        load(folder, compiler)
+    (problem,) = caught.value.problems
+    return problem.where, problem.problem, problem.remedy
+
+
+def test_no_compiler(strip: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    remedy = "install gcc or clang, or name one in the environment variable CC"
+    assert refusal(strip) == ("compiler", "there is no C compiler on the path", remedy)
+    assert refusal(strip, "mycc") == ("compiler", "mycc is not a program", remedy)
+    monkeypatch.setenv("CC", "theircc")
+    assert refusal(strip) == ("compiler", "theircc is not a program", remedy)
+    assert not cache_folder().exists()
+
+
+def program(path: Path, text: str) -> str:
+    path.write_text(text)
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
+def test_a_compiler_that_fails(strip: Path, tmp_path: Path) -> None:
+    compiler = program(tmp_path / "mycc", "#!/bin/sh\nprintf 'no licence \\377 today' >&2\nexit 3\n")
+    where, problem, _ = refusal(strip, compiler)
+    assert where == str(strip)
+    assert problem == f"{compiler} could not compile it: no licence \ufffd today"
+    assert list(cache_folder().iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
+def test_a_compiler_that_cannot_be_run(strip: Path, tmp_path: Path) -> None:
+    where, problem, remedy = refusal(strip, program(tmp_path / "mycc", "neither script nor program"))
+    assert (where, problem) == ("compiler", f"{tmp_path / 'mycc'} cannot be run: Exec format error")
+    assert remedy
+
+
+@needs_compiler
+def test_sources_that_are_not_c(strip: Path) -> None:
+    (strip / "strip.c").write_text("this is no C\n")
+    where, problem, _ = refusal(strip)
+    assert where == str(strip)
+    assert "could not compile it" in problem
+    assert "strip.c" in problem
+    assert list(cache_folder().iterdir()) == []
+
+
+@needs_compiler
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="the cache folder goes by another variable")
+def test_a_cache_that_cannot_be_written(strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    where, problem, remedy = refusal(strip)
+    assert where == str(tmp_path / "file" / "cosserat_casadi")
+    assert problem.startswith("cannot be written to: ")
+    assert "XDG_CACHE_HOME" in remedy
+
+
+ANEW = "write one with cosserat export"
+
+
+def test_not_a_folder_and_no_manifest(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for folder in (tmp_path, tmp_path / "missing", tmp_path / "file"):
+        assert refusal(folder) == (str(folder), "holds no manifest.json that can be read", ANEW)
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"schema = 1", b"\xff\xfe", b"[" * 100_000])
+def test_manifest_that_is_not_json(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / MANIFEST).write_bytes(content)
+    assert refusal(tmp_path) == (str(tmp_path / MANIFEST), "is not JSON", ANEW)
+
+
+FOREIGN = {
+    "a number": 1,
+    "a list": [{"name": "strip"}],
+    "another table": {"name": "site", "start_url": "."},
+    "a name that is none": {"name": 3, "unknowns": [], "inputs": []},
+    "a name that leads elsewhere": {"name": "../strip", "unknowns": [], "inputs": []},
+    "unknowns are a number": {"name": "strip", "unknowns": 9, "inputs": []},
+    "unknowns are numbers": {"name": "strip", "unknowns": [9], "inputs": []},
+    "unknowns without a count": {"name": "strip", "unknowns": [{"rod": "rod"}], "inputs": []},
+    "a count that is none": {"name": "strip", "unknowns": [{"rod": "rod", "count": "2"}], "inputs": []},
+    "inputs are a number": {"name": "strip", "unknowns": [], "inputs": 3},
+    "inputs without values": {"name": "strip", "unknowns": [], "inputs": [{"name": "push.force"}]},
+    "values that are no numbers": {"name": "strip", "unknowns": [], "inputs": [{"value": ["a"]}]},
+    "values of two shapes": {"name": "strip", "unknowns": [], "inputs": [{"value": [[1], 2]}]},
+}
+
+
+@pytest.mark.parametrize("content", FOREIGN.values(), ids=FOREIGN)
+def test_manifest_of_something_else(tmp_path: Path, content: object) -> None:
+    (tmp_path / MANIFEST).write_text(json.dumps(content))
+    assert refusal(tmp_path) == (str(tmp_path / MANIFEST), "is not the manifest of an exported folder", ANEW)
+
+
+@needs_compiler
+@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+def test_missing_source(strip: Path, ending: str) -> None:
+    (strip / f"strip{ending}").unlink()
+    assert refusal(strip) == (str(strip / f"strip{ending}"), "is missing", "export the folder anew")
