@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, attempt, gcc, run
+from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
 
 Library = Callable[[str], Exported]
 
@@ -50,8 +51,8 @@ def test_generated_sources_compile_without_a_warning(library: Library, name: str
 )
 @ALL
 def test_header_stands_alone(library: Library, name: str, compiler: tuple[str, ...], tmp_path: Path) -> None:
-    if attempt("which", compiler[0]).returncode:
-        pytest.skip(f"{compiler[0]} is not installed")
+    if compiler[0] == "g++" and shutil.which("g++") is None:
+        pytest.skip("g++ is not installed")
     run(*compiler, "-fsyntax-only", "-include", library(name).folder / f"{name}.h", "/dev/null", cwd=tmp_path)
 
 
