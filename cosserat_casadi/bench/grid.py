@@ -31,7 +31,7 @@ RATIOS = (1.2, 1.8)
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 """Tolerances that the dial is set to."""
 
-QUICK = 3
+QUICK = 4
 """Points for each method of a quick look."""
 
 

@@ -74,11 +74,15 @@ class Session:
 
     def facts(self) -> dict[str, Any]:
         """What a reader of the rows must know, as data."""
-        apart = {n: distance(self.reference.rods, r.rods).pose for n, r in self._references.items()}
         return {
             "reference": {"method": self.reference.method, "distance_to_finest": self.reference.distance},
-            "strain_models": apart,
+            "strain_models": self.apart,
         }
+
+    @property
+    def apart(self) -> dict[str, float]:
+        """Pose distance of richer strain models from that of the scene."""
+        return {name: distance(self.reference.rods, r.rods).pose for name, r in self._references.items()}
 
 
 def with_strain(scene: scenes.Scene, strain: str) -> scenes.Scene:
