@@ -1,4 +1,4 @@
-"""The command line: solve a scene, check a scene, export a scene."""
+"""The command line: solve a scene, check a scene, export a scene, bench a scene."""
 
 from __future__ import annotations
 
@@ -10,9 +10,19 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    SpinnerColumn,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
 from cosserat_casadi import report
+from cosserat_casadi.bench.grid import METHODS
+from cosserat_casadi.bench.plan import make_plan, run_plan
+from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import library_names
@@ -138,6 +148,31 @@ def tune(
     Console().print(f"wrote {output}", highlight=False)
 
 
+@app.command()
+def bench(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None, typer.Option(help="Folder for bench.csv, bench.json and the figure; what it holds is not redone.")
+    ] = None,
+    methods: Annotated[
+        str | None, typer.Option(help=f"Methods, separated by commas, out of {', '.join(METHODS)}; all by default.")
+    ] = None,
+    points: Annotated[int | None, typer.Option(help="Most points for each method.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A coarse grid without the literal system.")] = False,
+    settings: Settings = None,
+) -> None:
+    """Measure error against time: the work-precision curve of a scene.
+
+    Errors are against an independent reference found in the same run. Exit codes: 0 measured, 2 refused,
+    3 no reference found, 130 interrupted; what was measured until then is in bench.csv.
+    """
+    plan = make_plan(read_scene(scene, tuple(settings or ())), output, methods, points, quick)
+    with _progress() as bar:
+        interrupted = run_plan(plan, Console(), _reporter(bar))
+    if interrupted:
+        raise typer.Exit(INTERRUPTED)
+
+
 def main() -> None:
     """Entry point: errors become sentences and exit codes."""
     sys.exit(run(app))
@@ -151,6 +186,9 @@ def run(command: Callable[..., object]) -> int:
     except (SceneError, ExportError) as error:
         report.print_refusal(console, error)
         return REFUSED
+    except NoReferenceError as error:
+        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        return NOT_FOUND
     except CosseratError as error:
         console.print(f"[bold red]Error:[/] {error}", highlight=False)
         return REFUSED
@@ -186,6 +224,16 @@ def _draw(solution: Solution, path: Path) -> None:
     save_plot(solution, path)
 
 
+def _solve_with_progress(scene: Scene) -> Solution:
+    with _progress() as bar:
+        task = bar.add_task("Building the model", total=1.0)
+        return solve_scene(
+            scene,
+            progress=lambda share: bar.update(task, completed=share),
+            report=lambda stage: bar.update(task, description=f"Solving: {stage}", completed=0.0),
+        )
+
+
 def _progress() -> Progress:
     columns = (
         SpinnerColumn(),
@@ -197,11 +245,7 @@ def _progress() -> Progress:
     return Progress(*columns, console=Console(stderr=True), transient=True)
 
 
-def _solve_with_progress(scene: Scene) -> Solution:
-    with _progress() as bar:
-        task = bar.add_task("Building the model", total=1.0)
-        return solve_scene(
-            scene,
-            progress=lambda share: bar.update(task, completed=share),
-            report=lambda stage: bar.update(task, description=f"Solving: {stage}", completed=0.0),
-        )
+def _reporter(bar: Progress) -> Callable[[str, int, int], None]:
+    """Shows what is being done, how many points are done, and of how many."""
+    task = bar.add_task("Finding the reference", total=None)
+    return lambda doing, done, total: bar.update(task, description=doing, completed=done, total=total or None)

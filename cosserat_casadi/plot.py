@@ -43,7 +43,7 @@ def check_plot_path(path: str | Path) -> None:
     if Path(path).suffix.lower() not in FORMATS:
         remedy = f"use one of {', '.join(FORMATS)}"
         raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
-    _figure_class()
+    figure_class()
 
 
 def save_plot(solution: Solution, path: str | Path) -> None:
@@ -54,14 +54,19 @@ def save_plot(solution: Solution, path: str | Path) -> None:
         PlotUnavailableError: matplotlib is not installed.
     """
     check_plot_path(path)
+    write_figure(plot_solution(solution), Path(path))
+
+
+def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
+    """A matplotlib figure into a file of one of FORMATS, whole or not at all; the same figure gives the same bytes."""
     import matplotlib as mpl
 
-    suffix = Path(path).suffix.lower()[1:]
+    suffix = path.suffix.lower()[1:]
     metadata = {"png": {"Software": None}, "pdf": {"CreationDate": None, "Producer": None}, "svg": {"Date": None}}
     content = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "cosserat"}):
-        plot_solution(solution).savefig(content, format=suffix, dpi=150, metadata=metadata[suffix])
-    write_atomically(Path(path), content.getvalue())
+        figure.savefig(content, format=suffix, dpi=dpi, metadata=metadata[suffix])
+    write_atomically(path, content.getvalue())
 
 
 def plot_solution(solution: Solution) -> Any:
@@ -77,7 +82,7 @@ def plot_solution(solution: Solution) -> Any:
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
-    figure = _figure_class()(figsize=(13.0, 6.6), layout="constrained")
+    figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
     plane = _plane(solution)
     scenery = figure.add_subplot(grid[:, 0], projection=None if plane else "3d")
@@ -101,7 +106,12 @@ Arrow = tuple[FloatArray, FloatArray, str, str]
 """Where an arrow starts, its vector, its label (empty for a repeated one), and "point", "line" or "moment"."""
 
 
-def _figure_class() -> Any:
+def figure_class() -> Any:
+    """The class of a figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
     try:
         from matplotlib.figure import Figure
     except ImportError as missing:

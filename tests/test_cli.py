@@ -115,6 +115,11 @@ def test_check_prices_the_scene(wire: Path) -> None:
         (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
         (["solve", "wire.toml", "--colour"], "colour"),
         (["sing"], "sing"),
+        (["bench", "missing.toml"], "missing.toml"),
+        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "'euler' is no method"),
+        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "does not exist"),
+        (["bench", "wire.toml", "--points", "0", "--quick"], "must be at least 1, got 0"),
+        (["bench", "wire.toml", "--output", "wire.toml"], "is a file"),
     ],
 )
 def test_refusals(wire: Path, arguments: list[str], words: str) -> None:

@@ -198,7 +198,7 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     described = _manifest(folder)
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     names = Names(described["name"], tuple(rods))
-    return Compiled(_shared_object(folder, names, _compiler(compiler)), described, names)
+    return Compiled(_shared_object(folder, names, find_compiler(compiler)), described, names)
 
 
 def cache_folder() -> Path:
@@ -243,7 +243,12 @@ def _compile(compiler: str, sources: list[Path], target: Path) -> None:
         made.replace(target)
 
 
-def _compiler(wanted: str | None) -> str:
+def find_compiler(wanted: str | None = None) -> str:
+    """Path of a C compiler: the one wanted, else that of CC, else the first there is.
+
+    Raises:
+        ExportError: there is none.
+    """
     asked = wanted or os.environ.get("CC")
     for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
         found = shutil.which(candidate)

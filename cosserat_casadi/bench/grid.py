@@ -1,0 +1,110 @@
+"""Which points of the work–precision plane are measured: methods, modes, intervals, and what the dial picks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.rod.discretisation import TRANSPORTS, Discretisation
+
+Item = TypeVar("Item")
+
+DIAL = "dial"
+"""The method that picks modes, intervals and integrator for a tolerance."""
+
+METHODS = (*TRANSPORTS, DIAL)
+"""What may be measured."""
+
+MODES = (2, 3, 4, 5, 6, 8, 10, 13, 17)
+"""Modes of every admitted strain."""
+
+RATIOS = (1.2, 1.8)
+"""Intervals for each mode."""
+
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+"""Tolerances that the dial is set to."""
+
+QUICK = 4
+"""Points for each method of a quick look."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One point to be measured.
+
+    Attributes:
+        method: one of METHODS.
+        modes: polynomials of every strain; None where the dial picks them.
+        nodes: Chebyshev intervals; None where the dial picks them.
+        tolerance: what the dial is set to; None for the others.
+        strain: strain model where it is not that of the scene, else empty.
+    """
+
+    method: str
+    modes: int | None = None
+    nodes: int | None = None
+    tolerance: float | None = None
+    strain: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its name, unlike that of any other point."""
+        setting = f"{self.modes}/{self.nodes}" if self.tolerance is None else f"{self.tolerance:g}"
+        return " ".join(word for word in (self.strain, self.method, setting) if word)
+
+    def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
+        """Modes and intervals of every rod; not for a point of the dial."""
+        return discretise(scene, self.modes, self.nodes, self.method)
+
+
+def candidates(methods: Sequence[str], points: int | None = None) -> list[Candidate]:
+    """The points of some methods, cheap ones first and methods in turns, so that every beginning is a whole picture.
+
+    Args:
+        methods: out of METHODS.
+        points: most points for each method, spread over the grid; all by default.
+    """
+    sizes = sorted({(m, max(2, round(m * ratio))) for m in MODES for ratio in RATIOS}, key=lambda s: (s[0] * s[1], s))
+    columns = []
+    for method in methods:
+        if method == DIAL:
+            columns.append([Candidate(DIAL, tolerance=tolerance) for tolerance in _spread(TOLERANCES, points)])
+        else:
+            columns.append([Candidate(method, *size) for size in _spread(sizes, points)])
+    longest = max(map(len, columns), default=0)
+    return [column[i] for i in range(longest) for column in columns if i < len(column)]
+
+
+def _spread(items: Sequence[Item], count: int | None) -> list[Item]:
+    if count is None or count >= len(items):
+        return list(items)
+    return [items[round(i)] for i in np.linspace(0, len(items) - 1, count)]
+
+
+def method_problems(names: Sequence[str], points: int | None) -> list[Problem]:
+    """What is wrong with the wanted methods and the number of points."""
+    known = ", ".join(METHODS)
+    problems = [
+        Problem("--methods", f"{name!r} is no method", f"out of {known}") for name in names if name not in METHODS
+    ]
+    if not names:
+        problems.append(Problem("--methods", "must name at least one method", f"out of {known}"))
+    if points is not None and points < 1:
+        problems.append(Problem("--points", f"must be at least 1, got {points}"))
+    return problems
+
+
+def distinct_methods(scene: scenes.Scene, methods: Sequence[str]) -> list[str]:
+    """Methods without repetition; one Magnus method where every rod turns about one axis, as all are one there."""
+    chosen = list(dict.fromkeys(methods))
+    if any(len(rod_properties(rod).turning_axes) > 1 for rod in scene.rods):
+        return chosen
+    magnus = [method for method in chosen if method.startswith("magnus")]
+    return [method for method in chosen if method not in magnus[1:]]

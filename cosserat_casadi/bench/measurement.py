@@ -1,0 +1,224 @@
+"""One point of the work–precision plane, measured: its error, its size, and its times."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+from typing import Any
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.bench.grid import Candidate
+from cosserat_casadi.bench.program import Program, Times
+from cosserat_casadi.bench.reference import Errors, Reference, with_tolerance
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.solver.accuracy import solve_scene
+from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solve import solve
+
+LARGEST = 400_000
+"""Scalar operations of residual and Jacobian beyond which they are not counted and the compiler is not asked."""
+
+LARGEST_LITERAL = 8
+"""Intervals beyond which the literal system, whose operations cannot be counted, is not compiled: it takes minutes."""
+
+PATIENCE = 0.05
+"""Seconds in which the best of several runs in CasADi's virtual machine is sought."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A row of the table; what was not measured is not a number.
+
+    Attributes:
+        name: of the candidate.
+        method: one of the grid's methods.
+        strain: strain model where it is not the scene's own.
+        tolerance: what the dial was set to.
+        modes: of every rod and strain, such as "6 6 4".
+        intervals: of every rod and element.
+        transport: rotation integrator of every rod.
+        position_error: at the tip over length.
+        rotation_error: rad.
+        wrench_error: of the clamp, relative.
+        unknowns: of the model.
+        igm_operations: scalar operations of the first rod's Inverse Geometric Model.
+        jacobian_operations: of residual and Jacobian.
+        build_s: time to build the functions.
+        vm_igm_us: Inverse Geometric Model of the first rod in CasADi's virtual machine.
+        vm_jacobian_us: residual and Jacobian there.
+        vm_cold_us: the solve in Python from the unloaded rod.
+        igm_us: Inverse Geometric Model of the first rod, compiled.
+        jacobian_us: residual and Jacobian, compiled.
+        warm_us: solve in C from one per cent away.
+        cold_us: solve in C from the unloaded rod.
+        note: why something was not measured; empty where all was.
+    """
+
+    name: str
+    method: str
+    strain: str = ""
+    tolerance: float = nan
+    modes: str = ""
+    intervals: str = ""
+    transport: str = ""
+    position_error: float = nan
+    rotation_error: float = nan
+    wrench_error: float = nan
+    unknowns: int = 0
+    igm_operations: float = nan
+    jacobian_operations: float = nan
+    build_s: float = nan
+    vm_igm_us: float = nan
+    vm_jacobian_us: float = nan
+    vm_cold_us: float = nan
+    igm_us: float = nan
+    jacobian_us: float = nan
+    warm_us: float = nan
+    cold_us: float = nan
+    note: str = ""
+
+    @property
+    def pose_error(self) -> float:
+        """The larger of position error and rotation error."""
+        return max(self.position_error, self.rotation_error)
+
+    @property
+    def placed(self) -> bool:
+        """Whether it has a place in the plane of error and compiled cold solve."""
+        return isfinite(self.pose_error) and isfinite(self.cold_us)
+
+
+class Trial:
+    """A candidate between its preparation and its timing: the compiler works in between.
+
+    Args:
+        candidate: what to measure.
+        scene: the scene, of the candidate's strain model.
+        reference: of that scene.
+        compiler: path of a C compiler.
+    """
+
+    def __init__(self, candidate: Candidate, scene: scenes.Scene, reference: Reference, compiler: str) -> None:
+        self.candidate, self.reference = candidate, reference
+        self.solution = _solved(candidate, scene)
+        self.model, self.build_s = _built(scene, self.solution.model.discretisation)
+        self.note = "" if self.solution.converged else self.solution.message
+        self.note = self.note or _too_large(self.model)
+        self.operations = (nan, nan) if self.note else _operations(self.model)
+        self.program = None if self.note else Program(self.model, compiler)
+
+    def finish(self) -> Measurement:
+        """The row, with all that takes a quiet machine to measure."""
+        found, note = self._times()
+        errors = self.reference.errors(self.solution) if self.solution.converged else Errors(nan, nan, nan)
+        return Measurement(
+            name=self.candidate.name,
+            method=self.candidate.method,
+            strain=self.candidate.strain,
+            tolerance=nan if self.candidate.tolerance is None else self.candidate.tolerance,
+            **_described(self.model.discretisation),
+            position_error=errors.position,
+            rotation_error=errors.rotation,
+            wrench_error=errors.wrench,
+            unknowns=self.model.size,
+            igm_operations=self.operations[0],
+            jacobian_operations=self.operations[1],
+            build_s=self.build_s,
+            **self._virtual_times(),
+            igm_us=found.igm,
+            jacobian_us=found.jacobian,
+            warm_us=found.warm,
+            cold_us=found.cold,
+            note=note,
+        )
+
+    def wait(self) -> None:
+        """Until the compiler is done."""
+        if self.program is not None:
+            self.program.wait()
+
+    def close(self) -> None:
+        """Stop the compiler and remove its files."""
+        if self.program is not None:
+            self.program.close()
+
+    def _times(self) -> tuple[Times, str]:
+        found = self.note if self.program is None else self.program.times()
+        return (found, "") if isinstance(found, Times) else (Times(nan, nan, nan, nan), found)
+
+    def _virtual_times(self) -> dict[str, Any]:
+        x, inputs = self.solution.x, self.solution.inputs
+        rod = self.model.scene.rods[0]
+        arguments = (x[self.model.frame.rod_slices[rod.name]], *base_pose(rod), inputs)
+        igm = self.model.igm[rod.name]
+        return {
+            "vm_igm_us": _best(lambda: igm(*arguments)),
+            "vm_jacobian_us": _best(lambda: self.model.jacobian(x, inputs)),
+            "vm_cold_us": _best(lambda: solve(self.solution.model)) if self.solution.converged else nan,
+        }
+
+
+def _solved(candidate: Candidate, scene: scenes.Scene) -> Solution:
+    if candidate.tolerance is not None:
+        return solve_scene(with_tolerance(scene, candidate.tolerance))
+    return solve(build(scene, candidate.discretisation(scene)))
+
+
+def _built(scene: scenes.Scene, discretisation: dict[str, Discretisation]) -> tuple[Model, float]:
+    """A model and the time that its functions took, s."""
+    start = time.perf_counter()
+    model = build(scene, discretisation)
+    for function in (model.residual, model.jacobian, *model.igm.values()):
+        assert function.n_in() > 1
+    return model, time.perf_counter() - start
+
+
+def _described(discretisation: dict[str, Discretisation]) -> dict[str, Any]:
+    """Modes, intervals and integrators, rods parted by a bar."""
+    rods = discretisation.values()
+    return {
+        "modes": " | ".join(" ".join(map(str, d.modes)) for d in rods),
+        "intervals": " | ".join(str(d.nodes) for d in rods),
+        "transport": " | ".join(d.transport for d in rods),
+    }
+
+
+def _is_literal(model: Model) -> bool:
+    return any(d.transport == "permuted" for d in model.discretisation.values())
+
+
+def _operations(model: Model) -> tuple[float, float]:
+    """Operations of the first rod's Inverse Geometric Model and of residual and Jacobian.
+
+    The literal system is solved with pivoting, which has no scalar form: not a number.
+    """
+    if _is_literal(model):
+        return nan, nan
+    igm = next(iter(model.igm.values()))
+    return model.operations(igm), model.operations(model.jacobian)
+
+
+def _too_large(model: Model) -> str:
+    """Why neither operations are counted nor the compiler is asked; empty where they are."""
+    intervals = max(d.nodes for d in model.discretisation.values())
+    if _is_literal(model):
+        return f"not compiled: literal system of {intervals} intervals" if intervals > LARGEST_LITERAL else ""
+    bases = model.frame.bases.values()
+    operations = sum(foreseen_operations(basis.rod, basis.discretisation) for basis in bases)
+    return f"not compiled: about {operations:,.0f} operations" if operations > LARGEST else ""
+
+
+def _best(task: Callable[[], object]) -> float:
+    """Best time of several runs, µs."""
+    task()  # the first run builds functions
+    best, end = inf, time.perf_counter() + PATIENCE
+    while time.perf_counter() < end or best == inf:
+        start = time.perf_counter()
+        task()
+        best = min(best, time.perf_counter() - start)
+    return 1e6 * best

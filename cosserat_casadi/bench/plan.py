@@ -1,0 +1,132 @@
+"""What a bench is asked for, refused where it cannot be done, and carried out."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.bench.figure import write_figures
+from cosserat_casadi.bench.grid import METHODS, QUICK, Candidate, candidates, distinct_methods, method_problems
+from cosserat_casadi.bench.measurement import Measurement
+from cosserat_casadi.bench.program import FLAGS
+from cosserat_casadi.bench.record import CSV, JSON, fingerprint, output_problems, read_rows, write_json, write_rows
+from cosserat_casadi.bench.session import Session, richer_candidates
+from cosserat_casadi.bench.shooting import check_scipy
+from cosserat_casadi.bench.table import print_bench, print_strains
+from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.errors import ExportError, Problem, SceneError
+from cosserat_casadi.plot import figure_class
+
+Report = Callable[[str, int, int], None]
+"""Told what is being done, how many points are done, and of how many (0: not known)."""
+
+
+@dataclass
+class Plan:
+    """A bench that can be done.
+
+    Attributes:
+        scene: the scene.
+        compiler: path of a C compiler.
+        candidates: points to be measured, those that an earlier bench measured left out.
+        output: folder for the files; None for none.
+        rows: what is measured, with what an earlier bench left.
+    """
+
+    scene: scenes.Scene
+    compiler: str
+    candidates: list[Candidate]
+    output: Path | None
+    rows: list[Measurement] = field(default_factory=list)
+
+
+def make_plan(scene: scenes.Scene, output: Path | None, methods: str | None, points: int | None, quick: bool) -> Plan:
+    """Check everything before any work; nothing is written.
+
+    Args:
+        scene: the scene.
+        output: folder for the files.
+        methods: names separated by commas; None for all, of a quick bench all but the literal system.
+        points: most points for each method.
+        quick: few points.
+
+    Raises:
+        SceneError: with every fault of the options, or of the table found in the folder.
+        CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
+    """
+    names = _names(methods, quick)
+    problems = method_problems(names, points) + ([] if output is None else output_problems(output))
+    try:
+        compiler = find_compiler()
+    except ExportError as missing:
+        problems.extend(missing.problems)
+    if points is not None and quick:
+        problems.append(Problem("--quick", "stands beside --points", "give one of the two"))
+    if problems:
+        raise SceneError(*problems)
+    check_scipy()
+    if output is not None:
+        figure_class()
+    rows = [] if output is None else read_rows(output, fingerprint(scene))
+    wanted = candidates(distinct_methods(scene, names), QUICK if quick else points)
+    wanted += [] if quick or "dial" not in names else richer_candidates(scene)
+    known = {row.name for row in rows}
+    return Plan(scene, compiler, [c for c in wanted if c.name not in known], output, rows)
+
+
+def run_plan(plan: Plan, console: Console, report: Report) -> bool:
+    """Measure, show, write; whether the user stopped it.
+
+    Raises:
+        NoReferenceError: there is nothing to measure errors against.
+    """
+    session = Session.open(plan.scene, plan.compiler)
+    interrupted = _measure(plan, session, report)
+    report("Done", len(plan.candidates), len(plan.candidates))
+    print_bench(console, plan.scene.title, session.reference, plan.rows)
+    print_strains(console, session.apart)
+    if plan.output is not None:
+        _write(plan, session, plan.output, console, whole=not interrupted)
+    return interrupted
+
+
+def _names(methods: str | None, quick: bool) -> list[str]:
+    if methods is None:
+        return [method for method in METHODS if not (quick and method == "permuted")]
+    return [name.strip() for name in methods.split(",") if name.strip()]
+
+
+def _measure(plan: Plan, session: Session, report: Report) -> bool:
+    """Point by point into rows and CSV, until done or stopped."""
+    total = len(plan.candidates)
+    report("Measuring", 0, total)
+    if plan.output is not None:
+        plan.output.mkdir(exist_ok=True)
+    try:
+        for done, row in enumerate(session.measure(plan.candidates), 1):
+            plan.rows.append(row)
+            if plan.output is not None:
+                write_rows(plan.output, fingerprint(plan.scene), plan.rows)
+            report(f"Measured {row.name}", done, total)
+    except KeyboardInterrupt:
+        return True
+    return False
+
+
+def _write(plan: Plan, session: Session, folder: Path, console: Console, whole: bool) -> None:
+    """The files beside the CSV; of a bench that was stopped only the CSV stays."""
+    written = [folder / CSV] if plan.rows else []
+    if whole:
+        tools = {"compiler_flags": " ".join(FLAGS), "machine": platform.machine()}
+        write_json(folder, plan.scene, plan.rows, {**session.facts(), **tools})
+        written += [folder / JSON, *write_figures(folder, plan.scene.title, session.reference, plan.rows)]
+    else:
+        console.print("Stopped. Run the same command again to go on from here.", highlight=False)
+    for path in written:
+        console.print(f"wrote {escape(str(path))}", highlight=False)

@@ -1,0 +1,104 @@
+"""A model compiled to a program that times itself: the exported sources with the exported demo."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import casadi as ca
+
+from cosserat_casadi.codegen.kernels import kernels, sources
+from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.model.build import Model
+
+NAME = "timed"
+"""What the symbols of the program begin with."""
+
+FLAGS = ("-O2", "-std=c99")
+
+REPEAT = 500
+"""Runs of each task, of which the best counts."""
+
+
+@dataclass(frozen=True)
+class Times:
+    """What the program measured of itself, µs.
+
+    Attributes:
+        cold: solve from the unloaded rod.
+        warm: solve from the equilibrium of inputs one per cent away.
+        igm: Inverse Geometric Model of the first rod.
+        jacobian: residual and Jacobian.
+    """
+
+    cold: float
+    warm: float
+    igm: float
+    jacobian: float
+
+
+class Program:
+    """A model on its way through the compiler, which works while other things are done.
+
+    Args:
+        model: what to compile.
+        compiler: path of a C compiler.
+    """
+
+    def __init__(self, model: Model, compiler: str) -> None:
+        self._told = ""
+        self._folder = tempfile.TemporaryDirectory()
+        folder = Path(self._folder.name)
+        names = library_names(NAME, tuple(model.frame.bases))
+        for file, text in _sources(model, names).items():
+            (folder / file).write_text(text, encoding="utf-8")
+        # What the demo does not time is half of the work for the compiler: it is not optimised.
+        wanted = ["timed_demo.c", "timed.c", "timed_kernels.c", "untimed.o", "-lm", "-o", "demo"]
+        script = f'"$0" -O0 -std=c99 -c untimed.c && "$0" {" ".join((*FLAGS, *wanted))}'
+        command = ["/bin/sh", "-c", script, compiler]
+        self._compilation = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+    def wait(self) -> None:
+        """Until the compiler is done."""
+        _, told = self._compilation.communicate()
+        self._told = told.decode(errors="replace").strip()
+
+    def times(self) -> Times | str:
+        """Run it, compiled; a sentence where compiler or program fails."""
+        if self._compilation.returncode:
+            return f"the compiler fails: {' '.join(self._told[-200:].split())}"
+        command = ["./demo", "--repeat", str(REPEAT)]
+        done = subprocess.run(command, cwd=self._folder.name, capture_output=True, text=True, check=False)
+        if done.returncode not in (0, 3):
+            return f"the program ends with {done.returncode}"
+        found = json.loads(done.stdout)
+        if found["status"] != "converged":
+            return f"the solver in C: {found['status']}"
+        return Times(found["cold_us"], found["warm_us"], found["igm_us"], found["jacobian_us"])
+
+    def close(self) -> None:
+        """Stop the compiler if it still works, and remove the files."""
+        if self._compilation.poll() is None:
+            self._compilation.kill()
+            self._compilation.communicate()
+        self._folder.cleanup()
+
+
+def _sources(model: Model, names: Names) -> dict[str, str]:
+    every = kernels(model, names)
+    untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
+    files = {
+        **library_sources(model, names, None),
+        **sources([f for f in every if f.name() not in untimed], "timed_kernels", "int"),
+        "untimed.c": _only_c([f for f in every if f.name() in untimed], "untimed"),
+    }
+    files["timed_kernels.h"] = sources(every, "timed_kernels", "int")["timed_kernels.h"]
+    return {name: text for name, text in files.items() if name.endswith((".c", ".h"))}
+
+
+def _only_c(functions: list[ca.Function], stem: str) -> str:
+    return sources(functions, stem, "int")[f"{stem}.c"]

@@ -1,0 +1,152 @@
+"""What errors are measured against: an independent solution of the same scene, found in the same run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
+from cosserat_casadi.errors import CosseratError
+from cosserat_casadi.model.build import build
+from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.solver.accuracy import prolong, solve_scene
+from cosserat_casadi.solver.preview import watched
+from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solve import solve
+
+FINEST = 1e-10
+"""Tolerance of the solution that the finest discretisation is derived from."""
+
+MORE_MODES = 6
+"""Modes that the finest discretisation has more, per component and element."""
+
+AGREEMENT = 1e-6
+"""Largest distance of the two references, relative to the length: beyond, neither is believed."""
+
+
+class NoReferenceError(CosseratError):
+    """No reference was found."""
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Distance of a solution from the reference.
+
+    Attributes:
+        position: largest of all rods and watched sections, relative to the length.
+        rotation: angle, rad.
+        wrench: of the clamps, relative: moments and forces times length together.
+    """
+
+    position: float
+    rotation: float
+    wrench: float
+
+    @property
+    def pose(self) -> float:
+        """The larger of position over length and angle."""
+        return max(self.position, self.rotation)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The solution that stands for the truth.
+
+    Attributes:
+        method: how it was found, in words.
+        rods: each rod's sections and clamp.
+        distance: pose distance to the finest discretisation, which bounds the error of both; None where that is
+            the reference itself.
+        start: the finest discretisation's solution.
+    """
+
+    method: str
+    rods: dict[str, RodState]
+    distance: float | None
+    start: Solution
+
+    def errors(self, solution: Solution) -> Errors:
+        """How far a solution is from the reference."""
+        return distance(self.rods, states(solution))
+
+
+def find_reference(scene: scenes.Scene) -> Reference:
+    """Shooting where it knows the scene, else the finest discretisation.
+
+    Raises:
+        NoReferenceError: the scene has no equilibrium that is found, or two references disagree.
+    """
+    finest = _finest(scene)
+    fine = states(finest)
+    try:
+        shot = _shot(finest, fine)
+    except ShootingError as failed:
+        return Reference(f"{_words(finest)}; not shooting: {failed}", fine, None, finest)
+    apart = distance(shot, fine).pose
+    if apart > AGREEMENT:
+        raise NoReferenceError(f"shooting and the finest discretisation are {apart:.1e} apart: neither is believed")
+    return Reference("shooting, DOP853 at 1e-13", shot, apart, finest)
+
+
+def states(solution: Solution) -> dict[str, RodState]:
+    """What is compared of a solution."""
+    found = {}
+    for name, basis in solution.model.frame.bases.items():
+        pose, base = solution.pose(watched(solution.model, name), name), solution.base_wrench(name)
+        wrench = np.concatenate([base.force, base.moment])
+        found[name] = RodState(basis.rod.length, pose.position, pose.rotation, wrench)
+    return found
+
+
+def distance(one: dict[str, RodState], other: dict[str, RodState]) -> Errors:
+    """Errors of the other solution if the one is true."""
+    pairs = [(one[name], other[name]) for name in one]
+    return Errors(
+        position=max(float(np.linalg.norm(a.position - b.position, axis=1).max()) / a.length for a, b in pairs),
+        # The chord 2 sin(θ/2), which keeps its digits for small angles.
+        rotation=max(float(np.linalg.norm(a.rotation - b.rotation, axis=(1, 2)).max()) / 2**0.5 for a, b in pairs),
+        wrench=max(_wrench_distance(a, b) for a, b in pairs),
+    )
+
+
+def _wrench_distance(a: RodState, b: RodState) -> float:
+    arms = np.repeat([a.length, 1.0], 3)
+    size, apart = (float(np.linalg.norm(arms * wrench)) for wrench in (a.base_wrench, a.base_wrench - b.base_wrench))
+    return apart / size if size > 0 else apart
+
+
+def _finest(scene: scenes.Scene) -> Solution:
+    """A solution far finer than any that is measured."""
+    plain = with_tolerance(scene, FINEST)
+    near = solve_scene(plain)
+    if not near.converged:
+        raise NoReferenceError(f"no reference was found: {near.message}")
+    chosen = near.model.discretisation.values()
+    modes, nodes = max(max(d.modes) for d in chosen) + MORE_MODES, max(d.nodes for d in chosen)
+    model = build(plain, discretise(plain, modes, 3 * nodes // 2 + 8, "magnus8"))
+    finest = solve(model, start=prolong(near, model))
+    if not finest.converged:
+        raise NoReferenceError(f"no reference was found: {finest.message}")
+    return finest
+
+
+def _shot(finest: Solution, fine: dict[str, RodState]) -> dict[str, RodState]:
+    model = finest.model
+    values = load_values(model.scene, model.inputs, finest.inputs)
+    return {
+        name: shoot(model.scene, basis.rod, values, list(watched(model, name)), fine[name].base_wrench)
+        for name, basis in model.frame.bases.items()
+    }
+
+
+def _words(finest: Solution) -> str:
+    chosen = next(iter(finest.model.discretisation.values()))
+    return f"the finest discretisation, {max(chosen.modes)} modes and {chosen.nodes} intervals"
+
+
+def with_tolerance(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
+    """The scene with modes and nodes left to the dial."""
+    return scene.model_copy(update={"accuracy": scenes.Accuracy(tolerance=tolerance)})

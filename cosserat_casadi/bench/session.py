@@ -1,0 +1,110 @@
+"""A bench from its scene to its rows: the reference, then point after point, each handed over as it is measured."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.bench.grid import DIAL, Candidate
+from cosserat_casadi.bench.measurement import Measurement, Trial
+from cosserat_casadi.bench.reference import Reference, distance, find_reference
+from cosserat_casadi.errors import SceneError
+
+RICHER = {"planar": "kirchhoff", "kirchhoff": "reissner"}
+"""The strain model that lets a rod do more."""
+
+
+@dataclass
+class Session:
+    """One scene under measurement.
+
+    Attributes:
+        scene: the scene.
+        compiler: path of a C compiler.
+        reference: what errors are measured against.
+    """
+
+    scene: scenes.Scene
+    compiler: str
+    reference: Reference
+    _references: dict[str, Reference] = field(default_factory=dict)
+
+    @classmethod
+    def open(cls, scene: scenes.Scene, compiler: str) -> Session:
+        """Find the reference.
+
+        Raises:
+            NoReferenceError: there is none.
+        """
+        return cls(scene, compiler, find_reference(scene))
+
+    def measure(self, candidates: Sequence[Candidate]) -> Iterator[Measurement]:
+        """Rows in the order of the candidates.
+
+        As many programs are compiled at once as there are cores; nothing is timed meanwhile.
+        """
+        width = max(1, os.cpu_count() or 1)
+        for first in range(0, len(candidates), width):
+            yield from self._batch(candidates[first : first + width])
+
+    def _batch(self, candidates: Sequence[Candidate]) -> Iterator[Measurement]:
+        trials: list[Trial] = []
+        try:
+            for candidate in candidates:
+                scene, reference = self._problem(candidate.strain)
+                trials.append(Trial(candidate, scene, reference, self.compiler))
+            for trial in trials:
+                trial.wait()
+            for trial in trials:
+                yield trial.finish()
+        finally:
+            for trial in trials:
+                trial.close()
+
+    def _problem(self, strain: str) -> tuple[scenes.Scene, Reference]:
+        if not strain:
+            return self.scene, self.reference
+        scene = with_strain(self.scene, strain)
+        if strain not in self._references:
+            self._references[strain] = find_reference(scene)
+        return scene, self._references[strain]
+
+    def facts(self) -> dict[str, Any]:
+        """What a reader of the rows must know, as data."""
+        return {
+            "reference": {"method": self.reference.method, "distance_to_finest": self.reference.distance},
+            "strain_models": self.apart,
+        }
+
+    @property
+    def apart(self) -> dict[str, float]:
+        """Pose distance of richer strain models from that of the scene."""
+        return {name: distance(self.reference.rods, r.rods).pose for name, r in self._references.items()}
+
+
+def with_strain(scene: scenes.Scene, strain: str) -> scenes.Scene:
+    """The scene with another strain model for all rods.
+
+    Raises:
+        SceneError: a stiffness is not given.
+    """
+    tables = scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    tables["rods"] = [{**rod, "strain": strain} for rod in tables["rods"]]
+    tables.pop("accuracy", None)
+    return scenes.scene_from_dict(tables)
+
+
+def richer_candidates(scene: scenes.Scene) -> list[Candidate]:
+    """The next richer strain model at the scene's tolerance, where the scene allows it; else none."""
+    names = {rod.strain for rod in scene.rods}
+    richer = RICHER.get(str(names.pop())) if len(names) == 1 else None
+    if richer is None:
+        return []
+    try:
+        with_strain(scene, richer)
+    except SceneError:
+        return []
+    return [Candidate(DIAL, tolerance=scene.accuracy.tolerance, strain=richer)]

@@ -1,0 +1,290 @@
+"""One rod by shooting, from the strong form: a second opinion that shares no discretisation with the package.
+
+    r' = ℓ R Γ,  R' = ℓ R K^,  n' = −ℓ f̄,  m' = −r' × n − ℓ l̄,  K = K⁰ + M/H,  Γ = Γ⁰ + N/H,  M = Rᵀm,  N = Rᵀn
+
+Strains that are not admitted keep their intrinsic values. Unknown is the wrench at the base, found by Newton with exact
+Jacobians (complex steps through DOP853). Stiffness, density and unloaded strain are read from the same records as the
+model; rotations, integrals, balance and the search are not. A start says which of several equilibria is meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import legendre
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import CosseratError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.rod.properties import RodProperties
+
+RELATIVE, ABSOLUTE = 1e-13, 1e-14
+"""Tolerances of the integrator, on variables without unit."""
+
+STEP = 1e-30
+"""Imaginary step of a derivative."""
+
+NEAR = 1e-2
+"""Largest first correction of the base wrench, relative: beyond, Newton may be on its way to another equilibrium."""
+
+CORRECTIONS = 8
+"""Most Newton corrections."""
+
+CONVERGED = 1e-9
+"""Largest relative size of the last correction."""
+
+KINDS = ("gravity", "tip_wrench", "point_wrench", "distributed_wrench")
+"""Loads that shooting knows."""
+
+Values = dict[str, dict[str, FloatArray]]
+"""Magnitudes of every load, (3, k), by load and field."""
+
+Batch = npt.NDArray[Any]
+"""Rows of real or complex numbers."""
+
+
+class ShootingError(CosseratError):
+    """Shooting cannot do this scene, or Newton did not converge."""
+
+
+class BenchUnavailableError(CosseratError):
+    """SciPy is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__("the bench needs scipy: install it with  pip install 'cosserat-casadi[bench]'")
+
+
+def check_scipy() -> None:
+    """Refuse to begin without the integrator.
+
+    Raises:
+        BenchUnavailableError: SciPy is not installed.
+    """
+    try:
+        import scipy.integrate  # noqa: F401
+    except ImportError as missing:
+        raise BenchUnavailableError from missing
+
+
+@dataclass(frozen=True)
+class RodState:
+    """What of a rod is compared: poses of sections, and the wrench of its clamp.
+
+    Attributes:
+        length: undeformed length, m.
+        position: shape (k, 3), m.
+        rotation: shape (k, 3, 3), world_R_section.
+        base_wrench: force and moment of the clamp on the rod about the base point, world axes, shape (6,), N and N m.
+    """
+
+    length: float
+    position: FloatArray
+    rotation: FloatArray
+    base_wrench: FloatArray
+
+
+def shoot(
+    scene: scenes.Scene, properties: RodProperties, values: Values, X: Sequence[float], start: FloatArray
+) -> RodState:
+    """The equilibrium of one rod of a scene.
+
+    Args:
+        scene: the scene; what rods do not share with each other is read from it.
+        properties: the rod.
+        values: magnitudes of every load.
+        X: ascending abscissae of the sections wanted, the last one 1.
+        start: clamp wrench near the wanted one, shape (6,), N and N m.
+
+    Raises:
+        ShootingError: the scene holds what shooting does not know, or Newton does not converge near the start.
+    """
+    problem = _Problem(scene, properties, values)
+    unknown = _newton(problem, -start / problem.units)
+    states = problem.march(unknown[None, :], X)
+    position = np.array([problem.origin + properties.length * state.r[0] for state in states])
+    rotation = np.array([state.R[0] for state in states])
+    return RodState(properties.length, position, rotation, -unknown * problem.units)
+
+
+@dataclass(frozen=True)
+class _State:
+    """A batch of sections without unit: r from the base in ℓ, n in EI/ℓ², m in EI/ℓ."""
+
+    r: Batch
+    R: Batch
+    n: Batch
+    m: Batch
+
+    @classmethod
+    def of(cls, flat: Batch) -> _State:
+        rows = flat.reshape(-1, 18)
+        return cls(rows[:, :3], rows[:, 3:12].reshape(-1, 3, 3), rows[:, 12:15], rows[:, 15:])
+
+    def flat(self) -> Batch:
+        return np.concatenate([self.r, self.R.reshape(-1, 9), self.n, self.m], axis=1).ravel()
+
+
+@dataclass(frozen=True)
+class _Problem:
+    scene: scenes.Scene
+    rod: RodProperties
+    values: Values
+
+    def __post_init__(self) -> None:
+        strange: list[str] = sorted({load.kind for load in self.scene.loads} - set(KINDS))
+        strange += [key for key in ("actuators", "bodies", "joints") if getattr(self.scene, key, ())]
+        if strange:
+            raise ShootingError(f"shooting does not know {', '.join(strange)}")
+
+    @cached_property
+    def units(self) -> FloatArray:
+        """N and N m for each unit of the six unknowns."""
+        return self.rod.bending_stiffness / self.rod.length ** np.array([2.0, 2, 2, 1, 1, 1])
+
+    @cached_property
+    def _record(self) -> scenes.Rod:
+        return next(rod for rod in self.scene.rods if rod.name == self.rod.name)
+
+    @property
+    def origin(self) -> FloatArray:
+        """World position of the base, m."""
+        return base_pose(self._record)[0]
+
+    @cached_property
+    def turn(self) -> FloatArray:
+        """world_R_section of the base."""
+        return _matrix(base_pose(self._record)[1])
+
+    @cached_property
+    def support(self) -> Any:
+        """What holds the tip; None where it is free."""
+        return next((support for support in self.scene.supports if support.rod == self.rod.name), None)
+
+    @cached_property
+    def points(self) -> list[Any]:
+        """Loads on single sections."""
+        wrenches = [load for load in self.scene.loads if load.kind in ("tip_wrench", "point_wrench")]
+        return [load for load in wrenches if load.rod == self.rod.name]
+
+    @cached_property
+    def lines(self) -> list[Any]:
+        """Loads per length."""
+        spread = [load for load in self.scene.loads if load.kind == "distributed_wrench"]
+        return [load for load in spread if load.rod == self.rod.name]
+
+    @cached_property
+    def acceleration(self) -> FloatArray:
+        """Sum of the fields that weigh the rod, m/s²."""
+        fields = [load for load in self.scene.loads if load.kind == "gravity"]
+        mine = [load for load in fields if load.rods is None or self.rod.name in load.rods]
+        return sum((self.values[load.name]["acceleration"][:, 0] for load in mine), np.zeros(3))
+
+    def strain(self, X: float, state: _State) -> tuple[Batch, Batch]:
+        """K ℓ and Γ of a batch."""
+        wrench = np.concatenate([_dot(state.m, state.R), _dot(state.n, state.R)], axis=1)
+        compliance = np.zeros(6)
+        admitted = list(self.rod.admitted)
+        compliance[admitted] = 1 / self.rod.hooke(np.array([X]))[0, admitted]
+        stiffness, length = self.rod.bending_stiffness, self.rod.length
+        scale = compliance * np.repeat([stiffness, stiffness / length**2], 3)
+        intrinsic = self.rod.intrinsic_strain(np.array([X]))[0] * np.repeat([length, 1.0], 3)
+        strain = intrinsic + scale * wrench
+        return strain[:, :3], strain[:, 3:]
+
+    def line_wrench(self, X: float, R: Batch) -> tuple[Batch, Batch]:
+        """Force and moment per length on a batch, world axes, N/m and N."""
+        force, moment = np.zeros(R.shape[:2], R.dtype), np.zeros(R.shape[:2], R.dtype)
+        if self.rod.linear_density is not None:
+            force = force + self.rod.linear_density(np.array([X]))[0] * self.acceleration
+        for load in self.lines:
+            pair = [legendre.legval(2 * X - 1, self.values[load.name][f].T) for f in ("force", "moment")]
+            force = force + (R @ pair[0] if load.frame == "body" else pair[0])
+            moment = moment + (R @ pair[1] if load.frame == "body" else pair[1])
+        return force, moment
+
+    def rate(self, X: float, flat: Batch) -> Batch:
+        """d/dX of a batch."""
+        state = _State.of(flat)
+        K, G = self.strain(X, state)
+        force, moment = self.line_wrench(X, state.R)
+        r_rate = (state.R @ G[:, :, None])[:, :, 0]
+        R_rate = np.cross(state.R, K[:, None, :])
+        n_rate = -self.rod.length * force / self.units[:3]
+        m_rate = -np.cross(r_rate, state.n) - self.rod.length * moment / self.units[3:]
+        return _State(r_rate, R_rate, n_rate, m_rate).flat()
+
+    def march(self, unknown: Batch, stops: Sequence[float]) -> list[_State]:
+        """States of a batch of base wrenches at ascending stops, point loads there taken off."""
+        turn = np.broadcast_to(self.turn, (len(unknown), 3, 3)).astype(unknown.dtype)
+        state = _State(np.zeros((len(unknown), 3), unknown.dtype), turn, unknown[:, :3], unknown[:, 3:])
+        found, X = [], 0.0
+        for end in sorted({*stops, *(getattr(load, "at", 1.0) for load in self.points)}):
+            state = self._taken_off(self._advanced(state, X, end), end)
+            X = end
+            if end in stops:
+                found.append(state)
+        return found
+
+    def _advanced(self, state: _State, start: float, end: float) -> _State:
+        from scipy.integrate import solve_ivp
+
+        done = solve_ivp(self.rate, (start, end), state.flat(), "DOP853", rtol=RELATIVE, atol=ABSOLUTE)
+        if not done.success:
+            raise ShootingError("the integrator stops short of the tip")
+        return _State.of(done.y[:, -1])
+
+    def _taken_off(self, state: _State, X: float) -> _State:
+        n, m = state.n, state.m
+        for load in self.points:
+            if getattr(load, "at", 1.0) == X:
+                turn = state.R if load.frame == "body" else np.eye(3)
+                n = n - turn @ (self.values[load.name]["force"][:, 0] / self.units[:3])
+                m = m - turn @ (self.values[load.name]["moment"][:, 0] / self.units[3:])
+        return _State(state.r, state.R, n, m)
+
+    def violation(self, tip: _State) -> Batch:
+        """Six numbers for each state of a batch, zero where the tip's condition is met."""
+        if self.support is None:
+            return np.concatenate([tip.n, tip.m], axis=1)
+        gap = tip.r - (np.asarray(self.support.position) - self.origin) / self.rod.length
+        if self.support.kind == "pinned":
+            return np.concatenate([gap, tip.m], axis=1)
+        error = _matrix(np.asarray(self.support.quaternion)).T @ tip.R
+        return np.concatenate([gap, (error - np.swapaxes(error, 1, 2))[:, (2, 0, 1), (1, 2, 0)] / 2], axis=1)
+
+
+def _newton(problem: _Problem, unknown: FloatArray) -> FloatArray:
+    """Base wrench, without unit; the last digits are found by corrections until they stop to shrink."""
+    last = NEAR
+    for _ in range(CORRECTIONS):
+        (tip,) = problem.march(unknown + 1j * STEP * np.eye(6), [1.0])
+        violation = problem.violation(tip)
+        # Shortest: reactions that a planar rod leaves undetermined stay as they are.
+        correction = np.linalg.lstsq(violation.imag.T / STEP, -violation[0].real, rcond=1e-12)[0]
+        size = float(np.linalg.norm(correction) / (1 + np.linalg.norm(unknown)))
+        if not size <= last:
+            break
+        unknown, last = unknown + correction, size
+        if size < RELATIVE:
+            break
+    if last > CONVERGED:
+        raise ShootingError("Newton does not converge near the start")
+    return unknown
+
+
+def _dot(vectors: Batch, R: Batch) -> Batch:
+    """Rᵀ v of a batch."""
+    return (vectors[:, None, :] @ R)[:, 0]
+
+
+def _matrix(quaternion: FloatArray) -> FloatArray:
+    """Rotation matrix of a unit quaternion w, x, y, z: v ↦ v + 2 w (u × v) + 2 u × (u × v)."""
+    u, identity = quaternion[1:], np.eye(3)
+    once = np.cross(u, identity)
+    return np.asarray((identity + 2 * quaternion[0] * once + 2 * np.cross(u, once)).T)

@@ -1,0 +1,155 @@
+"""A whole bench of a planar rod: table, files, resumption, interruption, refusals."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from cosserat_casadi import CosseratError, Scene, SceneError
+from cosserat_casadi.bench import session
+from cosserat_casadi.bench.figure import FIGURES
+from cosserat_casadi.bench.grid import Candidate
+from cosserat_casadi.bench.measurement import Measurement
+from cosserat_casadi.bench.plan import make_plan, run_plan
+from cosserat_casadi.bench.record import CSV, JSON
+from cosserat_casadi.bench.reference import NoReferenceError
+from tests.scenes import push, rod, scene
+
+
+def planar() -> Scene:
+    return scene(push(force=[0.9, 0.0, -0.4]), rods=[rod("planar")], title="A planar rod")
+
+
+def quiet(*_: object) -> None:
+    """No report."""
+
+
+POINTS = [
+    Candidate("magnus4", 2, 3),
+    Candidate("permuted", 2, 3),
+    Candidate("dial", tolerance=1e-2),
+    Candidate("dial", tolerance=1e-4),
+    Candidate("magnus4", 7, 10),
+]
+
+
+def bench(folder: Path | None) -> tuple[str, list[Measurement]]:
+    plan = make_plan(planar(), folder, "magnus4,dial", 2, quick=False)
+    plan.candidates = list(POINTS)
+    console = Console(record=True, width=200, file=io.StringIO())
+    assert run_plan(plan, console, quiet) is False
+    return console.export_text(), plan.rows
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str, list[Measurement]]]:
+    folder = tmp_path_factory.mktemp("bench") / "out"
+    yield folder, *bench(folder)
+
+
+def test_every_point_is_measured(measured: tuple[Path, str, list[Measurement]]) -> None:
+    _, _, rows = measured
+    assert [row.name for row in rows] == [point.name for point in POINTS]
+    for row in rows:
+        assert row.note == ""
+        assert row.placed
+        assert 0 < row.igm_us < row.jacobian_us < row.cold_us
+        assert row.igm_us < row.vm_igm_us
+        assert row.cold_us < row.vm_cold_us
+        assert row.igm_operations < row.jacobian_operations or row.method == "permuted"
+    coarse, _, loose, tight, fine = rows
+    assert fine.pose_error < 1e-6 < 1e-5 < coarse.pose_error
+    assert loose.pose_error < 1e-2
+    assert tight.pose_error < 1e-4
+
+
+def test_table_marks_the_front_and_names_the_reference(measured: tuple[Path, str, list[Measurement]]) -> None:
+    _, text, rows = measured
+    for row in rows:
+        (line,) = [line for line in text.splitlines() if f" {row.name} " in line]
+        assert str(row.unknowns) in line.split()
+    assert "● " in text
+    assert "shooting" in text
+    assert "A planar rod" in text
+
+
+def test_files_hold_the_same_rows(measured: tuple[Path, str, list[Measurement]]) -> None:
+    folder, _, rows = measured
+    assert {path.name for path in folder.iterdir()} == {CSV, JSON, *FIGURES}
+    content = json.loads((folder / JSON).read_text())
+    assert [row["name"] for row in content["rows"]] == [row.name for row in rows]
+    assert content["reference"]["method"].startswith("shooting")
+    assert set(content["front"]) <= {row.name for row in rows}
+    assert str(folder) not in (folder / JSON).read_text()
+    assert (folder / "figure.png").read_bytes().startswith(b"\x89PNG")
+    assert (folder / "figure.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_what_is_measured_is_not_measured_again(measured: tuple[Path, str, list[Measurement]]) -> None:
+    folder, _, rows = measured
+    plan = make_plan(planar(), folder, "dial", None, quick=False)
+    assert [row.name for row in plan.rows] == [row.name for row in rows]
+    assert [candidate.name for candidate in plan.candidates][:2] == ["dial 0.001", "dial 1e-05"]
+
+
+def test_an_interrupted_bench_keeps_its_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(self: session.Session, candidates: list[Candidate]) -> Iterator[Measurement]:
+        yield Measurement(name=candidates[0].name, method=candidates[0].method)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(session.Session, "measure", interrupted)
+    plan = make_plan(planar(), tmp_path / "out", "magnus4", 3, quick=False)
+    console = Console(record=True, width=200, quiet=True)
+    assert run_plan(plan, console, quiet) is True
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [CSV]
+    again = make_plan(planar(), tmp_path / "out", "magnus4", 3, quick=False)
+    assert [row.name for row in again.rows] == [plan.candidates[0].name]
+    assert again.candidates == plan.candidates[1:]
+
+
+def test_csv_of_another_scene_is_refused_and_left_alone(measured: tuple[Path, str, list[Measurement]]) -> None:
+    folder = measured[0]
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(SceneError, match="another scene"):
+        make_plan(scene(push()), folder, None, None, quick=True)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_missing_scipy_is_one_sentence_that_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.integrate", None)
+    with pytest.raises(CosseratError, match=r"cosserat-casadi\[bench\]"):
+        make_plan(planar(), None, None, None, quick=True)
+
+
+def test_missing_compiler_is_refused_with_the_other_faults(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(SceneError) as refused:
+        make_plan(planar(), None, "euler", None, quick=False)
+    assert len(refused.value.problems) == 2
+
+
+def test_scene_without_equilibrium_has_no_reference(tmp_path: Path) -> None:
+    held = {"rod": "rod", "kind": "clamped", "position": [0.8, 0.0, 0.0], "quaternion": [1.0, 0.0, 0.0, 0.0]}
+    lost = scene(rods=[rod("planar")], supports=[held])
+    plan = make_plan(lost, tmp_path / "out", "magnus4", 1, quick=False)
+    with pytest.raises(NoReferenceError):
+        run_plan(plan, Console(quiet=True), quiet)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_point_that_is_not_compiled_says_why() -> None:
+    opened = session.Session.open(planar(), "/bin/false")
+    (row,) = opened.measure([Candidate("magnus4", 3, 5)])
+    assert "the compiler fails" in row.note
+    assert not row.placed
+    assert row.pose_error < 1e-2
+    (large,) = opened.measure([Candidate("permuted", 3, 9)])
+    assert large.note == "not compiled: literal system of 9 intervals"
+    assert replace(large, note="").pose_error < 1e-2
