@@ -14,16 +14,21 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.solver.accuracy import solve_scene
 from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.path import EquilibriumPath, PathEvent, follow_path
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.solve import solve
+from cosserat_casadi.solver.trace import PathOutcome
 
 __all__ = [
     "Compiled",
     "CosseratError",
     "Discretisation",
+    "EquilibriumPath",
     "ExportError",
     "Model",
     "Outcome",
+    "PathEvent",
+    "PathOutcome",
     "Problem",
     "Scene",
     "SceneError",
@@ -32,6 +37,7 @@ __all__ = [
     "build",
     "discretise",
     "export",
+    "follow_path",
     "load",
     "parse_scene",
     "read_scene",
