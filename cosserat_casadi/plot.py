@@ -6,6 +6,7 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -43,11 +44,25 @@ def check_plot_path(path: str | Path) -> None:
     if Path(path).suffix.lower() not in FORMATS:
         remedy = f"use one of {', '.join(FORMATS)}"
         raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
-    _figure_class()
+    figure_class()
 
 
 def save_plot(solution: Solution, path: str | Path) -> None:
     """Draw a solution into a file, whole or not at all; the same solution gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_solution(solution), path)
+
+
+def save_figure(draw: Callable[[], Any], path: str | Path) -> None:
+    """Draw a figure into a file, whole or not at all; the same figure gives the same bytes.
+
+    Args:
+        draw: makes the matplotlib.figure.Figure.
+        path: the file; its suffix is one of FORMATS.
 
     Raises:
         SceneError: the suffix is none of FORMATS.
@@ -60,7 +75,7 @@ def save_plot(solution: Solution, path: str | Path) -> None:
     metadata = {"png": {"Software": None}, "pdf": {"CreationDate": None, "Producer": None}, "svg": {"Date": None}}
     content = io.BytesIO()
     with mpl.rc_context({"svg.hashsalt": "cosserat"}):
-        plot_solution(solution).savefig(content, format=suffix, dpi=150, metadata=metadata[suffix])
+        draw().savefig(content, format=suffix, dpi=150, metadata=metadata[suffix])
     write_atomically(Path(path), content.getvalue())
 
 
@@ -77,7 +92,7 @@ def plot_solution(solution: Solution) -> Any:
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
-    figure = _figure_class()(figsize=(13.0, 6.6), layout="constrained")
+    figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
     plane = _plane(solution)
     scenery = figure.add_subplot(grid[:, 0], projection=None if plane else "3d")
@@ -101,7 +116,12 @@ Arrow = tuple[FloatArray, FloatArray, str, str]
 """Where an arrow starts, its vector, its label (empty for a repeated one), and "point", "line" or "moment"."""
 
 
-def _figure_class() -> Any:
+def figure_class() -> Any:
+    """Matplotlib's Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
     try:
         from matplotlib.figure import Figure
     except ImportError as missing:

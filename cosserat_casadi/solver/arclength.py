@@ -39,7 +39,7 @@ class ArcSettings:
     """
 
     first: float = 0.02
-    longest: float = 0.4
+    longest: float = 0.25
     share: float = 0.1
     shortest: float = 1e-7
     steps: int = 2000

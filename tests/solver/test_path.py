@@ -10,10 +10,10 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cosserat_casadi import Model, SceneError, build, discretise, follow_path, solve
+from cosserat_casadi import Model, SceneError, build, discretise, follow_path, follow_scene_path, solve
 from cosserat_casadi.solver.arclength import ArcSettings
 from cosserat_casadi.solver.trace import PathOutcome
-from tests.scenes import push, scene
+from tests.scenes import push, rod, scene
 
 CRITICAL = np.pi**2 / 4
 """Euler's load of a clamped-free column, in EI/L²."""
@@ -173,6 +173,24 @@ def test_dead_and_follower_force_together_vs_closed_form() -> None:
     (event,) = path.events
     critical = brentq(lambda P: P * np.cos(np.sqrt(P + 0.3)) + 0.3, 2.0, 3.0, xtol=1e-14)
     assert_allclose(4 * event.factor, critical, rtol=1e-8, atol=0)
+
+
+def test_modes_are_chosen_until_events_and_end_stay() -> None:
+    free = scene(push(force=[0, 0, 0]), rods=[rod("planar", length=1.0, stiffness={"bending_y": 1.0})])
+    path = follow_scene_path(free, "push.force", [0, 0, -3 * CRITICAL], branch=True)
+    assert path.converged
+    assert path.error_estimate is not None
+    x, _, z = path.tip().position[-1]
+    error = max(np.abs(np.subtract([abs(x), z], elastica(3.0))).max(), abs(3 * path.events[0].factor - 1.0))
+    assert error <= path.error_estimate <= free.accuracy.tolerance
+
+
+def test_fixed_modes_are_used_as_they_are() -> None:
+    fixed = scene(push(), strain="planar", accuracy={"modes": 4, "nodes": 12})
+    path = follow_scene_path(fixed, "push.force", [0.5, 0, 0])
+    assert path.converged
+    assert path.error_estimate is None
+    assert path.model.discretisation["rod"].modes == (4,)
 
 
 def test_load_that_is_never_reached_is_said() -> None:
