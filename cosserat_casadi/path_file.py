@@ -7,14 +7,20 @@ import io
 import json
 from typing import Any
 
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.result_file import plain
-from cosserat_casadi.solver.path import EquilibriumPath
+from cosserat_casadi.solver.path import EquilibriumPath, PathEvent
 from cosserat_casadi.solver.solution import Pose
+
+Sections = dict[str, tuple[float, FloatArray]]
+"""For rods whose tip is held: an abscissa and the positions there, shape (k, 3)."""
 
 
 def path_result(path: EquilibriumPath) -> dict[str, Any]:
     """A path as the plain data of its file; a number that is not finite becomes null."""
     tips = {name: path.tip(name) for name in path.model.frame.bases}
+    held = {name: path.section(name) for name in tips if path.section(name) < 1.0}
+    sections = {name: (X, path.position(X, name)) for name, X in held.items()}
     data = {
         "schema": 1,
         "title": path.model.scene.title,
@@ -29,7 +35,7 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
             for name, d in path.model.discretisation.items()
         },
         "path": [
-            {"factor": float(factor), **_judged(path, i), "rods": _rods(tips, i)}
+            {"factor": float(factor), **_judged(path, i), "rods": _rods(tips, i, sections)}
             for i, factor in enumerate(path.factor)
         ],
         "events": [
@@ -38,7 +44,7 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
                 "factor": event.factor,
                 "multiplicity": event.multiplicity,
                 "before": event.position,
-                "rods": _rods({name: path.event_tip(event, name) for name in tips}, 0),
+                "rods": _rods(*_at_event(path, event)),
             }
             for event in path.events
         ],
@@ -73,5 +79,18 @@ def _judged(path: EquilibriumPath, i: int) -> dict[str, bool | float | None]:
     return {"stable": bool(stable[i]), "neutral": bool(neutral[i]), "smallest_eigenvalue": float(least[i])}
 
 
-def _rods(tips: dict[str, Pose], i: int) -> dict[str, Any]:
-    return {name: {"tip": {"position": tip.position[i], "quaternion": tip.quaternion[i]}} for name, tip in tips.items()}
+def _at_event(path: EquilibriumPath, event: PathEvent) -> tuple[dict[str, Pose], int, Sections]:
+    tips = {name: path.event_tip(event, name) for name in path.model.frame.bases}
+    held = {name: path.section(name) for name in tips if path.section(name) < 1.0}
+    return tips, 0, {name: (X, path.event_position(event, X, name)[None, :]) for name, X in held.items()}
+
+
+def _rods(tips: dict[str, Pose], i: int, sections: Sections) -> dict[str, Any]:
+    """Tips of all rods at point i, and of a rod whose tip is held a section that moves."""
+    found: dict[str, Any] = {}
+    for name, tip in tips.items():
+        found[name] = {"tip": {"position": tip.position[i], "quaternion": tip.quaternion[i]}}
+        if name in sections:
+            X, positions = sections[name]
+            found[name]["section"] = {"X": X, "position": positions[i]}
+    return found

@@ -1,4 +1,4 @@
-"""Figure of a path: the displacement of the tips against the load, stability and events.
+"""Figure of a path: load against the displacement of the tips, of a held rod that of a section between.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -34,7 +34,7 @@ def save_path_plot(path: EquilibriumPath, file: str | Path) -> None:
 
 
 def plot_path(path: EquilibriumPath) -> Any:
-    """Figure of a path: one panel a rod, tip displacement over length to the right, factor upwards.
+    """Figure of a path: one panel a rod, displacement over length to the right, factor upwards.
 
     Stable parts are solid, unstable dashed, neutral dash-dotted; events are marked.
 
@@ -56,16 +56,17 @@ def plot_path(path: EquilibriumPath) -> Any:
 
 def _draw_rod(axes: Any, path: EquilibriumPath, name: str) -> None:
     moved, kinds = _displacement(path, name), _kinds(path)
+    place = "the tip" if path.section(name) == 1.0 else f"the section at X = {path.section(name):.3g}"
     shown = [c for c in range(3) if np.abs(moved[:, c]).max(initial=0.0) > LEVEL] or [0]
     for c in shown:
         for first, last, kind in _runs(kinds):
             axes.plot(moved[first:last, c], path.factor[first:last], color=AXES[c], linestyle=STYLES[kind][0])
         _mark(axes, path, name, c)
-        axes.plot([], [], color=AXES[c], label=f"{COMPONENTS[c]} of the tip")
+        axes.plot([], [], color=AXES[c], label=f"{COMPONENTS[c]} of {place}")
     for kind in sorted(set(kinds.tolist())):
         axes.plot([], [], color="0.3", linestyle=STYLES[kind][0], label=STYLES[kind][1])
     axes.axhline(0.0, color="0.7", linewidth=0.8)
-    axes.set_xlabel("displacement of the tip / length")
+    axes.set_xlabel(f"displacement of {place} / length")
     axes.set_ylabel(f"factor × {_value(path)}")
     axes.grid(alpha=0.3)
     axes.legend(loc="best", fontsize=9, framealpha=0.9)
@@ -76,20 +77,24 @@ def _mark(axes: Any, path: EquilibriumPath, name: str, component: int) -> None:
     named = axes.get_legend_handles_labels()[1]
     for event in path.events:
         marker, label = MARKERS[event.kind]
-        moved = (path.event_tip(event, name).position[0] - _rest(path, name)) / path.model.frame.bases[name].rod.length
+        place = path.event_position(event, path.section(name), name)
+        moved = (place - _rest(path, name)) / path.model.frame.bases[name].rod.length
         style = {"marker": marker, "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
         axes.plot(moved[component], event.factor, label=None if label in named else label, **style)
         named.append(label)
 
 
 def _displacement(path: EquilibriumPath, name: str) -> FloatArray:
-    """Tip displacement from the unloaded rod over the length, shape (k, 3)."""
-    moved: FloatArray = (path.tip(name).position - _rest(path, name)) / path.model.frame.bases[name].rod.length
+    """Displacement of the section from the unloaded rod over the length, shape (k, 3)."""
+    moved: FloatArray = (path.position(path.section(name), name) - _rest(path, name)) / path.model.frame.bases[
+        name
+    ].rod.length
     return moved
 
 
 def _rest(path: EquilibriumPath, name: str) -> FloatArray:
-    return path.model.tip[name](path.model.unloaded(), path.base)[0].full()[:, 0]  # type: ignore[no-any-return]
+    unloaded = path.model.shape[name](path.model.unloaded(), path.base, path.section(name))
+    return np.asarray(unloaded[0].full()[:, 0])
 
 
 def _kinds(path: EquilibriumPath) -> FloatArray:

@@ -16,7 +16,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.price import price, price_of_load
 from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.solver.path import EquilibriumPath
-from cosserat_casadi.solver.solution import Pose, Solution
+from cosserat_casadi.solver.solution import Solution
 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
@@ -108,26 +108,23 @@ def _rod_table(solution: Solution) -> Table:
 def _path_table(path: EquilibriumPath) -> Table:
     """The start, the events and the end of a path, with the stability of what follows."""
     table = Table()
-    for heading in ("point", "factor", path.name, "beyond it", "rod", "tip position, m"):
+    for heading in ("point", "factor", path.name, "beyond it", "rod", "position, m"):
         table.add_column(escape(heading), no_wrap=heading in ("point", "factor", "beyond it"))
     last = len(path.factor) - 1
-    rows: list[tuple[str, float, int, list[Pose]]] = [("start", float(path.factor[0]), 0, _poses(path, 0))]
+    places = {name: (path.section(name), path.position(path.section(name), name)) for name in path.model.frame.bases}
+    rows = [("start", float(path.factor[0]), 0, [positions[0] for _, positions in places.values()])]
     for event in path.events:
         kind = event.kind if event.multiplicity == 1 else f"{event.kind}, {event.multiplicity}-fold"
-        poses = [path.event_tip(event, name) for name in path.model.frame.bases]
-        rows.append((kind, event.factor, min(event.position, last), poses))
-    rows.append(("end", float(path.factor[-1]), last, _poses(path, last)))
-    for kind, factor, beyond, poses in rows:
+        at = [path.event_position(event, X, name) for name, (X, _) in places.items()]
+        rows.append((kind, event.factor, min(event.position, last), at))
+    rows.append(("end", float(path.factor[-1]), last, [positions[-1] for _, positions in places.values()]))
+    for kind, factor, beyond, at in rows:
         value = ", ".join(_digits(factor * np.ravel(path.value, order="F")))
-        for i, (name, pose) in enumerate(zip(path.model.frame.bases, poses, strict=True)):
+        for i, ((name, (X, _)), position) in enumerate(zip(places.items(), at, strict=True)):
             words = (kind, f"{factor:.10g}", f"[{value}]", _stability(path, beyond)) if i == 0 else ("", "", "", "")
-            table.add_row(*map(escape, words), escape(name), ", ".join(_digits(pose.position[0])))
+            place = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
+            table.add_row(*map(escape, words), escape(place), ", ".join(_digits(position)))
     return table
-
-
-def _poses(path: EquilibriumPath, index: int) -> list[Pose]:
-    solution = path.solution(index)
-    return [solution.tip(name) for name in path.model.frame.bases]
 
 
 def _stability(path: EquilibriumPath, index: int) -> str:

@@ -8,7 +8,15 @@ from pathlib import Path
 
 from cosserat_casadi.cli import app, run
 
-SCENES = ("nitinol_wire", "silicone_finger", "precurved_tube", "fishing_rod", "loaded_strip", "euler_column")
+SCENES = (
+    "nitinol_wire",
+    "silicone_finger",
+    "precurved_tube",
+    "fishing_rod",
+    "loaded_strip",
+    "euler_column",
+    "deep_arch",
+)
 
 
 def main() -> int:

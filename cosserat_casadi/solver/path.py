@@ -101,6 +101,22 @@ class EquilibriumPath:
         """Pose of a rod's tip at an event, shapes (1, …)."""
         return _tips(self.model, event.x[None, :], self._name(rod))
 
+    def section(self, rod: str | None = None) -> float:
+        """Abscissa of the section whose way tells most: the tip, of a held rod where the followed load acts, or 1/2."""
+        name, scene = self._name(rod), self.model.scene
+        if all(support.rod != name for support in scene.supports):
+            return 1.0
+        load = next(load for load in scene.loads if load.name == self.name.split(".")[0])
+        return float(getattr(load, "at", 0.5)) if getattr(load, "rod", name) == name else 0.5
+
+    def position(self, X: float, rod: str | None = None) -> FloatArray:
+        """Positions of a section at the k points of the path, shape (k, 3), m."""
+        return _positions(self.model, self.x, self._name(rod), X)
+
+    def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
+        """Position of a section at an event, shape (3,), m."""
+        return np.asarray(_positions(self.model, event.x[None, :], self._name(rod), X)[0])
+
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
         factor, x = float(self.factor[index]), self.x[index]
@@ -272,3 +288,9 @@ def _tips(model: Model, x: FloatArray, rod: str) -> Pose:
     quaternion = np.array([q[:, 0] for _, q, _ in found]).reshape(-1, 4)
     rotation = np.array([r for _, _, r in found]).reshape(-1, 3, 3)
     return Pose(position, rotation, quaternion)
+
+
+def _positions(model: Model, x: FloatArray, rod: str, X: float) -> FloatArray:
+    """Positions of a section for unknowns of shape (k, n), shape (k, 3)."""
+    none = np.zeros(model.inputs.size)
+    return np.array([model.shape[rod](row, none, X)[0].full()[:, 0] for row in x]).reshape(-1, 3)

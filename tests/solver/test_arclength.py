@@ -152,15 +152,32 @@ def test_circle_is_closed(monitor: Monitor) -> None:
     assert_allclose(np.linalg.norm(y, axis=1), 0.8, rtol=1e-10, atol=0)
 
 
-def test_two_bifurcations_within_one_step_are_told_apart() -> None:
-    """Two modes that lose their stiffness at 0.30 and 0.31."""
+@pytest.mark.parametrize(("apart", "multiplicities"), [(0.01, [1, 1]), (1e-10, [2])])
+def test_two_bifurcations_within_one_step_are_told_apart(apart: float, multiplicities: list[int]) -> None:
+    """Two modes that lose their stiffness at 0.3 and a little later; what is nearer than rounding is one."""
+    later = 0.3 + apart
     both = curve(
-        lambda x, t: [(0.30 - t) * x[0] + x[0] ** 3, (0.31 - t) * x[1] + x[1] ** 3],
-        lambda x, t: [[0.30 - t + 3 * x[0] ** 2, 0.0], [0.0, 0.31 - t + 3 * x[1] ** 2]],
+        lambda x, t: [(0.3 - t) * x[0] + x[0] ** 3, (later - t) * x[1] + x[1] ** 3],
+        lambda x, t: [[0.3 - t + 3 * x[0] ** 2, 0.0], [0.0, later - t + 3 * x[1] ** 2]],
         lambda x, t: [-x[0], -x[1]],
         [0.0, 0.0],
     )
-    assert_allclose([factor for _, factor in events(trace(both))], [0.30, 0.31], rtol=1e-10, atol=0)
+    found = trace(both).events
+    assert [event.multiplicity for event in found] == multiplicities
+    assert_allclose(found[0].point.factor, 0.3, rtol=1e-9, atol=0)
+    assert_allclose(found[-1].point.factor, later, rtol=1e-9, atol=0)
+
+
+def test_events_beyond_factor_one_are_not_told() -> None:
+    beyond = curve(
+        lambda x, t: [(1.001 - t) * x[0] + x[0] ** 3],
+        lambda x, t: [[1.001 - t + 3 * x[0] ** 2]],
+        lambda x, t: [-x[0]],
+        [0.0],
+    )
+    found = trace(beyond)
+    assert found.outcome is PathOutcome.CONVERGED
+    assert found.events == []
 
 
 def test_transcritical_bifurcation_is_followed_both_ways() -> None:
@@ -206,13 +223,40 @@ def test_a_path_without_bifurcation_has_no_branch() -> None:
 
 
 def test_correction_of_least_norm_where_a_direction_is_neutral() -> None:
-    """g depends on x₁ alone: the step does not move x₂."""
+    """g depends on x₁, and on x₂ by rounding only: the step does not move x₂."""
     neutral = curve(
-        lambda x, t: [x[0] ** 2 - 1.0, 0.0], lambda x, t: [[2 * x[0], 0.0], [0.0, 0.0]], lambda x, t: [0.0, 0.0], [0, 0]
+        lambda x, t: [x[0] ** 2 - 1.0, 1e-13 * (x[1] - 5.0)],
+        lambda x, t: [[2 * x[0], 0.0], [0.0, 1e-13]],
+        lambda x, t: [0.0, 0.0],
+        [0.0, 0.0],
     )
     found = neutral.correct(np.array([1.2, 0.7, 0.3]), Plane(np.array([0.0, 0.0, 1.0]), 0.3))
     assert found is not None
-    assert_allclose(found[0], [1.0, 0.7, 0.3], rtol=0, atol=1e-13)
+    assert_allclose(found[0], [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
+
+
+def test_a_step_goes_its_length_along_the_tangent_and_not_around_a_corner() -> None:
+    """On the unit circle a step of 0.5 turns the tangent by 30°: refused, though Newton would converge."""
+    circle = curve(
+        lambda x, t: [x[0] ** 2 + t**2 - 1.0], lambda x, t: [[2 * x[0]]], lambda x, t: [2 * t], [1.0], stray=0.5
+    )
+    start = circle.point(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
+    assert start is not None
+    assert circle.advance(start, 0.5) is None
+    advanced = circle.advance(start, 0.2)
+    assert advanced is not None
+    assert_allclose(advanced[0].y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
+    assert_allclose(advanced[0].tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
+    assert advanced[0].length == 0.2
+
+
+def test_a_correction_that_strays_is_refused() -> None:
+    """A parabola that leaves its tangent by 0.3 where the step is 0.2."""
+    parabola = curve(lambda x, t: [x[0] - 7.5 * t**2], lambda x, t: [[1.0]], lambda x, t: [-15.0 * t], [0.0], bend=-1.0)
+    start = parabola.point(np.zeros(2), np.array([0.0, 1.0]), 0.0)
+    assert start is not None
+    assert parabola.advance(start, 0.2) is None
+    assert parabola.advance(start, 0.03) is not None
 
 
 def test_tangent_is_the_direction_projected_on_the_null_space() -> None:

@@ -13,7 +13,7 @@ from scipy.special import ellipe, ellipk
 from cosserat_casadi import Model, SceneError, build, discretise, follow_path, follow_scene_path, solve
 from cosserat_casadi.solver.arclength import ArcSettings
 from cosserat_casadi.solver.trace import PathOutcome
-from tests.scenes import push, rod, scene
+from tests.scenes import HOOK, push, rod, scene
 
 CRITICAL = np.pi**2 / 4
 """Euler's load of a clamped-free column, in EI/L²."""
@@ -129,6 +129,10 @@ def test_deep_arch_vs_published_limit_load() -> None:
     assert not np.any(path.stable[first:second])
     foot = ARCH["radius"] * np.sin(ARCH["opening"] / 2)
     assert_allclose(path.tip().position[:, 0], foot, rtol=1e-9, atol=0)
+    assert path.section() == 0.5
+    crown = path.position(0.5)
+    assert_allclose(crown[0], [0, 0, ARCH["radius"]], rtol=0, atol=1e-8 * ARCH["radius"])
+    assert np.all(np.diff(crown[:first, 2]) < 0)
 
 
 def test_path_without_events_ends_where_solve_does() -> None:
@@ -142,6 +146,20 @@ def test_path_without_events_ends_where_solve_does() -> None:
     assert_allclose(path.tip().position[-1], direct.tip().position[0], rtol=0, atol=1e-10)
     assert path.solution(-1).residual_norm < 1e-10
     assert path.solution(-1).stable
+    assert path.section() == 1.0
+    assert_allclose(path.position(1.0), path.tip().position, rtol=0, atol=1e-12)
+
+
+def test_multipliers_of_a_held_rod_vs_solve() -> None:
+    """The curve counts multipliers in units of the load; what is recorded does not."""
+    held = [{"rod": "rod", "kind": "pinned", "position": [0.3, 0.1, 0.6]}]
+    model = build(scene({**HOOK, "force": [20.0, -9.0, 5.0]}, supports=held))
+    path, direct = follow_path(model, "hook.force", [20.0, -9.0, 5.0]), solve(model)
+    assert path.converged
+    assert path.events == ()
+    assert path.stable is not None
+    assert path.stable[-1]
+    assert_allclose(path.x[-1], direct.x, rtol=0, atol=1e-9)
 
 
 def test_other_loads_stay_at_their_values() -> None:
