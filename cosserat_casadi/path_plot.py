@@ -86,10 +86,8 @@ def _mark(axes: Any, path: EquilibriumPath, name: str, component: int) -> None:
 
 def _displacement(path: EquilibriumPath, name: str) -> FloatArray:
     """Displacement of the section from the unloaded rod over the length, shape (k, 3)."""
-    moved: FloatArray = (path.position(path.section(name), name) - _rest(path, name)) / path.model.frame.bases[
-        name
-    ].rod.length
-    return moved
+    moved = path.position(path.section(name), name) - _rest(path, name)
+    return np.asarray(moved / path.model.frame.bases[name].rod.length)
 
 
 def _rest(path: EquilibriumPath, name: str) -> FloatArray:

@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.arclength import SINGULAR, ArcPoint, Curve, Monitor, Plane
 
-LOCATED = 1e-12
+LOCATED = 1e-14
 """Arclength to which an event is located."""
 
 SAME = 1e-8

@@ -145,6 +145,7 @@ def test_path_without_events_ends_where_solve_does() -> None:
     assert_allclose(path.inputs(1.0), direct.inputs, rtol=0, atol=0)
     assert_allclose(path.tip().position[-1], direct.tip().position[0], rtol=0, atol=1e-10)
     assert path.solution(-1).residual_norm < 1e-10
+    assert path.solution(len(path.factor) // 2).residual_norm < 1e-10
     assert path.solution(-1).stable
     assert path.section() == 1.0
     assert_allclose(path.position(1.0), path.tip().position, rtol=0, atol=1e-12)
