@@ -9,22 +9,29 @@ from cosserat_casadi.codegen.export import export
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.path_file import path_result
 from cosserat_casadi.result_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.solver.accuracy import solve_scene
 from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.path import EquilibriumPath, PathEvent, follow_path
+from cosserat_casadi.solver.path_accuracy import follow_scene_path
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.solve import solve
+from cosserat_casadi.solver.trace import PathOutcome
 from cosserat_casadi.solver.tuning import Tuning, tune
 
 __all__ = [
     "Compiled",
     "CosseratError",
     "Discretisation",
+    "EquilibriumPath",
     "ExportError",
     "Model",
     "Outcome",
+    "PathEvent",
+    "PathOutcome",
     "Problem",
     "Scene",
     "SceneError",
@@ -34,8 +41,11 @@ __all__ = [
     "build",
     "discretise",
     "export",
+    "follow_path",
+    "follow_scene_path",
     "load",
     "parse_scene",
+    "path_result",
     "read_scene",
     "result",
     "scene_from_dict",

@@ -1,13 +1,16 @@
-"""The command line: solve a scene, check a scene, export a scene, bench a scene."""
+"""The command line: solve, follow a path, check, export, tune, bench."""
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import (
@@ -26,15 +29,21 @@ from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.effects.effect import coefficients
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.load_cases import read_load_cases, spread
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.path_file import path_table, path_text
 from cosserat_casadi.result_file import result_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.solver.accuracy import solve_scene
+from cosserat_casadi.solver.accuracy import Report, solve_scene
+from cosserat_casadi.solver.continuation import Progress as Told
+from cosserat_casadi.solver.path import EquilibriumPath
+from cosserat_casadi.solver.path_accuracy import follow_scene_path
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import tune as tune_scene
 
@@ -81,6 +90,32 @@ def solve(
     else:
         report.print_solution(Console(), solution, [p for p in (output, plot) if p is not None])
     if not solution.converged:
+        raise typer.Exit(NOT_FOUND)
+
+
+@app.command()
+def path(
+    scene: SceneFile,
+    name: Annotated[str, typer.Option("--input", metavar="LOAD.FIELD", help="The input to follow: push.force.")],
+    to: Annotated[str, typer.Option("--to", metavar="VALUE", help="Its value at factor 1, such as [0,0,-5].")],
+    branch: Annotated[bool, typer.Option("--branch", help="Leave along the branch of the first bifurcation.")] = False,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the path (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw load against displacement here: .png, .pdf or .svg.")] = None,
+    table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
+) -> None:
+    """Follow equilibria while an input grows from zero, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
+    read, value = _check_path(scene, tuple(settings or ()), name, to, {"--output": output, "--csv": table}, plot)
+    with _told("Following the path") as (told, said):
+        found = follow_scene_path(read, name, value, branch=branch, progress=told, report=said)
+    if output is not None:
+        write_atomically(output, path_text(found).encode())
+    if table is not None:
+        write_atomically(table, path_table(found).encode())
+    if plot is not None:
+        _draw_path(found, plot)
+    report.print_path(Console(), found, [p for p in (output, table, plot) if p is not None])
+    if not found.converged:
         raise typer.Exit(NOT_FOUND)
 
 
@@ -218,20 +253,71 @@ def _check_outputs(output: Path | None, plot: Path | None) -> None:
         check_plot_path(plot)
 
 
+def _check_path(
+    scene: Path, settings: tuple[str, ...], name: str, to: str, outputs: dict[str, Path | None], plot: Path | None
+) -> tuple[Scene, FloatArray]:
+    """The scene and the value of the followed input.
+
+    Raises:
+        SceneError: with every fault of the scene, the options and the places to write to.
+    """
+    problems: list[Problem] = []
+
+    def tried(check: Callable[[], object]) -> object:
+        try:
+            return check()
+        except SceneError as error:
+            problems.extend(error.problems)
+            return None
+
+    for option, file in outputs.items():
+        if file is not None:
+            tried(lambda option=option, file=file: check_writable(file, option))  # type: ignore[misc]
+    tried(lambda: _check_outputs(None, plot))
+    value = tried(lambda: _vector(to))
+    read = tried(lambda: read_scene(scene, settings))
+    if isinstance(read, Scene):
+        tried(lambda: _check_input(read, name, value))
+    if problems or not isinstance(read, Scene):
+        raise SceneError(*problems)
+    return read, np.asarray(value)
+
+
+def _check_input(scene: Scene, name: str, value: object) -> None:
+    """Refuse an input that the scene does not have, or a value of another size; of a value refused already, None."""
+    inputs = build(scene).inputs
+    default = dict(zip(inputs.names, inputs.defaults, strict=True)).get(name, np.zeros(0))
+    inputs.pack({name: default if value is None else np.asarray(value)})
+
+
+def _vector(text: str) -> FloatArray:
+    """A number, or components that are numbers or lists of Legendre coefficients, written as TOML."""
+    wrong = Problem("--to", f"must be a number or a list of numbers, got {text}", "write it as in TOML: [0, 0, -5.0]")
+    try:
+        value = tomllib.loads(f"value = [{text}]")["value"][0]
+        array = coefficients(tuple(value)) if isinstance(value, list) else np.array([value], dtype=float)
+    except (tomllib.TOMLDecodeError, LookupError, TypeError, ValueError):
+        raise SceneError(wrong) from None
+    if not np.all(np.isfinite(array)):
+        raise SceneError(Problem("--to", f"must be finite, got {text}"))
+    return array
+
+
 def _draw(solution: Solution, path: Path) -> None:
     from cosserat_casadi.plot import save_plot
 
     save_plot(solution, path)
 
 
+def _draw_path(found: EquilibriumPath, file: Path) -> None:
+    from cosserat_casadi.path_plot import save_path_plot
+
+    save_path_plot(found, file)
+
+
 def _solve_with_progress(scene: Scene) -> Solution:
-    with _progress() as bar:
-        task = bar.add_task("Building the model", total=1.0)
-        return solve_scene(
-            scene,
-            progress=lambda share: bar.update(task, completed=share),
-            report=lambda stage: bar.update(task, description=f"Solving: {stage}", completed=0.0),
-        )
+    with _told("Solving") as (told, said):
+        return solve_scene(scene, progress=told, report=said)
 
 
 def _progress() -> Progress:
@@ -249,3 +335,14 @@ def _reporter(bar: Progress) -> Callable[[str, int, int], None]:
     """Shows what is being done, how many points are done, and of how many."""
     task = bar.add_task("Finding the reference", total=None)
     return lambda doing, done, total: bar.update(task, description=doing, completed=done, total=total or None)
+
+
+@contextmanager
+def _told(doing: str) -> Iterator[tuple[Told, Report]]:
+    """A bar on standard error: who is told the share that is done, and who is told the stage."""
+    with _progress() as bar:
+        task = bar.add_task("Building the model", total=1.0)
+        yield (
+            lambda share: bar.update(task, completed=share),
+            lambda stage: bar.update(task, description=f"{doing}: {stage}", completed=0.0),
+        )

@@ -6,6 +6,7 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -53,8 +54,22 @@ def save_plot(solution: Solution, path: str | Path) -> None:
         SceneError: the suffix is none of FORMATS.
         PlotUnavailableError: matplotlib is not installed.
     """
+    save_figure(lambda: plot_solution(solution), path)
+
+
+def save_figure(draw: Callable[[], Any], path: str | Path) -> None:
+    """Draw a figure into a file, whole or not at all; the same figure gives the same bytes.
+
+    Args:
+        draw: makes the matplotlib.figure.Figure.
+        path: the file; its suffix is one of FORMATS.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
     check_plot_path(path)
-    write_figure(plot_solution(solution), Path(path))
+    write_figure(draw(), Path(path))
 
 
 def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:

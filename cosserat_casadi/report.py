@@ -16,6 +16,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.price import price, price_of_load
 from cosserat_casadi.rod.properties import STRAINS
+from cosserat_casadi.solver.path import EquilibriumPath
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import Tuning
 
@@ -29,6 +30,21 @@ def print_solution(console: Console, solution: Solution, written: Sequence[Path]
     console.print(_figures(solution), highlight=False)
     for path in written:
         console.print(f"wrote {escape(str(path))}", highlight=False)
+
+
+def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:
+    """Outcome, table of events and of the end, and the files that were written."""
+    console.print(f"[bold]{escape(path.model.scene.title or 'Untitled scene')}[/]", highlight=False)
+    console.print(f"[bold {'green' if path.converged else 'red'}]{escape(path.message)}[/]", highlight=False)
+    if len(path.factor):
+        console.print(_path_table(path))
+    parts = [f"{len(path.factor)} points", f"{len(path.events)} limit points and bifurcations"]
+    if path.error_estimate is not None:
+        parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
+    parts += [f"{name}: modes {list(d.modes)}, {d.nodes} intervals" for name, d in path.model.discretisation.items()]
+    console.print(escape("; ".join(parts)), highlight=False)
+    for file in written:
+        console.print(f"wrote {escape(str(file))}", highlight=False)
 
 
 def print_check(console: Console, model: Model) -> None:
@@ -109,6 +125,35 @@ def _rod_table(solution: Solution) -> Table:
         table.add_row("", "clamp force, N", *_digits(base.force))
         table.add_row("", "clamp moment, N m", *_digits(base.moment), end_section=True)
     return table
+
+
+def _path_table(path: EquilibriumPath) -> Table:
+    """The start, the events and the end of a path, with the stability of what follows."""
+    table = Table()
+    for heading in ("point", "factor", path.name, "beyond it", "rod", "position, m"):
+        table.add_column(escape(heading), no_wrap=heading in ("point", "factor", "beyond it"))
+    last = len(path.factor) - 1
+    places = {name: (path.section(name), path.position(path.section(name), name)) for name in path.model.frame.bases}
+    rows = [("start", float(path.factor[0]), 0, [positions[0] for _, positions in places.values()])]
+    for event in path.events:
+        kind = event.kind if event.multiplicity == 1 else f"{event.kind}, {event.multiplicity}-fold"
+        at = [path.event_position(event, X, name) for name, (X, _) in places.items()]
+        rows.append((kind, event.factor, min(event.position, last), at))
+    rows.append(("end", float(path.factor[-1]), last, [positions[-1] for _, positions in places.values()]))
+    for kind, factor, beyond, at in rows:
+        value = ", ".join(_digits(factor * np.ravel(path.value, order="F")))
+        for i, ((name, (X, _)), position) in enumerate(zip(places.items(), at, strict=True)):
+            words = (kind, f"{factor:.10g}", f"[{value}]", _stability(path, beyond)) if i == 0 else ("", "", "", "")
+            place = f"{name} tip" if X == 1.0 else f"{name} X = {X:.3g}"
+            table.add_row(*map(escape, words), escape(place), ", ".join(_digits(position)))
+    return table
+
+
+def _stability(path: EquilibriumPath, index: int) -> str:
+    stable, neutral = path.stable, path.neutral
+    if stable is None or neutral is None:
+        return "not judged"
+    return "neutral" if neutral[index] else "stable" if stable[index] else "unstable"
 
 
 def _figures(solution: Solution) -> str:

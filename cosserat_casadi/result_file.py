@@ -45,8 +45,8 @@ def result(solution: Solution) -> dict[str, Any]:
         },
         "rods": {name: _rod(solution, name) for name in model.frame.bases},
     }
-    plain: dict[str, Any] = _plain(data)
-    return plain
+    found: dict[str, Any] = plain(data)
+    return found
 
 
 def result_text(solution: Solution) -> str:
@@ -77,14 +77,14 @@ def _abscissae(breaks: tuple[float, ...]) -> FloatArray:
     return np.unique(np.concatenate([np.linspace(0.0, 1.0, SAMPLES), breaks]))
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Arrays as lists, numbers as Python's own, what is not finite as None."""
     if isinstance(value, dict):
-        return {key: _plain(entry) for key, entry in value.items()}
+        return {key: plain(entry) for key, entry in value.items()}
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
+        return [plain(entry) for entry in value]
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value

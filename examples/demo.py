@@ -16,6 +16,8 @@ SCENES = (
     "precurved_tube",
     "fishing_rod",
     "loaded_strip",
+    "euler_column",
+    "deep_arch",
 )
 
 

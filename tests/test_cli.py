@@ -114,6 +114,16 @@ def test_check_prices_the_scene(wire: Path) -> None:
         (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
         (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
         (["solve", "wire.toml", "--colour"], "colour"),
+        (["path", "wire.toml"], "--input"),
+        (["path", "wire.toml", "--input", "shove.force", "--to", "[0,0,1]"], "shove.force: is not an input"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "1.0"], "must have 3 numbers, got 1"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0]"], "must have 3 numbers, got 2"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,nan]"], "--to: must be finite"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,"], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", '["a",0,1]'], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "1], b = [2"], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--csv", "no/p.csv"], "--csv"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--plot", "f.doc"], "--plot"),
         (["sing"], "sing"),
         (["bench", "missing.toml"], "missing.toml"),
         (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "'euler' is no method"),
@@ -140,6 +150,64 @@ def test_no_equilibrium_is_exit_code_three_and_still_written(wire: Path) -> None
     assert result["converged"] is False
     assert result["outcome"] != "converged"
     assert "Traceback" not in done.stderr
+
+
+COLUMN = """
+schema = 1
+title = "A column"
+accuracy = { modes = 8, nodes = 20 }
+[[rods]]
+name = "column"
+length = 2.0
+strain = "planar"
+stiffness = { bending_y = 4.0 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "column"
+force = [0, 0, -1.0]
+"""
+
+
+def test_path_writes_json_csv_and_figure(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    options = ["--input", "push.force", "--to", "[0, 0, -5.0]", "--branch"]
+    files = ["--output", "p.json", "--csv", "p.csv", "--plot", "p.png"]
+    done = cosserat("path", "column.toml", *options, *files, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "bifurcation" in done.stdout
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+    path = json.loads((tmp_path / "p.json").read_text())
+    assert (path["schema"], path["outcome"]) == (1, "converged")
+    first, last = path["path"][0], path["path"][-1]
+    assert (first["factor"], first["stable"], last["factor"], last["stable"]) == (0.0, True, 1.0, True)
+    (event,) = path["events"]
+    assert event["kind"] == "bifurcation"
+    assert_allclose(5 * event["factor"], np.pi**2 / 4, rtol=1e-8, atol=0)
+    assert len(last["rods"]["column"]["tip"]["position"]) == 3
+    assert len(last["rods"]["column"]["tip"]["quaternion"]) == 4
+    assert abs(last["rods"]["column"]["tip"]["position"][0]) > 0.5
+    head, *rows = (tmp_path / "p.csv").read_text().splitlines()
+    assert head.startswith("factor,stable,smallest_eigenvalue,column.x,")
+    assert len(rows) == len(path["path"])
+    assert_allclose(float(rows[-1].split(",")[3]), last["rods"]["column"]["tip"]["position"][0], rtol=1e-15, atol=0)
+
+
+def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    options = ["--input", "push.force", "--to", "[0, 0, -1.0]", "--branch", "--output", "p.json"]
+    done = cosserat("path", "column.toml", *options, cwd=tmp_path)
+    assert done.returncode == 3, done.stdout + done.stderr
+    path = json.loads((tmp_path / "p.json").read_text())
+    assert path["outcome"] == "no_bifurcation"
+    assert "without a bifurcation" in done.stdout
+
+
+def test_every_fault_of_a_path_comes_at_once(wire: Path) -> None:
+    options = ["--input", "shove.force", "--to", "up", "--output", "no/p.json", "--plot", "f.doc"]
+    done = cosserat("path", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 2
+    assert "4 problems" in done.stderr
 
 
 def test_not_finite_numbers_become_null(wire: Path) -> None:

@@ -55,8 +55,8 @@ def commands() -> list[str]:
     return [line.split(" > ")[0] for line in lines if line.startswith(".venv/bin/cosserat ")]
 
 
-def test_there_are_five_commands() -> None:
-    assert len(commands()) == 5
+def test_there_are_six_commands() -> None:
+    assert len(commands()) == 6
 
 
 @pytest.mark.parametrize("line", commands())

@@ -35,6 +35,16 @@ def second_variation(jacobian: FloatArray, strains: int) -> Stability:
         strains: n, number of strain coordinates; the m rows below hold the linearised supports, and only
             variations in their null space are admissible.
     """
+    return judged(admissible_eigenvalues(jacobian, strains))
+
+
+def admissible_eigenvalues(jacobian: FloatArray, strains: int) -> FloatArray:
+    """Eigenvalues of the second variation over the admissible variations, ascending.
+
+    Args:
+        jacobian: as in :func:`second_variation`.
+        strains: as there.
+    """
     hessian = jacobian[:strains, :strains]
     constraints = jacobian[strains:, :strains]
     if len(constraints):
@@ -43,8 +53,14 @@ def second_variation(jacobian: FloatArray, strains: int) -> Stability:
         free = basis[rank:].T
         hessian = free.T @ hessian @ free
     if not hessian.size:
+        return np.zeros(0)
+    return np.asarray(np.linalg.eigvalsh((hessian + hessian.T) / 2))
+
+
+def judged(eigenvalues: FloatArray) -> Stability:
+    """What eigenvalues of the second variation, ascending, say."""
+    if not eigenvalues.size:
         return Stability(np.inf, neutral=False)
-    eigenvalues = np.linalg.eigvalsh((hessian + hessian.T) / 2)
     scale = max(1.0, float(np.abs(eigenvalues).max()))
     smallest = float(eigenvalues[0])
     return Stability(smallest, neutral=abs(smallest) <= 1e-10 * scale)
