@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import EquilibriumPath, SceneError, build, follow_path
+from cosserat_casadi import EquilibriumPath, SceneError, build, follow_path, path_result
+from cosserat_casadi.path_file import path_table
 from cosserat_casadi.path_plot import plot_path, save_path_plot
 from tests.scenes import push, rod, scene
 
@@ -69,3 +70,12 @@ def test_unknown_suffix_is_refused(buckled: EquilibriumPath, tmp_path: Path) -> 
     with pytest.raises(SceneError, match="--plot"):
         save_path_plot(buckled, tmp_path / "figure.doc")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_path_without_a_start_can_be_drawn_and_written(tmp_path: Path) -> None:
+    aside = {"rod": "rod", "kind": "clamped", "position": [0.8, 0.0, 0.0], "quaternion": [1, 0, 0, 0]}
+    none = follow_path(build(scene(push(), strain="planar", supports=[aside])), "push.force", [1, 0, 0])
+    save_path_plot(none, tmp_path / "none.png")
+    assert path_result(none)["path"] == []
+    assert path_result(none)["outcome"] == "no_start"
+    assert len(path_table(none).splitlines()) == 1
