@@ -53,6 +53,7 @@ def _diagram(title: str, reference: Reference, rows: Sequence[Measurement]) -> A
         _draw_method(axes, method, [row for row in rows if row.method == method])
     axes.set_xlabel("cold solve in compiled C, µs")
     axes.set_ylabel("pose error at the tip: position/ℓ or angle in rad, the larger")
+    axes.margins(0.08)
     axes.grid(which="major", alpha=0.35)
     axes.grid(which="minor", axis="x", alpha=0.12)
     axes.legend(fontsize=9, framealpha=0.9, loc="best")
@@ -64,7 +65,7 @@ def _diagram(title: str, reference: Reference, rows: Sequence[Measurement]) -> A
 def _draw_front(axes: Any, rows: Sequence[Measurement]) -> None:
     best = front(rows)
     x, y = [row.cold_us for row in best], [row.pose_error for row in best]
-    axes.step(x, y, where="post", color="0.75", linewidth=7, solid_joinstyle="round", label="Pareto front", zorder=1)
+    axes.step(x, y, where="post", color="0.82", linewidth=6, solid_joinstyle="round", label="Pareto front", zorder=1)
 
 
 def _draw_method(axes: Any, method: str, rows: Sequence[Measurement]) -> None:

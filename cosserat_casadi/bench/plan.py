@@ -88,6 +88,8 @@ def run_plan(plan: Plan, console: Console, report: Report) -> bool:
     """
     session = Session.open(plan.scene, plan.compiler)
     interrupted = _measure(plan, session, report)
+    for strain in {row.strain for row in plan.rows}:
+        session.problem(strain)  # that of an earlier bench too
     report("Done", len(plan.candidates), len(plan.candidates))
     print_bench(console, plan.scene.title, session.reference, plan.rows)
     print_strains(console, session.apart)

@@ -54,7 +54,7 @@ class Session:
         trials: list[Trial] = []
         try:
             for candidate in candidates:
-                scene, reference = self._problem(candidate.strain)
+                scene, reference = self.problem(candidate.strain)
                 trials.append(Trial(candidate, scene, reference, self.compiler))
             for trial in trials:
                 trial.wait()
@@ -64,7 +64,8 @@ class Session:
             for trial in trials:
                 trial.close()
 
-    def _problem(self, strain: str) -> tuple[scenes.Scene, Reference]:
+    def problem(self, strain: str) -> tuple[scenes.Scene, Reference]:
+        """The scene with a strain model, the empty name for its own, and the reference of that."""
         if not strain:
             return self.scene, self.reference
         scene = with_strain(self.scene, strain)

@@ -13,12 +13,16 @@ from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.pareto import front
 from cosserat_casadi.bench.reference import Reference
 
+NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
+"""Columns that are always shown."""
+
 COLUMNS = (
     "",
     "point",
     "modes",
     "intervals",
     "unknowns",
+    "pose error",
     "position/ℓ",
     "rotation, rad",
     "base wrench",
@@ -30,12 +34,19 @@ COLUMNS = (
     "warm, µs",
     "cold, µs",
 )
+"""All columns."""
+
+WIDE = tuple(heading for heading in COLUMNS if heading != "pose error")
+"""Columns where there is room: the pose error is the larger of two of them."""
+
+ROOM = 178
+"""Characters of a line that holds all columns."""
 
 
 def print_bench(console: Console, title: str, reference: Reference, rows: Sequence[Measurement]) -> None:
     """The table with its front marked, what errors are measured against, and why what is missing is missing."""
     console.print(f"[bold]{escape(title or 'Untitled scene')}[/]", highlight=False)
-    console.print(_table(rows))
+    console.print(_table(rows, WIDE if console.width >= ROOM else NARROW))
     console.print("● on the front: nothing measured is both more exact and faster. Times are of compiled C.")
     console.print(f"Errors are against {escape(reference_words(reference))}.", highlight=False)
     for row in rows:
@@ -57,32 +68,24 @@ def print_strains(console: Console, apart: dict[str, float]) -> None:
         console.print(sentence, highlight=False)
 
 
-def _table(rows: Sequence[Measurement]) -> Table:
+def _table(rows: Sequence[Measurement], columns: Sequence[str]) -> Table:
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for heading in COLUMNS:
+    for heading in columns:
         table.add_column(heading, justify="left" if heading in ("", "point", "modes") else "right", no_wrap=True)
     best = set(front(rows))
     for row in sorted(rows, key=lambda row: (row.strain, not isfinite(row.pose_error), -row.pose_error)):
-        table.add_row(*_cells(row, row in best), style="bold green" if row in best else "")
+        cells = dict(zip(COLUMNS, _cells(row, row in best), strict=True))
+        table.add_row(*(cells[heading] for heading in columns), style="bold green" if row in best else "")
     return table
 
 
 def _cells(row: Measurement, best: bool) -> list[str]:
-    errors = [_power(value) for value in (row.position_error, row.rotation_error, row.wrench_error)]
-    times = [_digits(value) for value in (row.igm_us, row.jacobian_us, row.warm_us, row.cold_us)]
+    """Cells in the order of COLUMNS."""
+    size = ["●" if best else "", escape(row.name), row.modes, row.intervals, str(row.unknowns)]
+    errors = [_power(v) for v in (row.pose_error, row.position_error, row.rotation_error, row.wrench_error)]
+    times = [_digits(v) for v in (row.build_s, row.vm_cold_us, row.igm_us, row.jacobian_us, row.warm_us, row.cold_us)]
     operations = f"{row.jacobian_operations:,.0f}" if isfinite(row.jacobian_operations) else "–"
-    size = [row.modes, row.intervals, str(row.unknowns)]
-    name = escape(row.name)
-    return [
-        "●" if best else "",
-        name,
-        *size,
-        *errors,
-        operations,
-        _digits(row.build_s),
-        _digits(row.vm_cold_us),
-        *times,
-    ]
+    return [*size, *errors, operations, *times]
 
 
 def _power(value: float) -> str:
