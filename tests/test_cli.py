@@ -61,10 +61,12 @@ def test_result_file_vs_solution(wire: Path) -> None:
     result = json.loads((wire / "r.json").read_text())
     rod = result["rods"]["wire"]
     discretisation = result["discretisation"]["wire"]
-    scene = read_scene(
-        wire / "wire.toml",
-        (f"accuracy.modes={discretisation['modes'][0]}", f"accuracy.nodes={discretisation['nodes']}"),
-    )
+    chosen = {
+        "modes": discretisation["modes"],
+        "nodes": discretisation["nodes"],
+        "rotation": json.dumps(discretisation["transport"]),
+    }
+    scene = read_scene(wire / "wire.toml", [f"accuracy.{key}={value}" for key, value in chosen.items()])
     solution = solve(build(scene))
     X = np.array(rod["X"])
     assert X[0] == 0.0
