@@ -23,9 +23,12 @@ from rich.progress import (
 )
 
 from cosserat_casadi import report
+from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.grid import METHODS
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.reference import NoReferenceError
+from cosserat_casadi.bench.table import print_effects
+from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import library_names
@@ -120,10 +123,19 @@ def path(
 
 
 @app.command()
-def check(scene: SceneFile, settings: Settings = None) -> None:
-    """Validate a scene, say which effects were chosen and what the model will cost."""
+def check(
+    scene: SceneFile,
+    settings: Settings = None,
+    timed: Annotated[bool, typer.Option("--time", help="Price each effect in compiled microseconds too.")] = False,
+) -> None:
+    """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     read = read_scene(scene, tuple(settings or ()))
+    compiler = find_compiler() if timed else None
     report.print_check(Console(), build(read))
+    if compiler is not None:
+        with Console(stderr=True).status("Compiling the scene with and without each effect"):
+            whole, parts = effect_times(read, compiler)
+        print_effects(Console(), whole, parts)
 
 
 @app.command()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 
 from rich.console import Console
@@ -11,6 +11,7 @@ from rich.table import Table
 
 from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.pareto import front
+from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
@@ -97,3 +98,21 @@ def _digits(value: float) -> str:
     if not isfinite(value):
         return "–"
     return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:,.0f}"
+
+
+def print_effects(console: Console, whole: Times | str, parts: Mapping[str, Times | str]) -> None:
+    """What each effect adds to the compiled times, µs."""
+    table = Table(title="Compiled with -O2: what each effect adds")
+    for heading in ("effect", "IGM, µs", "residual + Jacobian, µs", "cold solve, µs"):
+        table.add_column(heading, justify="left" if heading == "effect" else "right")
+    if isinstance(whole, str):
+        console.print(f"Not timed: {escape(whole)}", highlight=False)
+        return
+    table.add_row("the whole scene", *(f"{value:.2f}" for value in (whole.igm, whole.jacobian, whole.cold)))
+    for name, rest in parts.items():
+        if isinstance(rest, str):
+            table.add_row(escape(name), "not timed: without it", escape(rest), "")
+            continue
+        added = (whole.igm - rest.igm, whole.jacobian - rest.jacobian, whole.cold - rest.cold)
+        table.add_row(escape(name), *(f"{value:+.2f}" for value in added))
+    console.print(table)

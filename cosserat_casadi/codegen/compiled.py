@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -27,7 +28,7 @@ from cosserat_casadi.solver.outcome import Outcome
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
-FLAGS = ("-O2", "-std=c99", "-fPIC", "-shared")
+FLAGS = ("-O2", "-std=c99", "-fPIC")
 
 OUTCOMES = (
     Outcome.CONVERGED,
@@ -232,15 +233,21 @@ def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
 def _compile(compiler: str, sources: list[Path], target: Path) -> None:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / target.name
-        command = [compiler, *FLAGS, *map(str, sources), "-o", str(made), "-lm"]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-        except OSError as error:
-            raise ExportError(Problem("compiler", f"{compiler} cannot be run: {error.strerror}", REMEDY)) from None
-        if done.returncode:
-            problem = f"{compiler} could not compile it: {done.stderr.strip()[-800:]}"
-            raise ExportError(Problem(str(sources[0].parent), problem))
+        objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
+        commands = [[compiler, *FLAGS, "-c", str(s), "-o", str(o)] for s, o in zip(sources, objects, strict=True)]
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(lambda command: _run(command, sources[0].parent), commands))
+        _run([compiler, *FLAGS, "-shared", *map(str, objects), "-o", str(made), "-lm"], sources[0].parent)
         made.replace(target)
+
+
+def _run(command: list[str], folder: Path) -> None:
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+    except OSError as error:
+        raise ExportError(Problem("compiler", f"{command[0]} cannot be run: {error.strerror}", REMEDY)) from None
+    if done.returncode:
+        raise ExportError(Problem(str(folder), f"{command[0]} could not compile it: {done.stderr.strip()[-800:]}"))
 
 
 def find_compiler(wanted: str | None = None) -> str:

@@ -10,7 +10,15 @@ from __future__ import annotations
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
-_TAYLOR = {"magnus4": 2, "magnus6": 3, "magnus8": 4}
+_LAWS = {
+    "magnus4": (433.0, 84.0, 1.3),
+    "magnus6": (937.0, 116.0, 2.1),
+    "magnus8": (5120.0, 108.0, 5.1),
+}
+"""For each interval: a constant, and the factors of the turning coordinates and of their square."""
+
+_PLANAR = (114.0, 8.8, 0.5)
+"""The same for a rod that turns about one axis, where all methods are one."""
 
 
 def foreseen_operations(rod: RodProperties, discretisation: Discretisation) -> float:
@@ -25,15 +33,6 @@ def foreseen_operations(rod: RodProperties, discretisation: Discretisation) -> f
         seen * sum(m for m, c in zip(discretisation.modes, rod.admitted, strict=True) if (c < 3) is angular)
         for angular in (True, False)
     )
-    if len(rod.turning_axes) < 2:
-        each = 41 + 29 * turning + 19 * stretching + 12 * turning * stretching
-    else:
-        count = _TAYLOR[discretisation.transport]
-        each = (
-            (133 + 21 * count**3)
-            + (85 + 19 * count**2) * turning
-            + 4.7 * turning**2
-            + 30 * stretching
-            + 9.5 * turning * stretching
-        )
+    constant, linear, square = _PLANAR if len(rod.turning_axes) < 2 else _LAWS[discretisation.transport]
+    each = constant + linear * turning + square * turning**2 + 32 * stretching + 0.6 * turning * stretching
     return discretisation.elements * discretisation.nodes * each

@@ -14,12 +14,15 @@ from rich.console import Console
 
 from cosserat_casadi import CosseratError, Scene, SceneError
 from cosserat_casadi.bench import session
+from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.figure import FIGURES
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.plan import make_plan, run_plan
+from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
 from cosserat_casadi.bench.reference import NoReferenceError
+from cosserat_casadi.codegen.compiled import find_compiler
 from tests.scenes import push, rod, scene
 
 
@@ -153,3 +156,14 @@ def test_a_point_that_is_not_compiled_says_why() -> None:
     (large,) = opened.measure([Candidate("permuted", 3, 9)])
     assert large.note == "not compiled: literal system of 9 intervals"
     assert replace(large, note="").pose_error < 1e-2
+
+
+def test_effects_are_priced_in_time() -> None:
+    """The whole scene and the scene without each load, compiled and run; a load costs no negative multiple of it."""
+    wanted = planar()
+    whole, parts = effect_times(wanted, find_compiler())
+    assert isinstance(whole, Times)
+    assert list(parts) == [load.name for load in wanted.loads]
+    for times in parts.values():
+        assert isinstance(times, Times)
+        assert 0.0 < times.igm < 3 * whole.igm
