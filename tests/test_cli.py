@@ -370,3 +370,11 @@ def test_export_of_what_cannot_be_solved_writes_nothing(wire: Path) -> None:
     assert "Nothing was written." in done.stderr
     assert "Traceback" not in done.stderr
     assert sorted(p.name for p in wire.iterdir()) == ["hard.toml", "wire.toml"]
+
+
+def test_tune_refuses_a_tolerance_out_of_range(wire: Path) -> None:
+    options = ("--output", "tuned.toml", "--tolerance", "5", "--range", "push.force.x=0:1")
+    done = cosserat("tune", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 2
+    assert "accuracy.tolerance: must be <= 0.1, got 5.0" in done.stderr
+    assert not (wire / "tuned.toml").exists()

@@ -88,7 +88,6 @@ def _solver_constants() -> dict[str, Any]:
     limits = ContinuationSettings()
     return {
         "tolerance": limits.newton.tolerance,
-        "aim": limits.newton.tolerance,
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "longest": limits.longest,

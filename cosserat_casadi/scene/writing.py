@@ -8,9 +8,14 @@ from typing import Any
 from cosserat_casadi.scene.schema import Scene
 
 
+def scene_tables(scene: Scene) -> dict[str, Any]:
+    """A scene as the tables of its file: what the user gave, with defaults left out."""
+    return scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
+
+
 def scene_text(scene: Scene) -> str:
-    """A scene as TOML: what the user gave, with defaults left out; reading it gives the same scene."""
-    given = scene.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    """A scene as TOML; reading it gives the same scene."""
+    given = scene_tables(scene)
     plain = {key: value for key, value in given.items() if not _is_table(value)}
     blocks = [_lines(plain)]
     for key, value in given.items():

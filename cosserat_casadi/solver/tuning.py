@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.solver.accuracy import solve_scene
 from cosserat_casadi.solver.solution import Solution
 
@@ -54,7 +55,7 @@ def tune(
         progress: told how many solves are done.
 
     Raises:
-        SceneError: a value is refused.
+        SceneError: a value or the tolerance is refused.
     """
     wanted = scene.accuracy.tolerance if tolerance is None else tolerance
     free = _with_accuracy(scene, tolerance=wanted, modes=None, nodes=None, rotation=None)
@@ -102,11 +103,8 @@ def _fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
 
 
 def _with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
-    # Through the whole record, so that what is left out of the scene's text stays left out.
-    kept = scene.accuracy.model_dump(exclude_unset=True) | changes
-    given = {key: value for key, value in kept.items() if value is not None}
-    fields = scene.model_fields_set | {"accuracy"}
-    copy = scene.model_copy(update={"accuracy": scenes.Accuracy.model_validate(given)})
-    copy.__pydantic_fields_set__.clear()
-    copy.__pydantic_fields_set__.update(fields)
-    return copy
+    """The scene read again with other entries of its accuracy; None leaves one out."""
+    tables = scene_tables(scene)
+    entries = tables.get("accuracy", {}) | changes
+    tables["accuracy"] = {key: value for key, value in entries.items() if value is not None}
+    return scenes.scene_from_dict(tables)

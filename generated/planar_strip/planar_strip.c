@@ -16,11 +16,9 @@ enum { N = PLANAR_STRIP_UNKNOWNS, INPUTS = PLANAR_STRIP_INPUTS, INPUT_ROOM = INP
 
 #ifdef PLANAR_STRIP_SINGLE
 static const real TOLERANCE = (real)1e-5;
-static const real AIM = (real)1e-5;
 static const real SHORTEST = (real)1e-4;
 #else
 static const real TOLERANCE = (real)1e-11;
-static const real AIM = (real)1e-11;
 static const real SHORTEST = (real)1e-07;
 #endif
 enum { ITERATIONS = 60, STEPS = 400, QUICK = 2, SLOW = 4, KEPT_STEPS = 12, HALVINGS = 12 };
@@ -72,6 +70,11 @@ typedef struct {
   int damped;
   real norm;
 } correction;
+
+static void whole_load(const real *inputs, point *at) {
+  if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
+  at->factor = 1;
+}
 
 static void residual_at(const real *q, const point *at, real *residual) {
   KERNEL(planar_strip_k_residual, q, at->inputs, &at->factor);
@@ -217,7 +220,7 @@ static correction newton(const point *at, real *q) {
   correction end = {PLANAR_STRIP_MAX_ITERATIONS, 0, 0, 0, 0};
   secant kept;
   real residual[N], step[N], norm;
-  int keep = 0, done;
+  int keep = 0;
   residual_at(q, at, residual);
   norm = norm_of(residual);
   for (;;) {
@@ -230,7 +233,7 @@ static correction newton(const point *at, real *q) {
       return end;
     }
     if (norm <= TOLERANCE * size) end.status = PLANAR_STRIP_CONVERGED;
-    if (norm <= AIM * size || end.iterations == ITERATIONS) return end;
+    if (end.status == PLANAR_STRIP_CONVERGED || end.iterations == ITERATIONS) return end;
     if (!keep) {
       end.jacobians++;
       if (!linearise(q, at, &kept)) {
@@ -239,10 +242,8 @@ static correction newton(const point *at, real *q) {
       }
     }
     end.iterations++;
-    done = end.status == PLANAR_STRIP_CONVERGED;
-    if (step_for(&kept, residual, step)) length = search(at, step, keep || done ? 0 : HALVINGS, q, residual, &norm);
+    if (step_for(&kept, residual, step)) length = search(at, step, keep ? 0 : HALVINGS, q, residual, &norm);
     if (length == 0) {
-      if (done) return end;
       if (!keep) {
         end.status = PLANAR_STRIP_SINGULAR;
         return end;
@@ -340,8 +341,7 @@ static int solve_near(const real *inputs, real *q, planar_strip_info *info) {
   correction end;
   point at;
   memcpy(trial, q, sizeof trial);
-  if (INPUTS > 0) memcpy(at.inputs, inputs, INPUTS * sizeof *inputs);
-  at.factor = 1;
+  whole_load(inputs, &at);
   end = newton(&at, trial);
   info->iterations += end.iterations;
   info->jacobians += end.jacobians;
@@ -423,15 +423,15 @@ int planar_strip_solve_batch(int count, const real *inputs, real *q, planar_stri
 }
 
 void planar_strip_residual(const real *q, const real *inputs, real *residual) {
-  const real whole_load = 1;
-  KERNEL(planar_strip_k_residual, q, inputs, &whole_load);
+  const real factor = 1;
+  KERNEL(planar_strip_k_residual, q, inputs, &factor);
   RESULTS(residual);
   CALL(planar_strip_k_residual);
 }
 
 void planar_strip_residual_jacobian(const real *q, const real *inputs, real *jacobian, real *residual) {
-  const real whole_load = 1;
-  KERNEL(planar_strip_k_jacobian, q, inputs, &whole_load);
+  const real factor = 1;
+  KERNEL(planar_strip_k_jacobian, q, inputs, &factor);
   RESULTS(jacobian);
   CALL(planar_strip_k_jacobian);
   planar_strip_residual(q, inputs, residual);
@@ -441,8 +441,7 @@ void planar_strip_input_jacobian(const real *q, const real *inputs, real *d_resi
   real one[INPUT_ROOM] = {0};
   point at;
   int j;
-  if (INPUTS > 0) memcpy(at.inputs, inputs, INPUTS * sizeof *inputs);
-  at.factor = 1;
+  whole_load(inputs, &at);
   for (j = 0; j < INPUTS; j++) {
     one[j] = 1;
     rate_at(q, &at, one, 0, d_residual_d_inputs + j * N);
@@ -493,8 +492,7 @@ outcome planar_strip_solve_sensitivity(const real *inputs, const real *q, real *
   point at;
   int i, j;
   if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return PLANAR_STRIP_NOT_FINITE;
-  if (INPUTS > 0) memcpy(at.inputs, inputs, INPUTS * sizeof *inputs);
-  at.factor = 1;
+  whole_load(inputs, &at);
   residual_at(q, &at, residual);
   if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return PLANAR_STRIP_NOT_IN_EQUILIBRIUM;
   if (!linearise(q, &at, &here)) return PLANAR_STRIP_NOT_FINITE;
