@@ -22,6 +22,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.outcome import Outcome
@@ -29,15 +30,6 @@ from cosserat_casadi.solver.outcome import Outcome
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
-
-OUTCOMES = (
-    Outcome.CONVERGED,
-    Outcome.MAX_ITERATIONS,
-    Outcome.NOT_FINITE,
-    Outcome.SINGULAR,
-    Outcome.LOAD_STALLED,
-)
-"""Statuses of the solver in C, in the order of their numbers."""
 
 
 class _Info(ctypes.Structure):

@@ -77,7 +77,7 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     generated = sources(functions, f"{name}_kernels", "int")
     # casadi.external expects the integers that CasADi itself was built with.
     derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
-    generated[f"{name}_kernels.c"] = _prologue(names.name, names.macro) + generated[f"{name}_kernels.c"]
+    generated[f"{name}_kernels.c"] = _prologue(names.macro) + generated[f"{name}_kernels.c"]
     files = {
         **library_sources(model, names, error_estimate),
         **generated,
@@ -90,6 +90,6 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     return files
 
 
-def _prologue(name: str, macro: str) -> str:
+def _prologue(macro: str) -> str:
     """What makes the kernels compute in float when the library does."""
     return f"#ifdef {macro}_SINGLE\n#define casadi_real float\n#endif\n"

@@ -13,7 +13,6 @@ from cosserat_casadi.model.build import Model
 
 GENERATOR = {"with_header": True, "static_aux": True}
 
-
 STRAIGHT = 25_000
 """Instructions up to which a kernel is straight-line code: thrice as fast as loops, but compilers choke on more."""
 

@@ -11,11 +11,11 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
-from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.names import FUNCTIONS, Names
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import ContinuationSettings
-from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solve import NEAR
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4"}
@@ -104,14 +104,7 @@ def _solver_constants() -> dict[str, Any]:
 
 
 def _texts() -> dict[str, str]:
-    outcomes = (
-        Outcome.CONVERGED,
-        Outcome.MAX_ITERATIONS,
-        Outcome.NOT_FINITE,
-        Outcome.SINGULAR,
-        Outcome.LOAD_STALLED,
-    )
-    return {"text_not_in_equilibrium": NOT_IN_EQUILIBRIUM, **{f"text_{o.label}": o.value for o in outcomes}}
+    return {"text_not_in_equilibrium": NOT_IN_EQUILIBRIUM, **{f"text_{o.label}": o.value for o in OUTCOMES}}
 
 
 def _input_words(model: Model, names: Names) -> dict[str, str]:
@@ -151,7 +144,7 @@ def _unknown_words(model: Model) -> dict[str, str]:
 
 
 def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
-    words = {word: names.function(word, rod) for word in ("igm", "tip", "tip_jacobian", "shape")}
+    words = {word: names.function(word, rod) for word in FUNCTIONS}
     kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
     basics = {"name": names.name, "rod": rod, "coordinates": model.frame.bases[rod].size}
     return {**words, **kernels, **basics}

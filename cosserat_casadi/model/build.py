@@ -127,6 +127,19 @@ class Model:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
         return functions.operations(function)
 
+    def rod_name(self, rod: str | None) -> str:
+        """A rod's name; None stands for the only one.
+
+        Raises:
+            KeyError: there is no such rod, or there are several to choose from.
+        """
+        names = list(self.frame.bases)
+        if rod is None and len(names) == 1:
+            return names[0]
+        if rod not in names:
+            raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
+        return rod
+
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
         values = load_values(self.scene, self.inputs, inputs)

@@ -14,6 +14,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.arclength import ArcSettings, Curve, Monitor
 from cosserat_casadi.solver.continuation import Path, Progress
 from cosserat_casadi.solver.events import DETERMINANT
+from cosserat_casadi.solver.newton import relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.solve import input_path, solve
@@ -95,15 +96,15 @@ class EquilibriumPath:
 
     def tip(self, rod: str | None = None) -> Pose:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
-        return _tips(self.model, self.x, self._name(rod))
+        return _tips(self.model, self.x, self.model.rod_name(rod))
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
         """Pose of a rod's tip at an event, shapes (1, …)."""
-        return _tips(self.model, event.x[None, :], self._name(rod))
+        return _tips(self.model, event.x[None, :], self.model.rod_name(rod))
 
     def section(self, rod: str | None = None) -> float:
         """Abscissa of the section whose way tells most: the tip, of a held rod where the followed load acts, or 1/2."""
-        name, scene = self._name(rod), self.model.scene
+        name, scene = self.model.rod_name(rod), self.model.scene
         if all(support.rod != name for support in scene.supports):
             return 1.0
         load = next(load for load in scene.loads if load.name == self.name.split(".")[0])
@@ -111,11 +112,11 @@ class EquilibriumPath:
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
-        return _positions(self.model, self.x, self._name(rod), X)
+        return _positions(self.model, self.x, self.model.rod_name(rod), X)
 
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
-        return np.asarray(_positions(self.model, event.x[None, :], self._name(rod), X)[0])
+        return np.asarray(_positions(self.model, event.x[None, :], self.model.rod_name(rod), X)[0])
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
@@ -127,19 +128,11 @@ class EquilibriumPath:
             x,
             Outcome.CONVERGED,
             Outcome.CONVERGED.value,
-            residual_norm=float(np.linalg.norm(self.model.residual(x, self.inputs(factor)).full())),
+            residual_norm=relative_norm(self.model.residual(x, self.inputs(factor)).full()[:, 0], x),
             iterations=0,
             smallest_eigenvalue=None if least is None else float(least[index]),
             stable=None if stable is None else bool(stable[index]),
         )
-
-    def _name(self, rod: str | None) -> str:
-        names = list(self.model.frame.bases)
-        if rod is None and len(names) == 1:
-            return names[0]
-        if rod not in names:
-            raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
-        return rod
 
 
 @dataclass(frozen=True)

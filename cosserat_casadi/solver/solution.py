@@ -89,7 +89,7 @@ class Solution:
             X: shape (k,).
             rod: name of the rod; may be left out where there is one.
         """
-        name = self._name(rod)
+        name = self.model.rod_name(rod)
         matrix = self._interpolation(X, name)
         nodal = self._fields(name)
         position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
@@ -98,20 +98,20 @@ class Solution:
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
-        name = self._name(rod)
+        name = self.model.rod_name(rod)
         basis, columns = self.model.frame.bases[name], self.model.frame.rod_slices[name]
         strain: FloatArray = basis.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float))).full().T
         return strain
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Internal wrench Λ = [M; N] in the sections' frames at abscissae X, shape (k, 6), N m and N."""
-        name = self._name(rod)
+        name = self.model.rod_name(rod)
         wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
         return wrench
 
     def base_wrench(self, rod: str | None = None) -> BaseWrench:
         """Force and moment of the clamp on a rod."""
-        nodal = self._fields(self._name(rod))
+        nodal = self._fields(self.model.rod_name(rod))
         return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
 
     def _fields(self, rod: str) -> list[FloatArray]:
@@ -120,14 +120,6 @@ class Solution:
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
         abscissae = np.atleast_1d(np.asarray(X, dtype=float))
         return self.model.frame.bases[rod].grid.interpolation_matrix(abscissae)
-
-    def _name(self, rod: str | None) -> str:
-        names = list(self.model.frame.bases)
-        if rod is None and len(names) == 1:
-            return names[0]
-        if rod not in names:
-            raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
-        return rod
 
 
 def _rotations(q: FloatArray) -> FloatArray:

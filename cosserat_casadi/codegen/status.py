@@ -1,0 +1,12 @@
+"""Statuses of the solver in C, and the outcomes that they are."""
+
+from cosserat_casadi.solver.outcome import Outcome
+
+OUTCOMES = (
+    Outcome.CONVERGED,
+    Outcome.MAX_ITERATIONS,
+    Outcome.NOT_FINITE,
+    Outcome.SINGULAR,
+    Outcome.LOAD_STALLED,
+)
+"""Statuses of the solver in C, in the order of their numbers."""
