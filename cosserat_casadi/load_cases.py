@@ -1,7 +1,7 @@
 """Sets of load cases: rows of a CSV file, or points spread evenly over ranges of the inputs.
 
-A column is ``load.field.axis`` with axis x, y or z, and ``load.field.axis.degree`` for a Legendre coefficient beyond
-the constant one. Inputs without a column keep the scene's values.
+A column is ``load.field.axis`` with axis x, y or z, ``load.field.axis.degree`` for a Legendre coefficient beyond the
+constant one, or ``actuator.field`` for a number. Inputs without a column keep the scene's values.
 """
 
 from __future__ import annotations
@@ -26,8 +26,9 @@ def column_places(layout: InputLayout) -> dict[str, int]:
     places = {}
     for name, place, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
         for k in range(default.size):
+            axis = f".{AXES[k % 3]}" if default.shape[0] == 3 else ""
             degree = f".{k // 3}" if k >= 3 else ""
-            places[f"{name}.{AXES[k % 3]}{degree}"] = place.start + k
+            places[f"{name}{axis}{degree}"] = place.start + k
     return places
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.effects.course import offset_at
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
@@ -25,6 +26,7 @@ SAMPLES = np.linspace(0.0, 1.0, 201)
 RODS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")
 AXES = ("#cc3311", "#228833", "#0055bb")
 LOADS = "#b2560d"
+ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 
 
 class PlotUnavailableError(CosseratError):
@@ -173,6 +175,7 @@ def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) 
         _line(axes, shape[:1], plane, color="0.2", marker="s", markersize=9, linestyle="none")
         _draw_frames(axes, solution, name, plane)
     _draw_supports(axes, solution, plane)
+    _draw_actuators(axes, solution, plane)
     _draw_arrows(axes, solution, plane)
     names = "xyz"
     shown = plane or (0, 1, 2)
@@ -214,6 +217,28 @@ def _draw_supports(axes: Any, solution: Solution, plane: tuple[int, int] | None)
         point = np.array([support.position])
         style = {"marker": marker, "markersize": 10, "linestyle": "none", "color": "0.2"}
         _line(axes, point, plane, label=f"{support.kind} tip", **style)
+
+
+def _draw_actuators(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
+    for i, actuator in enumerate(solution.model.scene.actuators):
+        state = solution.actuator(actuator.name)
+        if actuator.kind == "tendon":
+            label, style = f"{actuator.name}: {state['tension']:.3g} N", {"linewidth": 1.4, "marker": ""}
+        else:
+            label, style = f"{actuator.name}: {state['pressure']:.3g} Pa", {"linewidth": 4.0, "alpha": 0.5}
+        course = actuator_course(solution, actuator)
+        _line(axes, course, plane, color=ACTUATORS[i % len(ACTUATORS)], label=label, **style)
+        if actuator.kind == "tendon":
+            end = {"marker": "o", "markersize": 4, "linestyle": "none", "color": ACTUATORS[i % len(ACTUATORS)]}
+            _line(axes, course[-1:], plane, **end)
+
+
+def actuator_course(solution: Solution, actuator: Any) -> FloatArray:
+    """Points of an actuator's course in the world, shape (k, 3), m: r + R D."""
+    start, end = actuator.span
+    X = start + (end - start) * SAMPLES
+    pose, offset = solution.pose(X, actuator.rod), offset_at(actuator, X)[0]
+    return np.asarray(pose.position + np.einsum("kij,jk->ki", pose.rotation[:, :, :2], offset))
 
 
 def _arrows(solution: Solution) -> list[Arrow]:

@@ -33,13 +33,14 @@ def price(model: Model) -> Price:
 
 
 def price_of_load(scene: scenes.Scene, load: str) -> int:
-    """Operations that a load adds to the residual: the scene with it less the scene without."""
+    """Operations that a load or actuator adds to the residual: the scene with it less the scene without."""
     model, without = build(scene), build(without_load(scene, load))
     return model.operations(model.residual) - without.operations(without.residual)
 
 
 def without_load(scene: scenes.Scene, load: str) -> scenes.Scene:
-    """The scene without one of its loads, and without the inputs that were its."""
-    rest = tuple(other for other in scene.loads if other.name != load)
+    """The scene without one of its loads or actuators, and without the inputs that were its."""
+    loads = tuple(other for other in scene.loads if other.name != load)
+    actuators = tuple(other for other in scene.actuators if other.name != load)
     names = tuple(name for name in scene.input_names() if not name.startswith(f"{load}."))
-    return scene.model_copy(update={"loads": rest, "inputs": names})
+    return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": names})

@@ -51,7 +51,7 @@ def print_check(console: Console, model: Model) -> None:
     """What a valid scene holds, and what its model costs."""
     console.print(f"[bold]{escape(model.scene.title or 'Untitled scene')}[/]: the scene is valid.", highlight=False)
     console.print(_discretisation_table(model))
-    if model.scene.loads:
+    if model.scene.causes:
         console.print(_load_table(model))
     if model.scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in model.scene.supports))
@@ -184,13 +184,13 @@ def _discretisation_table(model: Model) -> Table:
 
 def _load_table(model: Model) -> Table:
     table = Table()
-    for heading in ("load", "kind", "free inputs"):
+    for heading in ("load or actuator", "kind", "free inputs"):
         table.add_column(heading)
     table.add_column("adds to the residual", justify="right")
-    for load in model.scene.loads:
-        free = [n.split(".")[1] for n in model.inputs.names if n.startswith(f"{load.name}.")]
-        cost = price_of_load(model.scene, load.name)
-        table.add_row(escape(load.name), load.kind, ", ".join(free) or "none", f"{cost:,} operations")
+    for cause in model.scene.causes:
+        free = [n.split(".")[1] for n in model.inputs.names if n.startswith(f"{cause.name}.")]
+        cost = price_of_load(model.scene, cause.name)
+        table.add_row(escape(cause.name), cause.kind, ", ".join(free) or "none", f"{cost:,} operations")
     return table
 
 

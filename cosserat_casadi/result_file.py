@@ -45,6 +45,8 @@ def result(solution: Solution) -> dict[str, Any]:
         },
         "rods": {name: _rod(solution, name) for name in model.frame.bases},
     }
+    if model.scene.actuators:
+        data["actuators"] = {one.name: solution.actuator(one.name) for one in model.scene.actuators}
     found: dict[str, Any] = plain(data)
     return found
 

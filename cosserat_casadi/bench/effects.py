@@ -11,7 +11,7 @@ from cosserat_casadi.price import without_load
 
 
 def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[str, Times | str]]:
-    """Times of a scene, and of the scene without each of its loads by the load's name; a sentence where one fails.
+    """Times of a scene, and of the scene without each of its loads and actuators by name; a sentence where one fails.
 
     Args:
         scene: the scene.
@@ -21,8 +21,8 @@ def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[
         whole = stack.enter_context(closing(Program(build(scene), compiler)))
         # The compiler works on all of them at once; nothing is timed until it is done.
         parts = {
-            load.name: stack.enter_context(closing(Program(build(without_load(scene, load.name)), compiler)))
-            for load in scene.loads
+            cause.name: stack.enter_context(closing(Program(build(without_load(scene, cause.name)), compiler)))
+            for cause in scene.causes
         }
         for program in (whole, *parts.values()):
             program.wait()

@@ -112,10 +112,11 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
     macros, rows = [], []
     for entry in entries:
         macro = f"{names.macro}_INPUT_{entry['name'].replace('.', '_').upper()}"
-        count, axes = len(entry["value"]), f"{entry['axes']} axes"
-        macros.append(f"#define {macro} {entry['first']} /* {count} numbers, {entry['unit']}, {axes} */")
-        span = f"{entry['first']} … {entry['first'] + count - 1}"
-        rows.append(f"| {span} | `{entry['name']}`, {axes} | {entry['unit']} | {_listed(entry['value'])} |")
+        count, axes = len(entry["value"]), "" if entry["axes"] == "none" else f", {entry['axes']} axes"
+        numbered = "1 number" if count == 1 else f"{count} numbers"
+        macros.append(f"#define {macro} {entry['first']} /* {numbered}, {entry['unit']}{axes} */")
+        span = f"{entry['first']} … {entry['first'] + count - 1}" if count > 1 else f"{entry['first']}"
+        rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {_listed(entry['value'])} |")
     numbers = [number for entry in entries for number in entry["value"]]
     polynomial = any(entry["shape"][1] > 1 for entry in entries)
     return {

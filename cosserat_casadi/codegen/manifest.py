@@ -10,6 +10,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import STRAINS
 
@@ -50,7 +51,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
 
 def input_entries(model: Model) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
-    kinds = {load.name: load for load in model.scene.loads}
+    kinds = {cause.name: cause for cause in model.scene.causes}
     entries = []
     for name, place, default in zip(
         model.inputs.names, model.inputs.slices.values(), model.inputs.defaults, strict=True
@@ -60,7 +61,7 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
             {
                 "name": name,
                 "unit": EFFECTS[kinds[load].kind].magnitudes[field],
-                "axes": "section" if getattr(kinds[load], "frame", "world") == "body" else "world",
+                "axes": _axes(kinds[load], default),
                 "first": place.start,
                 "shape": list(default.shape),
                 "value": default.ravel(order="F").tolist(),
@@ -69,8 +70,14 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
     return entries
 
 
+def _axes(cause: Any, default: FloatArray) -> str:
+    if default.shape[0] == 1:
+        return "none"
+    return "section" if getattr(cause, "frame", "world") == "body" else "world"
+
+
 def unknown_entries(model: Model) -> list[dict[str, Any]]:
-    """Unknowns in the order of their vector: strain coordinates of every rod, then multipliers of supports."""
+    """Unknowns in the order of their vector: strain coordinates, multipliers of supports, unknown tensions."""
     entries: list[dict[str, Any]] = []
     for rod, basis in model.frame.bases.items():
         first = model.frame.rod_slices[rod].start
@@ -82,6 +89,10 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     for support, hold in model.frame.holds:
         entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
         first += hold.size
+    for tendon, _ in model.frame.cables:
+        unit = model.frame.tension_unit(tendon.rod)
+        place = model.frame.tension_place(tendon.name)
+        entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": place, "count": 1, "unit_N": unit})
     return entries
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from cosserat_casadi.effects.chamber import Chamber
 from cosserat_casadi.effects.distributed_wrench import DistributedWrench
 from cosserat_casadi.effects.effect import Effect
 from cosserat_casadi.effects.gravity import Gravity
 from cosserat_casadi.effects.point_wrench import PointForceAndMoment
 from cosserat_casadi.effects.support import Clamped, Pinned, Support
+from cosserat_casadi.effects.tendon import Tendon
 from cosserat_casadi.effects.tip_wrench import TipWrench
 
 EFFECTS: dict[str, Effect] = {
-    effect.kind: effect for effect in (Gravity(), TipWrench(), PointForceAndMoment(), DistributedWrench())
+    effect.kind: effect
+    for effect in (Gravity(), TipWrench(), PointForceAndMoment(), DistributedWrench(), Tendon(), Chamber())
 }
-"""Loads by the word of the scene format."""
+"""Loads and actuators by the word of the scene format."""
 
 SUPPORTS: dict[str, Support] = {support.kind: support for support in (Clamped(), Pinned())}
 """Supports by the word of the scene format."""

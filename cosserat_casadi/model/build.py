@@ -114,6 +114,11 @@ class Model:
         return {rod: functions.fields(self.frame, rod) for rod in self.frame.bases}
 
     @cached_property
+    def actuator(self) -> dict[str, ca.Function]:
+        """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and the derivative with x."""
+        return {one.name: functions.actuator(self.frame, one.name) for one in self.scene.actuators}
+
+    @cached_property
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of all rods, J."""
         return functions.energy(self.frame)
@@ -144,10 +149,10 @@ class Model:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
         values = load_values(self.scene, self.inputs, inputs)
         return all(
-            EFFECTS[load.kind].has_potential(load, values[load.name], basis.rod)
-            for load in self.scene.loads
+            EFFECTS[cause.kind].has_potential(cause, values[cause.name], basis.rod)
+            for cause in self.scene.causes
             for basis in self.frame.bases.values()
-            if EFFECTS[load.kind].acts_on(load, basis.rod.name)
+            if EFFECTS[cause.kind].acts_on(cause, basis.rod.name)
         )
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:

@@ -192,6 +192,21 @@ def fields(frame: Frame, rod: str) -> ca.Function:
     return ca.Function(_name("fields", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
+def actuator(frame: Frame, name: str) -> ca.Function:
+    """(x, inputs) ↦ (tension, length) of a tendon, N and m, or (pressure, volume) of a chamber, Pa and m³.
+
+    Third comes the derivative of the length or the volume with x, 1×size: what a unit of tension or pressure does.
+    """
+    a = _arguments(frame)
+    effort, extent, gradient = System(frame, a).actuator(name)
+    kind = next(one.kind for one in frame.scene.actuators if one.name == name)
+    names = {"tendon": ["tension", "length"], "chamber": ["pressure", "volume"]}[kind]
+    outputs = [ca.densify(ca.MX(value)) for value in (effort, extent, gradient)]
+    return ca.Function(
+        _name("actuator", name), [a.x, a.inputs], outputs, ["x", "inputs"], [*names, f"d_{names[1]}_d_x"]
+    )
+
+
 def energy(frame: Frame) -> ca.Function:
     """(x, inputs) ↦ elastic energy, J."""
     a = _arguments(frame)

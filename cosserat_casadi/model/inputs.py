@@ -20,8 +20,9 @@ class InputLayout:
     """The inputs of a model, stacked into one vector.
 
     Attributes:
-        names: ``load.field`` in the order of the vector.
-        defaults: the scene's value of each, shape (3, k): column k holds the k-th Legendre coefficient.
+        names: ``load.field`` or ``actuator.field`` in the order of the vector.
+        defaults: the scene's value of each, shape (1, 1) of a tension, a length or a pressure, (3, k) of a vector:
+            column k holds the k-th Legendre coefficient.
     """
 
     names: tuple[str, ...]
@@ -42,7 +43,7 @@ class InputLayout:
         """The stacked vector, from the scene's values and those given here.
 
         Args:
-            values: new values by name; (3,) for a vector, (3, k) for Legendre coefficients.
+            values: new values by name; a number, (3,) for a vector, (3, k) for Legendre coefficients.
 
         Returns:
             shape (size,), SI units.
@@ -76,24 +77,26 @@ class InputLayout:
         }
 
 
-def magnitude(load: scenes.Load, field: str) -> FloatArray:
-    """A magnitude of a load as the scene has it, shape (3, k); zero where it is left out."""
-    value = getattr(load, field, None)
+def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
+    """A magnitude as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
+    value = getattr(cause, field, None)
+    if isinstance(value, int | float):
+        return np.array([[float(value)]])
     return np.zeros((3, 1)) if value is None else coefficients(value)
 
 
 def input_layout(scene: scenes.Scene) -> InputLayout:
-    """The inputs a scene asks for, by default every load's magnitudes."""
-    loads = {load.name: load for load in scene.loads}
+    """The inputs a scene asks for, by default every magnitude of loads and actuators."""
+    causes = {cause.name: cause for cause in scene.causes}
     names = scene.input_names()
-    defaults = [magnitude(loads[n.split(".")[0]], n.split(".")[1]) for n in names]
+    defaults = [magnitude(causes[n.split(".")[0]], n.split(".")[1]) for n in names]
     return InputLayout(names, tuple(defaults))
 
 
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:
-    """Numeric magnitudes of every load for given inputs, by load name and field."""
+    """Numeric magnitudes of every load and actuator for given inputs, by name and field."""
     free = layout.unpack(inputs)
     return {
-        load.name: {f: free.get(f"{load.name}.{f}", magnitude(load, f)) for f in EFFECTS[load.kind].magnitudes}
-        for load in scene.loads
+        cause.name: {f: free.get(f"{cause.name}.{f}", magnitude(cause, f)) for f in EFFECTS[cause.kind].magnitudes}
+        for cause in scene.causes
     }

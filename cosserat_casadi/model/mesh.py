@@ -18,10 +18,10 @@ DEFAULT_TRANSPORT = "magnus6"
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
     """Abscissae at which a rod is cut: its ends and the sections at which a load makes a jump."""
     cuts = {0.0, 1.0}
-    for load in scene.loads:
-        effect = EFFECTS[load.kind]
-        if effect.acts_on(load, rod):
-            cuts.update(effect.breaks(load))
+    for cause in scene.causes:
+        effect = EFFECTS[cause.kind]
+        if effect.acts_on(cause, rod):
+            cuts.update(effect.breaks(cause))
     return tuple(sorted(cuts))
 
 

@@ -7,27 +7,31 @@ one; what couples rods adds rows and columns, never instructions to the rods the
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.chamber import PRESSED, volume_rates
+from cosserat_casadi.effects.course import course
 from cosserat_casadi.effects.effect import Site, constant
+from cosserat_casadi.effects.held_length import HeldLength
 from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.effects.support import Hold, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.inputs import InputLayout, magnitude
 from cosserat_casadi.model.rods import base_pose, rod_properties
+from cosserat_casadi.rod.cable import LedCable
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, ActuationStress
+from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course
 
 
 @dataclass(frozen=True)
@@ -78,7 +82,22 @@ class Frame:
     @cached_property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.strain_size + sum(hold.size for _, hold in self.holds)
+        return self.strain_size + sum(hold.size for _, hold in self.holds) + len(self.cables)
+
+    @cached_property
+    def cables(self) -> list[tuple[scenes.Tendon, Course]]:
+        """Tendons of given length, whose tensions are unknowns, unit EI/ℓ² each."""
+        held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
+        return [(tendon, course(tendon, self.bases[tendon.rod].grid)) for tendon in held]
+
+    def tension_place(self, tendon: str) -> int:
+        """Where the tension of a tendon of given length stands in x."""
+        first = self.size - len(self.cables)
+        return first + [cable.name for cable, _ in self.cables].index(tendon)
+
+    def tension_unit(self, rod: str) -> float:
+        """EI/ℓ² of a rod, N."""
+        return self.bases[rod].energy_unit / self.bases[rod].rod.length
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
@@ -121,8 +140,9 @@ class System:
 
     @cached_property
     def residual(self) -> Matrix:
-        """Residuals of the rods, then the gaps of the supports; zero in equilibrium, without unit."""
+        """Residuals of the rods, the gaps of the supports, of the cables; zero in equilibrium, without unit."""
         gaps = [self._closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
+        gaps += [length.gap for length in self._lengths]
         return ca.vertcat(*[igm.residual for igm in self.rods.values()], *gaps)
 
     @cached_property
@@ -131,19 +151,37 @@ class System:
         if any(b.discretisation.transport == "permuted" for b in self.frame.bases.values()):
             return ca.jacobian(self.residual, self.arguments.x)
         blocks = ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
-        if not self._holds:
+        borders = [self._hold_border(s, hold) for s, hold, _ in self._holds]
+        borders += [self._length_border(length) for length in self._lengths]
+        if not borders:
             return blocks
-        right, below = zip(*[self._hold_columns(s, hold) for s, hold, _ in self._holds], strict=True)
-        size = sum(column.shape[1] for column in right)
-        yielding = type(blocks)(size, size)
-        if not self._whole:
-            yielding = (1 - self.arguments.factor) * ca.MX.eye(size)
-        return ca.blockcat([[blocks, ca.horzcat(*right)], [ca.vertcat(*below), yielding]])
+        right, below, corner = zip(*borders, strict=True)
+        return ca.blockcat([[blocks, ca.horzcat(*right)], [ca.vertcat(*below), ca.diagcat(*corner)]])
 
     def tip(self, rod: str) -> Pose:
         """Pose of a rod's tip in its base frame."""
         place = self.rods[rod].shape
         return Pose(place.position_at(-1), place.quaternion[:, -1])
+
+    def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
+        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
+        one = next(actuator for actuator in self.frame.scene.actuators if actuator.name == name)
+        place, basis = self.rods[one.rod].shape, self.frame.bases[one.rod]
+        if one.kind == "chamber":
+            rates = ca.DM(volume_rates(one, basis.grid) * basis.rod.length * basis.grid.weights)
+            effort, extent, gradient = self._effort(one, "pressure"), *place.strain_work(PRESSED, rates)
+        else:
+            cable = LedCable(place, course(one, basis.grid))
+            held = one.length is not None
+            effort = self._tension(one) if held else self._effort(one, "tension")
+            effort = ca.fmax(effort, 0.0) if one.slack else effort
+            extent, gradient = cable.length, cable.length_gradient
+        rest = type(self.arguments.x)(self.frame.size - self.frame.strain_size, 1)
+        return effort, extent, ca.vertcat(self._among_strains(one.rod, gradient), rest).T
+
+    def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
+        value = _value(self.frame.layout, actuator, field, self.arguments)
+        return ca.DM(0.0) if value is None else value
 
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
@@ -174,17 +212,44 @@ class System:
             start += hold.size
         return found
 
-    def _hold_columns(self, support: scenes.Support, hold: Hold) -> tuple[Matrix, Matrix]:
-        tangent, columns = self.tangents[support.rod], self.frame.rod_slices[support.rod]
+    @cached_property
+    def _lengths(self) -> list[HeldLength]:
+        return [self._held_length(tendon, course) for tendon, course in self.frame.cables]
+
+    def _held_length(self, tendon: scenes.Tendon, course: Course) -> HeldLength:
+        whole = replace(self.arguments, factor=1.0)
+        return HeldLength(
+            cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.course is course),
+            wanted=_value(self.frame.layout, tendon, "length", whole),
+            tension=self.arguments.x[self.frame.tension_place(tendon.name)],
+            slack=tendon.slack,
+            factor=self.arguments.factor,
+        )
+
+    def _hold_border(self, support: scenes.Support, hold: Hold) -> tuple[Matrix, Matrix, Matrix]:
+        """Columns, rows and corner that a support adds to the Jacobian."""
+        tangent = self.tangents[support.rod]
         moved, turned = tangent.position(-1), tangent.rotation_of(-1)
-        before, after = columns.start, self.frame.strain_size - columns.stop
         force = hold.force_variation(moved, turned)
         gap = hold.gap_variation(self.tip(support.rod), moved, turned)
         gap = gap if self._whole else self.arguments.factor * gap
-        pad = type(force)
-        column = ca.vertcat(pad(before, hold.size), force, pad(after, hold.size))
-        row = ca.horzcat(pad(hold.size, before), gap, pad(hold.size, after))
-        return column, row
+        yielding = type(force)(hold.size, hold.size)
+        if not self._whole:
+            yielding = (1 - self.arguments.factor) * ca.MX.eye(hold.size)
+        return self._among_strains(support.rod, force), self._among_strains(support.rod, gap.T).T, yielding
+
+    def _length_border(self, length: HeldLength) -> tuple[Matrix, Matrix, Matrix]:
+        """Column, row and corner that a cable of given length adds to the Jacobian."""
+        rod = length.cable.shape.basis.rod.name
+        column = self._among_strains(rod, length.pull)
+        return column, (length.gap_with_length * column).T, length.gap_with_tension
+
+    def _among_strains(self, rod: str, columns: Matrix) -> Matrix:
+        """Columns on the coordinates of one rod, among those of all."""
+        place, count = self.frame.rod_slices[rod], columns.shape[1]
+        pad = type(columns)
+        before, after = pad(place.start, count), pad(self.frame.strain_size - place.stop, count)
+        return ca.vertcat(before, columns, after)
 
     def _rod(self, name: str) -> InverseGeometricModel:
         basis = self.frame.bases[name]
@@ -192,32 +257,39 @@ class System:
         rotation = quaternion_to_matrix(self.frame.base(name).quaternion)
         actions = rod_actions(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
         actions += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        actions += [Cable(course, self._tension(t)) for t, course in self.frame.cables if t.rod == name]
         return balance(shape(basis, q), actions)
+
+    def _tension(self, tendon: scenes.Tendon) -> Matrix:
+        """Unknown tension of a tendon of given length, N."""
+        return self.frame.tension_unit(tendon.rod) * self.arguments.x[self.frame.tension_place(tendon.name)]
 
 
 def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
     """Balance of a rod of this shape under these actions."""
-    wrenches = [action for action in actions if not isinstance(action, ActuationStress)]
-    stresses = tuple(action for action in actions if isinstance(action, ActuationStress))
-    return InverseGeometricModel(Statics(place, wrenches), stresses)
+    wrenches = [action for action in actions if not isinstance(action, Actuation)]
+    actuation = tuple(action for action in actions if isinstance(action, Actuation))
+    return InverseGeometricModel(Statics(place, wrenches), actuation)
 
 
 def rod_actions(frame: Frame, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
-    """What the scene's loads do to one rod, in its base frame."""
+    """What the scene's loads and actuators do to one rod, in its base frame."""
     basis = frame.bases[rod]
     site = Site(basis.rod, basis.grid, base_R_world)
     found: list[Action] = []
-    for load in frame.scene.loads:
-        effect = EFFECTS[load.kind]
-        if effect.acts_on(load, rod):
-            values = {field: _value(frame.layout, load, field, arguments) for field in effect.magnitudes}
-            found.extend(effect.actions(load, site, values))
+    for cause in frame.scene.causes:
+        effect = EFFECTS[cause.kind]
+        if effect.acts_on(cause, rod):
+            values = {field: _value(frame.layout, cause, field, arguments) for field in effect.magnitudes}
+            found.extend(effect.actions(cause, site, values))
     return found
 
 
-def _value(layout: InputLayout, load: scenes.Load, field: str, arguments: Arguments) -> Matrix | None:
-    place = layout.slices.get(f"{load.name}.{field}")
-    default = magnitude(load, field)
+def _value(
+    layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, arguments: Arguments
+) -> Matrix | None:
+    place = layout.slices.get(f"{cause.name}.{field}")
+    default = magnitude(cause, field)
     value = constant(default) if place is None else ca.reshape(arguments.inputs[place], *default.shape)
     if value is None or (isinstance(arguments.factor, float) and arguments.factor == 1.0):
         return value

@@ -13,10 +13,11 @@ import casadi as ca
 from cosserat_casadi.maths.blocks import stack
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.cable import LedCable
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import interval_kernels
-from cosserat_casadi.rod.wrenches import ActuationStress
+from cosserat_casadi.rod.wrenches import Actuation, Cable
 
 
 @dataclass(frozen=True)
@@ -25,11 +26,11 @@ class InverseGeometricModel:
 
     Attributes:
         statics: the rod's shape and internal wrench.
-        actuation: stresses that actuators add to the elastic ones.
+        actuation: what actuators put against the elastic stress.
     """
 
     statics: Statics
-    actuation: tuple[ActuationStress, ...] = ()
+    actuation: tuple[Actuation, ...] = ()
 
     @property
     def shape(self) -> Shape:
@@ -44,9 +45,16 @@ class InverseGeometricModel:
         return self._transposed_force()
 
     @cached_property
+    def cables(self) -> tuple[tuple[Matrix, LedCable], ...]:
+        """Tension, N, and course of every cable."""
+        return tuple((a.tension, LedCable(self.shape, a.course)) for a in self.actuation if isinstance(a, Cable))
+
+    @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        forces = [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation]
+        unit = self.shape.basis.energy_unit
+        forces = [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation if not isinstance(a, Cable)]
+        forces += [tension / unit * cable.length_gradient for tension, cable in self.cables]
         return sum(forces[1:], forces[0]) if forces else None
 
     @cached_property
@@ -63,15 +71,26 @@ class InverseGeometricModel:
 
     @cached_property
     def potential(self) -> Matrix | None:
-        """Elastic energy less the work of the loads, 1×1, J; None unless every load is a dead force.
+        """Elastic energy less the work of loads and actuators, 1×1, J; None unless every load is a dead force.
 
         With r = S t and n̂ = Sᵀ f the work of the forces is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
-        wrenches = self.statics.wrenches
-        if self.actuation or any(w.follower or w.moment is not None for w in wrenches):
+        if any(w.follower or w.moment is not None for w in self.statics.wrenches):
             return None
         covector = self.statics.force_covector
-        return self.energy if covector is None else self.energy - ca.dot(covector, self.shape.tangent)
+        loads = self.energy if covector is None else self.energy - ca.dot(covector, self.shape.tangent)
+        return loads if not self.actuation else loads + self._actuation_energy()
+
+    def _actuation_energy(self) -> Matrix:
+        """τ L of every cable, and of stresses that do not vary their work on the strains, 1×1, J."""
+        energy: Matrix = ca.DM(0.0)
+        for tension, cable in self.cables:
+            energy = energy + tension * cable.length
+        for a in self.actuation:
+            if not isinstance(a, Cable):
+                work = ca.dot(self._project(a.stress @ ca.DM(a.profiles)), self.shape.q)
+                energy = energy + self.shape.basis.energy_unit * work
+        return energy
 
     def _transposed_force(self) -> Matrix:
         """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""

@@ -6,6 +6,7 @@ pose of the base enters where loads come in and results go out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -66,7 +67,7 @@ class Shape:
     @cached_property
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
-        strain = self.basis.linear_strain_rows(self.q)
+        strain = self.basis.strain_rows(self.q, (3, 4, 5))
         length = self.basis.rod.length
         pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
         scaled = [self.scale(d, length * row) for d, row in pairs]
@@ -83,6 +84,23 @@ class Shape:
     def position_at(self, node: int) -> Matrix:
         """Position of one node, 3×1."""
         return self.tangent @ ca.DM(self.basis.grid.integration_matrix[node])
+
+    def strain_work(self, components: Sequence[int], rates: Matrix) -> tuple[Matrix, Matrix]:
+        """Sum over the nodes of rates times strains, 1×1, and its derivative with q, n×1.
+
+        Args:
+            components: strains that work is done on.
+            rates: one row for each of them, k×M.
+        """
+        rows = self.basis.strain_rows(self.q, components)
+        parts = [row @ rates[i, :].T for i, row in enumerate(rows) if row is not None]
+        gradient = [
+            ca.DM(self.basis.at_nodes[c]).T @ rates[components.index(c), :].T
+            if c in components
+            else ca.DM(self.basis.at_nodes[c].shape[1], 1)
+            for c in self.basis.rod.admitted
+        ]
+        return sum(parts[1:], parts[0]), ca.vertcat(*gradient)
 
     @staticmethod
     def scale(vectors: Matrix, row: Matrix) -> Matrix:

@@ -7,7 +7,7 @@ is as well conditioned as one with 1e2.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -158,11 +158,11 @@ class StrainBasis:
             rows.append(row)
         return ca.vertcat(*rows)
 
-    def linear_strain_rows(self, q: Matrix) -> list[Matrix | None]:
-        """Γ at the nodes as three 1×M rows; None for a row that is zero whatever the load."""
+    def strain_rows(self, q: Matrix, components: Sequence[int]) -> list[Matrix | None]:
+        """Components of ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
         intrinsic = self.rod.intrinsic_strain(self.grid.nodes)
         rows: list[Matrix | None] = []
-        for c in (3, 4, 5):
+        for c in components:
             row = ca.DM(intrinsic[:, c]).T if np.any(intrinsic[:, c]) else None
             if c in self.columns:
                 fold, half = self.node_factors(c)

@@ -131,8 +131,8 @@ class Tangent:
         linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], ca.DM(0, self.angular_size))
         none = ca.DM(linear.shape[0], linear.shape[0])
         matrix = ca.sparsify(ca.DM(basis.stiffness)) + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
-        following = self._following_forces()
-        return matrix if following is None else matrix + following
+        parts = [part for part in (self._following_forces(), self._cable_stiffness()) if part is not None]
+        return sum(parts, matrix)
 
     @property
     def _linear(self) -> list[int]:
@@ -208,6 +208,25 @@ class Tangent:
         turned = -(hat_operator(self.igm.statics.line(wrench, force)) @ self.rotation)
         to_covector = ca.DM(length * grid.weights[:, None] * grid.integration_matrix).T
         return ca.vertcat(*[to_covector @ part for part in ca.vertsplit(turned, grid.size)])
+
+    def _cable_stiffness(self) -> Matrix | None:
+        """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all cables, n×n: sums over the nodes of rows that cables share."""
+        basis = self.igm.shape.basis
+        admitted = basis.rod.admitted
+        blocks = {(a, b): self._curvature_block(a, b) for a in admitted for b in admitted if a <= b}
+        if not any(block.nnz() for block in blocks.values()):
+            return None
+        return ca.blockcat([[blocks[a, b] if a <= b else blocks[b, a].T for b in admitted] for a in admitted])
+
+    def _curvature_block(self, a: int, b: int) -> Matrix:
+        basis = self.igm.shape.basis
+        first, second = (ca.sparsify(ca.DM(basis.at_nodes[c])) for c in (a, b))
+        curved = [(tension, cable.stretch_curvature(a, b)) for tension, cable in self.igm.cables]
+        rows = [tension / basis.energy_unit * row for tension, row in curved if row is not None]
+        if not rows:
+            return ca.DM(first.shape[1], second.shape[1])
+        block = first.T @ (ca.diag(sum(rows[1:], rows[0])) @ second)
+        return ca.triu2symm(ca.triu(block)) if a == b else block
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""

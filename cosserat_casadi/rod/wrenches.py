@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 
@@ -61,4 +62,33 @@ class ActuationStress:
     profiles: FloatArray
 
 
-Action = Wrench | ActuationStress
+@dataclass(frozen=True)
+class Course:
+    """Where a cable runs through the sections, at the k nodes of the elements that it passes.
+
+    Attributes:
+        nodes: indices of the nodes, shape (k,).
+        offset: D_x and D_y in the section, shape (2, k), m.
+        slope: dD/dX, shape (2, k), m.
+    """
+
+    nodes: Indices
+    offset: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True)
+class Cable:
+    """A cable under one tension all along its course: it slides without friction.
+
+    Attributes:
+        course: where it runs.
+        tension: 1×1, N.
+    """
+
+    course: Course
+    tension: Matrix
+
+
+Actuation = ActuationStress | Cable
+Action = Wrench | Actuation

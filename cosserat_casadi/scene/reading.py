@@ -45,6 +45,9 @@ _RECORDS: dict[str | int, type[BaseModel]] = {
     "⟨distributed_wrench⟩": schema.DistributedWrench,
     "⟨clamped⟩": schema.ClampedSupport,
     "⟨pinned⟩": schema.PinnedSupport,
+    "⟨tendon⟩": schema.Tendon,
+    "⟨chamber⟩": schema.Chamber,
+    "helix": schema.Helix,
 }
 """The record that a segment of pydantic's path leads to; the schema marks its choices with ⟨ ⟩."""
 
@@ -245,10 +248,10 @@ def _assign(tables: dict[str, Any], key: str, value: Any) -> _Assignment:
 
 
 def _start(tables: Mapping[str, Any], key: str) -> list[str]:
-    """The segments of a key from the root: a load, rod or support may stand for itself."""
+    """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
     segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
     names = {}
-    for array in ("supports", "rods", "loads"):
+    for array in ("supports", "rods", "actuators", "loads"):
         entries = tables.get(array)
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict) and isinstance(entry.get("name"), str):
@@ -257,7 +260,7 @@ def _start(tables: Mapping[str, Any], key: str) -> list[str]:
         return [names[segments[0]], *segments]
     known = _keys(Scene)
     if segments[0] not in known:
-        what = f"no load, rod, support or table is named {shown(segments[0])}"
+        what = f"no load, actuator, rod, support or table is named {shown(segments[0])}"
         raise _Refused(what, _closest(segments[0], [*names, *known]))
     return segments
 

@@ -573,15 +573,6 @@ Load = Annotated[
     _word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench"), ("body_wrench",)),
 ]
 
-MAGNITUDES: dict[str, tuple[str, ...]] = {
-    "gravity": Gravity.magnitudes,
-    "tip_wrench": TipWrench.magnitudes,
-    "point_wrench": PointWrench.magnitudes,
-    "distributed_wrench": DistributedWrench.magnitudes,
-}
-"""Fields of each kind of load that may stay free at run time."""
-
-
 # Supports
 
 
@@ -613,6 +604,97 @@ SUPPORTS: dict[str, type[ClampedSupport] | type[PinnedSupport]] = {"clamped": Cl
 """The record of each kind of support."""
 
 
+# Actuators
+
+
+Offset = Annotated[tuple[Component, Component], _listed(2, "2 components, x and y")]
+Share = Annotated[Number, Field(ge=0, le=1)]
+
+
+def _ascending(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise _refusal([Fault((), f"must begin before it ends, got {list(value)}", "two abscissae X, base side first")])
+    return value
+
+
+Span = Annotated[tuple[Share, Share], _listed(2, "2 abscissae"), AfterValidator(_ascending)]
+
+
+class Helix(Record):
+    """A tendon that winds round the rod: offset = radius (cos, sin)(2π turns X + phase)."""
+
+    radius: Positive = Field(description="distance from the centreline, m")
+    turns: Number = Field(description="turns over the whole rod, negative for a left-handed helix, without unit")
+    phase: Number = Field(0.0, description="angle at X = 0 from local x, rad")
+
+
+class Tendon(Record):
+    """A cable without friction, led through the sections and anchored at the end of its span."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("tension", "length")
+
+    name: Name = Field(description="name of the actuator, a letter, then letters, digits and underscores")
+    kind: Literal["tendon"] = Field(description="cable led along the rod")
+    rod: str = Field(description="name of the rod that it pulls")
+    tension: Annotated[Number, Field(ge=0)] | None = Field(None, description="tension, N; or length")
+    length: Positive | None = Field(
+        None, description="length of the cable along its span, m; its tension is then an unknown"
+    )
+    slack: bool = Field(
+        False, strict=True, description="whether a cable of given length may go slack, so that it never pushes"
+    )
+    offset: Offset | None = Field(
+        None, description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    helix: Helix | None = Field(None, description="helical course round the centreline, instead of offset")
+    span: Span = Field((0.0, 1.0), description="abscissae X where it enters the rod and where it is anchored")
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """One of tension and length, one of offset and helix."""
+        for first, second in (("tension", "length"), ("offset", "helix")):
+            if first in given and second in given:
+                yield Fault((second,), f"stands beside {first}", "give one of the two")
+            elif first not in given and second not in given:
+                yield Fault((first,), "missing", f"give {first} or {second}")
+        if given.get("slack") is True and "length" not in given:
+            yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
+
+
+class Chamber(Record):
+    """A pressurised channel of constant cross-section along the rod."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("pressure",)
+
+    name: Name = Field(description="name of the actuator, a letter, then letters, digits and underscores")
+    kind: Literal["chamber"] = Field(description="pressurised channel along the rod")
+    rod: str = Field(description="name of the rod that it pushes")
+    pressure: Number = Field(description="pressure above that outside, Pa")
+    area: Positive = Field(description="cross-section of the channel, m²")
+    offset: Offset = Field(
+        (0.0, 0.0), description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    span: Span = Field((0.0, 1.0), description="abscissae X between which the channel runs")
+
+
+Actuator = Annotated[
+    Annotated[Tendon, Tag("⟨tendon⟩")] | Annotated[Chamber, Tag("⟨chamber⟩")],
+    Discriminator(_by("kind")),
+    _word("kind", ("tendon", "chamber")),
+]
+
+
+MAGNITUDES: dict[str, tuple[str, ...]] = {
+    "gravity": Gravity.magnitudes,
+    "tip_wrench": TipWrench.magnitudes,
+    "point_wrench": PointWrench.magnitudes,
+    "distributed_wrench": DistributedWrench.magnitudes,
+    "tendon": Tendon.magnitudes,
+    "chamber": Chamber.magnitudes,
+}
+"""Fields of each kind of load and actuator that may stay free at run time."""
+
+
 # The scene
 
 
@@ -624,16 +706,22 @@ class Scene(Record):
     )
     title: str = Field("", description="one line about the scene")
     inputs: Annotated[tuple[str, ...], AfterValidator(_without_repetition)] | None = Field(
-        None, description="'load.field' of what stays free at run time; every magnitude of every load when left out"
+        None,
+        description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
     rods: Annotated[tuple[Rod, ...], _NotEmpty()] = Field(description="the rods, at least one")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
-    actuators: Unavailable = Field((), description="tendons and chambers; not in this version")
+    actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
     bodies: Unavailable = Field((), description="rigid bodies that rods carry; not in this version")
     joints: Unavailable = Field((), description="joints between rods and bodies; not in this version")
     targets: Unavailable = Field((), description="prescribed motions; not in this version")
+
+    @property
+    def causes(self) -> tuple[Load | Actuator, ...]:
+        """Loads, then actuators: all that may have an input."""
+        return (*self.loads, *self.actuators)
 
     def input_names(self) -> tuple[str, ...]:
         """Names ``load.field`` of what stays free at run time.
@@ -644,14 +732,18 @@ class Scene(Record):
         if self.inputs is not None:
             return self.inputs
         return tuple(
-            f"{load.name}.{field}" for load in self.loads for field in load.magnitudes if field in load.model_fields_set
+            f"{cause.name}.{field}"
+            for cause in self.causes
+            for field in cause.magnitudes
+            if field in cause.model_fields_set
         )
 
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
         """Tables that contradict each other, or name what is not there."""
-        for key in ("rods", "loads", "supports"):
+        for key in ("rods", "loads", "supports", "actuators"):
             yield from _repeated_names(given, key)
+        yield from _shared_names(given)
         yield from _dangling_names(given)
         yield from _weightless_rods(given)
         yield from _overlapping_supports(given)
@@ -695,6 +787,15 @@ def _repeated_names(given: Mapping[str, Any], key: str) -> Iterator[Fault]:
             yield Fault((key, i, "name"), f"{shown(name)} is already the name of {key}[{named[name][0]}]")
 
 
+def _shared_names(given: Mapping[str, Any]) -> Iterator[Fault]:
+    """A load and an actuator of one name: its inputs could not be told apart."""
+    loads = _named(_tables(given, "loads"))
+    for i, table in _tables(given, "actuators"):
+        name = table.get("name")
+        if isinstance(name, str) and name in loads:
+            yield Fault(("actuators", i, "name"), f"{shown(name)} is already the name of loads[{loads[name][0]}]")
+
+
 def _references(given: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
     """Every place that names a rod, with the name."""
     for i, load in _tables(given, "loads"):
@@ -703,8 +804,8 @@ def _references(given: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
             yield from ((("loads", i, "rods", j), name) for j, name in enumerate(load["rods"]))
         elif kind in ("tip_wrench", "point_wrench", "distributed_wrench"):
             yield ("loads", i, "rod"), load.get("rod")
-    for i, support in _tables(given, "supports"):
-        yield ("supports", i, "rod"), support.get("rod")
+    for key in ("supports", "actuators"):
+        yield from (((key, i, "rod"), table.get("rod")) for i, table in _tables(given, key))
 
 
 def _dangling_names(given: Mapping[str, Any]) -> Iterator[Fault]:
@@ -767,8 +868,7 @@ def _miscounted_modes(given: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
-    loads = _named(_tables(given, "loads"))
-    refused = _named(_tables(given, "actuators"))
+    causes = {**_named(_tables(given, "actuators")), **_named(_tables(given, "loads"))}
     entries = given.get("inputs")
     for i, entry in enumerate(entries if isinstance(entries, list) else []):
         if not isinstance(entry, str):
@@ -776,16 +876,18 @@ def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
         name, _, field = entry.partition(".")
         if not field:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
-        elif name in loads:
-            yield from (Fault(("inputs", i), *told) for told in _no_magnitude(name, loads[name][1], field))
-        elif name not in refused:
-            yield Fault(("inputs", i), f"no load is named {shown(name)}", _listing(loads, "loads"))
+        elif name in causes:
+            yield from (Fault(("inputs", i), *told) for told in _no_magnitude(name, causes[name][1], field))
+        else:
+            yield Fault(("inputs", i), f"no load or actuator is named {shown(name)}", _listing(causes, "names"))
 
 
-def _no_magnitude(name: str, load: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:
-    fields = _choice(MAGNITUDES, load.get("kind"))
+def _no_magnitude(name: str, cause: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:
+    fields = _choice(MAGNITUDES, cause.get("kind"))
+    if cause.get("kind") == "tendon":
+        fields = tuple(one for one in Tendon.magnitudes if one in cause) or Tendon.magnitudes
     if fields is not None and field not in fields:
-        yield f"load {shown(name)} has no magnitude {shown(field)}", _listing(fields, "magnitudes")
+        yield f"{shown(name)} has no magnitude {shown(field)}", _listing(fields, "magnitudes")
 
 
 def _choice(choices: Mapping[str, Chosen], word: Any) -> Chosen | None:

@@ -107,7 +107,7 @@ class EquilibriumPath:
         name, scene = self.model.rod_name(rod), self.model.scene
         if all(support.rod != name for support in scene.supports):
             return 1.0
-        load = next(load for load in scene.loads if load.name == self.name.split(".")[0])
+        load = next(load for load in scene.causes if load.name == self.name.split(".")[0])
         return float(getattr(load, "at", 0.5)) if getattr(load, "rod", name) == name else 0.5
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:

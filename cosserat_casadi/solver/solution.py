@@ -114,6 +114,12 @@ class Solution:
         nodal = self._fields(self.model.rod_name(rod))
         return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
 
+    def actuator(self, name: str) -> dict[str, float]:
+        """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
+        function = self.model.actuator[name]
+        values = function(self.x, self.inputs)
+        return {function.name_out(i): float(values[i]) for i in (0, 1)}
+
     def _fields(self, rod: str) -> list[FloatArray]:
         return [field.full() for field in self.model.fields[rod](self.x, self.inputs)]
 

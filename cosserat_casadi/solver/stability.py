@@ -47,6 +47,8 @@ def admissible_eigenvalues(jacobian: FloatArray, strains: int) -> FloatArray:
     """
     hessian = jacobian[:strains, :strains]
     constraints = jacobian[strains:, :strains]
+    # A slack cable asks nothing of the rod: its equation is about its tension alone.
+    constraints = constraints[np.linalg.norm(constraints, axis=1) > np.abs(np.diagonal(jacobian)[strains:])]
     if len(constraints):
         _, singular, basis = np.linalg.svd(constraints)
         rank = int(np.sum(singular > 1e-12 * singular[0]))

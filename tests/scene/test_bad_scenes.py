@@ -49,6 +49,14 @@ def support(text, **rods):
     return scene(f'[[supports]]\nrod = "finger"\n{text}', **rods)
 
 
+def actuator_table(text):
+    return f"""[[actuators]]\nname = 'cable'\nkind = 'tendon'\nrod = "finger"\n{text}\n"""
+
+
+def actuator(text):
+    return scene(actuator_table(text))
+
+
 def planar(more="", strain='"planar"'):
     return rod(f"stiffness = {{ bending_y = 1.0, extension = 1.0 }}\n{more}", strain=strain)
 
@@ -224,13 +232,35 @@ BAD = [
      "supports[0].quaternion", "unreachable combination: turned out of the plane"),
     ("inputs_text", scene(PUSH, before="inputs = 'push.force'"), "inputs", "must be a list, got 'push.force'"),
     ("inputs_number", scene(PUSH, before="inputs = [1]"), "inputs[0]", "must be text, got 1"),
-    ("inputs_unknown", scene(PUSH, before="inputs = ['pull.force']"), "inputs[0]", "no load is named 'pull'"),
+    ("inputs_unknown", scene(PUSH, before="inputs = ['pull.force']"), "inputs[0]", "no load or actuator is named 'pull'"),
     ("inputs_undotted", scene(PUSH, before="inputs = ['push']"), "inputs[0]", "must read 'load.field'"),
     ("inputs_no_magnitude", scene(PUSH, before="inputs = ['push.frame']"), "inputs[0]", "no magnitude 'frame'"),
     ("inputs_twice", scene(PUSH, before="inputs = ['push.force', 'push.force']"), "inputs[1]", "listed twice"),
-    ("actuators",
-     scene("[[actuators]]\nname = 'cable'\nkind = 'tendon'\ntension = -3.0", before="inputs = ['cable.tension']"),
-     "actuators", "is part of the scene format but this version cannot solve it yet"),
+    ("tendon_pushes", actuator("tension = -3.0\noffset = [0, 1]"), "actuators[0].tension", "must be >= 0, got -3.0"),
+    ("tendon_without_effort", actuator("offset = [0, 1]"), "actuators[0].tension", "missing"),
+    ("tendon_with_both", actuator("tension = 1\nlength = 1\noffset = [0, 1]"), "actuators[0].length",
+     "stands beside tension"),
+    ("tendon_without_course", actuator("tension = 1"), "actuators[0].offset", "missing"),
+    ("tendon_with_two_courses", actuator("tension = 1\noffset = [0, 1]\nhelix = { radius = 1, turns = 1 }"),
+     "actuators[0].helix", "stands beside offset"),
+    ("tendon_slack", actuator("tension = 1\noffset = [0, 1]\nslack = true"), "actuators[0].slack", "of given length"),
+    ("tendon_offset", actuator("tension = 1\noffset = [0, 1, 2]"), "actuators[0].offset", "2 components, x and y"),
+    ("tendon_span", actuator("tension = 1\noffset = [0, 1]\nspan = [0.5, 0.5]"), "actuators[0].span",
+     "must begin before it ends"),
+    ("tendon_beyond", actuator("tension = 1\noffset = [0, 1]\nspan = [0.5, 1.5]"), "actuators[0].span[1]",
+     "must be <= 1, got 1.5"),
+    ("tendon_helix", actuator("tension = 1\nhelix = { radius = 0, turns = 1 }"), "actuators[0].helix.radius",
+     "must be > 0"),
+    ("tendon_rod", actuator("tension = 1\noffset = [0, 1]").replace('rod = "finger"', "rod = 'toe'"),
+     "actuators[0].rod", "no rod is named 'toe'"),
+    ("actuator_kind", actuator("").replace("'tendon'", "'muscle'"), "actuators[0].kind",
+     "must be one of 'tendon', 'chamber'"),
+    ("actuator_named_as_a_load", scene(PUSH + actuator_table("tension = 1\noffset = [0, 1]").replace("cable", "push")),
+     "actuators[0].name", "is already the name of loads[0]"),
+    ("chamber_area", actuator("pressure = 1\narea = 0").replace("'tendon'", "'chamber'"), "actuators[0].area",
+     "must be > 0"),
+    ("input_of_the_other_kind", scene(actuator_table("tension = 1\noffset = [0, 1]"), before="inputs = ['cable.length']"),
+     "inputs[0]", "no magnitude 'length'"),
     ("bodies", scene("[[bodies]]\nname = 'platform'\nmass = -1"), "bodies", "this version cannot solve it yet"),
     ("joints", scene("[[joints]]\nbody = 'platform'"), "joints", "this version cannot solve it yet"),
     ("targets", scene("[[targets]]\nrod = 'toe'"), "targets", "this version cannot solve it yet"),
@@ -341,11 +371,11 @@ def test_five_faults_are_told_at_once_in_the_order_of_the_file():
 
 def test_words_of_later_versions_are_refused_once_without_a_cascade():
     text = scene(
-        "[[actuators]]\nname = 'a'\n[[actuators]]\nname = 'b'\n[[bodies]]\nname = 'c'\n[[joints]]\nbody = 'c'\n"
+        "[[bodies]]\nname = 'c'\n[[joints]]\nbody = 'c'\n"
         "[[loads]]\nname = 'lift'\nkind = 'body_wrench'\nbody = 'c'\nforce = [1, 0, 0]",
-        before="inputs = ['a.tension', 'lift.force']",
+        before="inputs = ['lift.force']",
     )
-    assert [problem.where for problem in problems(text)] == ["actuators", "bodies", "joints", "loads[0].kind"]
+    assert [problem.where for problem in problems(text)] == ["bodies", "joints", "loads[0].kind"]
 
 
 @pytest.mark.parametrize(
@@ -462,9 +492,13 @@ def test_a_large_text_is_refused():
         ("push.frame=", "--set push.frame", "'' is not a TOML value"),
         ("push.forze=[1, 0, 0]", "--set push.forze", "unknown key"),
         ("push.rod='toe'", "--set push.rod", "no rod is named 'toe'"),
-        ("pull.force=[1, 0, 0]", "--set pull.force", "no load, rod, support or table is named 'pull'"),
+        ("pull.force=[1, 0, 0]", "--set pull.force", "no load, actuator, rod, support or table is named 'pull'"),
         ("accuracy.tolerance=0", "--set accuracy.tolerance", "must be >= 1e-12"),
-        ("accurcy.tolerance=1e-3", "--set accurcy.tolerance", "no load, rod, support or table is named 'accurcy'"),
+        (
+            "accurcy.tolerance=1e-3",
+            "--set accurcy.tolerance",
+            "no load, actuator, rod, support or table is named 'accurcy'",
+        ),
         ("finger.sektion.radius=1", "--set finger.sektion.radius", "unknown key"),
         ("finger.length=1\ntitle='x'", "--set finger.length", "is not a TOML value"),
         ("finger..length=1", "--set finger..length", "there is no '' to set"),

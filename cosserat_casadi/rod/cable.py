@@ -1,0 +1,149 @@
+"""A cable through the sections of a rod: its length and how it varies with the strains.
+
+The cable runs at D(X) in the sections, so its tangent in the section's frame is T = Γ + K × D + D'/ℓ and its length
+L = ℓ ∫ |T| dX. A tension τ does the work −τ δL. What the cable puts against the elastic stress is therefore
+Λ_ad = τ [D × t; t] with t = T/|T|, report (2.15), whatever the course, and its generalised force τ ∂L/∂q needs no
+pose of any section. The sums over the nodes below are exact derivatives of the length that the nodes give.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.wrenches import Course
+
+Row = Matrix | None
+"""A field on the nodes of the course, 1×k; None where it is zero whatever the rod does."""
+
+
+@dataclass(frozen=True)
+class LedCable:
+    """A cable on its course through a deformed rod.
+
+    Attributes:
+        shape: the rod's shape.
+        course: where the cable runs.
+    """
+
+    shape: Shape
+    course: Course
+
+    @cached_property
+    def tangent(self) -> tuple[Row, Row, Row]:
+        """T in the sections' frames, three rows."""
+        nodes = self.course.nodes.tolist()
+        strain = [row if row is None else row[nodes] for row in self.shape.basis.strain_rows(self.shape.q, range(6))]
+        dx, dy = (_constant(row) for row in self.course.offset)
+        slope_x, slope_y = (_constant(row / self.shape.basis.rod.length) for row in self.course.slope)
+        kx, ky, kz, gx, gy, gz = strain
+        return (
+            _sum(gx, _negative(_product(kz, dy)), slope_x),
+            _sum(gy, _product(kz, dx), slope_y),
+            _sum(gz, _product(kx, dy), _negative(_product(ky, dx))),
+        )
+
+    @cached_property
+    def stretch(self) -> Matrix:
+        """|T|, 1×k. A cable that stays parallel to the rod needs no root."""
+        x, y, z = self.tangent
+        if x is None and y is None and z is not None:
+            return z
+        return ca.sqrt(_sum(*[None if row is None else row * row for row in self.tangent]))
+
+    @cached_property
+    def direction(self) -> tuple[Row, Row, Row]:
+        """T = T/|T|, three rows."""
+        x, y, z = self.tangent
+        if x is None and y is None:
+            return None, None, ca.DM.ones(1, len(self.course.nodes))
+        return _quotient(x, self.stretch), _quotient(y, self.stretch), _quotient(z, self.stretch)
+
+    @cached_property
+    def lever(self) -> dict[int, Row]:
+        """Rate of |T| with each admitted strain, the components of [D × t; t]."""
+        x, y, z = self.direction
+        dx, dy = (_constant(row) for row in self.course.offset)
+        levers = {
+            0: _product(z, dy),
+            1: _negative(_product(z, dx)),
+            2: _sum(_product(y, dx), _negative(_product(x, dy))),
+            3: x,
+            4: y,
+            5: z,
+        }
+        return {c: levers[c] for c in self.shape.basis.rod.admitted}
+
+    @cached_property
+    def length(self) -> Matrix:
+        """Length along the course, 1×1, m."""
+        return self.stretch @ ca.DM(self._weights)
+
+    @cached_property
+    def length_gradient(self) -> Matrix:
+        """∂L/∂q, n×1, m."""
+        basis = self.shape.basis
+        parts: list[Matrix] = []
+        for c, lever in self.lever.items():
+            weighted = ca.DM(basis.at_nodes[c][self.course.nodes] * self._weights[:, None])
+            parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
+        return ca.vertcat(*parts)
+
+    def stretch_curvature(self, a: int, b: int) -> Row:
+        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
+        x, y, _ = self.tangent
+        if x is None and y is None:
+            return None
+        fixed = _constant(self._metric(a, b))
+        moving = _negative(_product(self.lever[a], self.lever[b]))
+        if fixed is None and moving is None:
+            return None
+        row = _sum(fixed, moving) / self.stretch * ca.DM(self._weights).T
+        whole = type(row)(1, self.shape.basis.grid.size)
+        whole[self.course.nodes.tolist()] = row
+        return whole
+
+    def _metric(self, a: int, b: int) -> FloatArray:
+        """Scalar product of the rates of T with two strains, shape (k,)."""
+        dx, dy = self.course.offset
+        zero, one = np.zeros_like(dx), np.ones_like(dx)
+        rates = [
+            np.array([zero, zero, dy]),
+            np.array([zero, zero, -dx]),
+            np.array([-dy, dx, zero]),
+            np.array([one, zero, zero]),
+            np.array([zero, one, zero]),
+            np.array([zero, zero, one]),
+        ]
+        return np.asarray((rates[a] * rates[b]).sum(axis=0))
+
+    @property
+    def _weights(self) -> FloatArray:
+        basis = self.shape.basis
+        return np.asarray(basis.rod.length * basis.grid.weights[self.course.nodes])
+
+
+def _constant(row: FloatArray) -> Row:
+    return ca.DM(row).T if np.any(row) else None
+
+
+def _sum(*rows: Row) -> Row:
+    present = [row for row in rows if row is not None]
+    return sum(present[1:], present[0]) if present else None
+
+
+def _product(a: Row, b: Row) -> Row:
+    return None if a is None or b is None else a * b
+
+
+def _quotient(a: Row, b: Matrix) -> Row:
+    return None if a is None else a / b
+
+
+def _negative(row: Row) -> Row:
+    return None if row is None else -row
