@@ -26,6 +26,9 @@ SAMPLES = np.linspace(0.0, 1.0, 201)
 RODS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")
 AXES = ("#cc3311", "#228833", "#0055bb")
 LOADS = "#b2560d"
+SLACK = 1e-6
+"""Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
+
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 
 
@@ -223,7 +226,9 @@ def _draw_actuators(axes: Any, solution: Solution, plane: tuple[int, int] | None
     for i, actuator in enumerate(solution.model.scene.actuators):
         state = solution.actuator(actuator.name)
         if actuator.kind == "tendon":
-            label, style = f"{actuator.name}: {state['tension']:.3g} N", {"linewidth": 1.4, "marker": ""}
+            limp = state["tension"] <= SLACK * solution.model.frame.tension_unit(actuator.rod)
+            effort = "slack" if limp and actuator.slack else f"{state['tension']:.3g} N"
+            label, style = f"{actuator.name}: {effort}", {"linewidth": 1.4, "linestyle": ":" if limp else "-"}
         else:
             label, style = f"{actuator.name}: {state['pressure']:.3g} Pa", {"linewidth": 4.0, "alpha": 0.5}
         course = actuator_course(solution, actuator)

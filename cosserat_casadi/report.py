@@ -21,12 +21,17 @@ from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import Tuning
 
 
+ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}
+
+
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Outcome, table of rods, and the files that were written."""
     console.print(f"[bold]{escape(solution.model.scene.title or 'Untitled scene')}[/]", highlight=False)
     colour = {True: "yellow" if solution.stable is False else "green", False: "red"}[solution.converged]
     console.print(f"[bold {colour}]{escape(solution.message)}[/]", highlight=False)
     console.print(_rod_table(solution))
+    if solution.model.scene.actuators:
+        console.print(_actuator_table(solution))
     console.print(_figures(solution), highlight=False)
     for path in written:
         console.print(f"wrote {escape(str(path))}", highlight=False)
@@ -124,6 +129,17 @@ def _rod_table(solution: Solution) -> Table:
         table.add_row("", "tip tangent", *_digits(tip.rotation[0][:, 2]))
         table.add_row("", "clamp force, N", *_digits(base.force))
         table.add_row("", "clamp moment, N m", *_digits(base.moment), end_section=True)
+    return table
+
+
+def _actuator_table(solution: Solution) -> Table:
+    table = Table()
+    for heading in ("actuator", "effort", "works on"):
+        table.add_column(heading)
+    for actuator in solution.model.scene.actuators:
+        state = solution.actuator(actuator.name)
+        words = [f"{name} {value:.6g} {ACTUATOR_UNITS[name]}" for name, value in state.items()]
+        table.add_row(escape(actuator.name), *words)
     return table
 
 

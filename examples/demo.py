@@ -18,6 +18,10 @@ SCENES = (
     "loaded_strip",
     "euler_column",
     "deep_arch",
+    "tendon_finger",
+    "helical_tendon",
+    "two_section_robot",
+    "soft_arm",
 )
 
 

@@ -77,6 +77,11 @@ class InputLayout:
         }
 
 
+def rod_field(rod: scenes.Rod, field: str) -> FloatArray:
+    """What may be free of a rod itself, as the scene has it: its length, shape (1, 1), m."""
+    return {"length": np.array([[rod.length]])}[field]
+
+
 def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
     """A magnitude as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
     value = getattr(cause, field, None)
@@ -87,10 +92,15 @@ def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
 
 def input_layout(scene: scenes.Scene) -> InputLayout:
     """The inputs a scene asks for, by default every magnitude of loads and actuators."""
-    causes = {cause.name: cause for cause in scene.causes}
     names = scene.input_names()
-    defaults = [magnitude(causes[n.split(".")[0]], n.split(".")[1]) for n in names]
-    return InputLayout(names, tuple(defaults))
+    return InputLayout(names, tuple(_default(scene, *name.split(".", 1)) for name in names))
+
+
+def _default(scene: scenes.Scene, name: str, field: str) -> FloatArray:
+    cause = next((cause for cause in scene.causes if cause.name == name), None)
+    if cause is not None:
+        return magnitude(cause, field)
+    return rod_field(next(rod for rod in scene.rods if rod.name == name), field)
 
 
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:

@@ -38,7 +38,10 @@ class LedCable:
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
         nodes = self.course.nodes.tolist()
-        strain = [row if row is None else row[nodes] for row in self.shape.basis.strain_rows(self.shape.q, range(6))]
+        strain = [
+            row if row is None else row[nodes]
+            for row in self.shape.basis.strain_rows(self.shape.q, range(6), self.shape.ratio)
+        ]
         dx, dy = (_constant(row) for row in self.course.offset)
         slope_x, slope_y = (_constant(row / self.shape.basis.rod.length) for row in self.course.slope)
         kx, ky, kz, gx, gy, gz = strain

@@ -60,14 +60,19 @@ class InverseGeometricModel:
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        passive = ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q + self.generalised_force
+        passive = self._elastic(ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q) + self.generalised_force
         return passive if self.actuation_force is None else passive + self.actuation_force
 
     @cached_property
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
         basis = self.shape.basis
-        return basis.energy_unit / 2 * ca.bilin(ca.sparsify(ca.DM(basis.stiffness)), self.shape.q, self.shape.q)
+        stored = ca.bilin(ca.sparsify(ca.DM(basis.stiffness)), self.shape.q, self.shape.q)
+        return basis.energy_unit / 2 * self._elastic(stored)
+
+    def _elastic(self, value: Matrix) -> Matrix:
+        """A value in proportion to the stiffness: a longer rod is softer."""
+        return value if self.shape.ratio is None else value / self.shape.ratio
 
     @cached_property
     def potential(self) -> Matrix | None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.maths.rotation import directors
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import Ratio, StrainBasis
 from cosserat_casadi.rod.transport import Increments, increments, transport
 
 
@@ -28,12 +28,14 @@ class Shape:
         q: strain coordinates, n×1.
         section_quaternion: quaternions of the distinct sections, 4×(intervals + 1).
         steps: rotations of the intervals between them; None where the rotation is not their product.
+        ratio: length of the rod relative to the reference length, where that is free.
     """
 
     basis: StrainBasis
     q: Matrix
     section_quaternion: Matrix
     steps: Increments | None
+    ratio: Ratio = None
 
     @cached_property
     def section_directors(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -67,7 +69,7 @@ class Shape:
     @cached_property
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
-        strain = self.basis.strain_rows(self.q, (3, 4, 5))
+        strain = self.basis.strain_rows(self.q, (3, 4, 5), self.ratio)
         length = self.basis.rod.length
         pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
         scaled = [self.scale(d, length * row) for d, row in pairs]
@@ -92,7 +94,7 @@ class Shape:
             components: strains that work is done on.
             rates: one row for each of them, k×M.
         """
-        rows = self.basis.strain_rows(self.q, components)
+        rows = self.basis.strain_rows(self.q, components, self.ratio)
         parts = [row @ rates[i, :].T for i, row in enumerate(rows) if row is not None]
         gradient = [
             ca.DM(self.basis.at_nodes[c]).T @ rates[components.index(c), :].T
@@ -126,8 +128,8 @@ class Shape:
         return sections[:, np.asarray(self.basis.grid.section_of_node).tolist()]
 
 
-def shape(basis: StrainBasis, q: Matrix) -> Shape:
+def shape(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Shape:
     """Forward sweep of report (2.17) in the base frame."""
     product = bool(basis.rod.turning_axes) and basis.discretisation.transport != "permuted"
-    steps = increments(basis, q) if product else None
-    return Shape(basis, q, transport(basis, q, steps), steps)
+    steps = increments(basis, q, ratio) if product else None
+    return Shape(basis, q, transport(basis, q, steps, ratio), steps, ratio)

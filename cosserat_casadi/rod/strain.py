@@ -1,5 +1,9 @@
 """Strain reduction: ξ = B (ξ_a⁰ + Φ q) + B̄ ξ_c, report (2.1)–(2.8), as constant matrices on the grid.
 
+A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/ℓ₀ is written in the strain per reference length
+(ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
+its inverse.
+
 The coordinates q are without unit. Φ carries a strain scale of its own for every component, √(EI/(ℓ² H)), so that
 the stiffness matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8
 is as well conditioned as one with 1e2.
@@ -10,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -29,6 +34,15 @@ _POLYNOMIALS: dict[str, Callable[[int, Array], Array]] = {
     "legendre": chebyshev.legendre_polynomials,
     "chebyshev": chebyshev.chebyshev_polynomials,
 }
+
+
+Ratio: TypeAlias = Matrix | None
+"""Length of a rod relative to the reference length, 1×1; None where it is 1 for good."""
+
+
+def drawn(value: Matrix, ratio: Ratio) -> Matrix:
+    """A value times the ratio of lengths; nothing is added where the length is fixed."""
+    return value if ratio is None else value * ratio
 
 
 @dataclass(frozen=True)
@@ -146,7 +160,7 @@ class StrainBasis:
         matrix[np.abs(matrix) < 1e-15 * np.abs(matrix).max()] = 0.0
         return matrix
 
-    def at(self, q: Matrix, X: Array) -> Matrix:
+    def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
         element = self.grid.element_of(X)
         intrinsic = self.rod.intrinsic_strain(X)
@@ -154,16 +168,16 @@ class StrainBasis:
         for c in range(6):
             row = ca.DM(intrinsic[:, c]).T
             if c in self.columns:
-                row = row + (ca.DM(self.shape_functions(c, X, element)) @ q[self.columns[c]]).T
+                row = row + (ca.DM(self.shape_functions(c, X, element)) @ q[self.columns[c]]).T / ratio
             rows.append(row)
         return ca.vertcat(*rows)
 
-    def strain_rows(self, q: Matrix, components: Sequence[int]) -> list[Matrix | None]:
-        """Components of ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
+    def strain_rows(self, q: Matrix, components: Sequence[int], ratio: Ratio = None) -> list[Matrix | None]:
+        """Components of (ℓ/ℓ₀) ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
         intrinsic = self.rod.intrinsic_strain(self.grid.nodes)
         rows: list[Matrix | None] = []
         for c in components:
-            row = ca.DM(intrinsic[:, c]).T if np.any(intrinsic[:, c]) else None
+            row = drawn(ca.DM(intrinsic[:, c]).T, ratio) if np.any(intrinsic[:, c]) else None
             if c in self.columns:
                 fold, half = self.node_factors(c)
                 moving = (fold.T @ (half @ q[self.columns[c]])).T

@@ -130,7 +130,9 @@ class Tangent:
         basis = self.igm.shape.basis
         linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], ca.DM(0, self.angular_size))
         none = ca.DM(linear.shape[0], linear.shape[0])
-        matrix = ca.sparsify(ca.DM(basis.stiffness)) + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
+        elastic = ca.sparsify(ca.DM(basis.stiffness))
+        elastic = elastic if self.igm.shape.ratio is None else elastic / self.igm.shape.ratio
+        matrix = elastic + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
         parts = [part for part in (self._following_forces(), self._cable_stiffness()) if part is not None]
         return sum(parts, matrix)
 

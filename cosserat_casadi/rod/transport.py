@@ -19,7 +19,7 @@ from cosserat_casadi.maths.blocks import unstack
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import Ratio, StrainBasis, drawn
 
 ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
 
@@ -122,12 +122,12 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
     return IntervalKernels(axes, count)
 
 
-def interval_turns(basis: StrainBasis, q: Matrix) -> Matrix:
+def interval_turns(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     axes = list(basis.rod.turning_axes)
     intrinsic = np.concatenate([taylor[:, axes].T for taylor in basis.intrinsic_taylor])
     fold, half = basis.turn_factors
-    return ca.DM(intrinsic) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
+    return drawn(ca.DM(intrinsic), ratio) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 
 @dataclass(frozen=True)
@@ -147,24 +147,25 @@ class Increments:
     factors: Matrix
 
 
-def increments(basis: StrainBasis, q: Matrix) -> Increments:
+def increments(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Increments:
     """Rotations of all intervals for given strain coordinates."""
-    turns = interval_turns(basis, q)
+    turns = interval_turns(basis, q, ratio)
     return Increments(turns, *interval_kernels(basis).increment.map(turns.shape[1])(turns))
 
 
-def transport(basis: StrainBasis, q: Matrix, steps: Increments | None) -> Matrix:
+def transport(basis: StrainBasis, q: Matrix, steps: Increments | None, ratio: Ratio = None) -> Matrix:
     """Quaternions base_Q_section of the distinct sections, 4×(intervals + 1), the first the identity.
 
     Args:
         basis: matrices of the rod.
         q: strain coordinates.
         steps: rotations of the intervals; None for a rod that does not turn, or to solve the literal system.
+        ratio: length of the rod relative to the reference length.
     """
     if not basis.rod.turning_axes:
         return ca.repmat(ca.DM([1, 0, 0, 0]), 1, len(basis.grid.left_ends) + 1)
     if steps is None:
-        return _permuted_transport(basis, q)
+        return _permuted_transport(basis, q, ratio)
     pattern = interval_kernels(basis).increment.sparsity_out(0)
     start = ca.project(ca.DM([1, 0, 0, 0]), pattern)
     return ca.horzcat(start, _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion))
@@ -177,13 +178,13 @@ def _chain(pattern: ca.Sparsity) -> ca.Function:
     return ca.Function("chain", [rotation, increment], [product])
 
 
-def _permuted_transport(basis: StrainBasis, q: Matrix) -> Matrix:
+def _permuted_transport(basis: StrainBasis, q: Matrix, ratio: Ratio) -> Matrix:
     """Literal solve of report (3.22) for Q' = ½ ℓ A(K) Q, element after element."""
     grid = basis.grid
     intrinsic = basis.rod.intrinsic_strain(grid.nodes)
     rates = []
     for axis in range(3):
-        row = ca.DM(intrinsic[:, axis]).T
+        row = drawn(ca.DM(intrinsic[:, axis]).T, ratio)
         if axis in basis.columns:
             row = row + (ca.DM(basis.at_nodes[axis]) @ q[basis.columns[axis]]).T
         rates.append(row)

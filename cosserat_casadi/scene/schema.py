@@ -695,6 +695,10 @@ MAGNITUDES: dict[str, tuple[str, ...]] = {
 """Fields of each kind of load and actuator that may stay free at run time."""
 
 
+ROD_INPUTS: tuple[str, ...] = ()
+"""What of a rod itself may stay free at run time."""
+
+
 # The scene
 
 
@@ -869,6 +873,7 @@ def _miscounted_modes(given: Mapping[str, Any]) -> Iterator[Fault]:
 
 def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
     causes = {**_named(_tables(given, "actuators")), **_named(_tables(given, "loads"))}
+    rods = _named(_tables(given, "rods"))
     entries = given.get("inputs")
     for i, entry in enumerate(entries if isinstance(entries, list) else []):
         if not isinstance(entry, str):
@@ -878,8 +883,13 @@ def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
         elif name in causes:
             yield from (Fault(("inputs", i), *told) for told in _no_magnitude(name, causes[name][1], field))
-        else:
-            yield Fault(("inputs", i), f"no load or actuator is named {shown(name)}", _listing(causes, "names"))
+        elif name in rods and field not in ROD_INPUTS:
+            yield Fault(
+                ("inputs", i), f"{shown(name)} has no {shown(field)} to leave free", _listing(ROD_INPUTS, "fields")
+            )
+        elif name not in rods:
+            known = _listing([*causes, *rods], "names")
+            yield Fault(("inputs", i), f"no load, actuator or rod is named {shown(name)}", known)
 
 
 def _no_magnitude(name: str, cause: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:

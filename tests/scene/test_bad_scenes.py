@@ -233,7 +233,7 @@ BAD = [
     ("inputs_text", scene(PUSH, before="inputs = 'push.force'"), "inputs", "must be a list, got 'push.force'"),
     ("inputs_number", scene(PUSH, before="inputs = [1]"), "inputs[0]", "must be text, got 1"),
     ("inputs_unknown", scene(PUSH, before="inputs = ['pull.force']"),
-     "inputs[0]", "no load or actuator is named 'pull'"),
+     "inputs[0]", "no load, actuator or rod is named 'pull'"),
     ("inputs_undotted", scene(PUSH, before="inputs = ['push']"), "inputs[0]", "must read 'load.field'"),
     ("inputs_no_magnitude", scene(PUSH, before="inputs = ['push.frame']"), "inputs[0]", "no magnitude 'frame'"),
     ("inputs_twice", scene(PUSH, before="inputs = ['push.force', 'push.force']"), "inputs[1]", "listed twice"),
@@ -389,7 +389,7 @@ def test_words_of_later_versions_are_refused_once_without_a_cascade():
         (scene(rods=rod(strain='"kirchof"')), "did you mean 'kirchhoff'?"),
         (scene(rods=rod().replace("length = 0.2", "")), "undeformed length, m"),
         (load("kind = 'tip_wrench'\nrod = 'toe'\nforce = [1, 0, 0]"), "rods: finger"),
-        (scene(PUSH, before="inputs = ['pull.force']"), "names: push"),
+        (scene(PUSH, before="inputs = ['pull.force']"), "names: push, finger"),
         (load("kind = 'point_wrench'\nrod = 'finger'\nat = 0.0\nforce = [1, 0, 0]"), "leave it out"),
     ],
 )
