@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cosserat_casadi.effects.body_wrench import BodyWrench
 from cosserat_casadi.effects.distributed_wrench import DistributedWrench
 from cosserat_casadi.effects.effect import Effect
 from cosserat_casadi.effects.gravity import Gravity
@@ -10,7 +11,7 @@ from cosserat_casadi.effects.support import Clamped, Pinned, Support
 from cosserat_casadi.effects.tip_wrench import TipWrench
 
 EFFECTS: dict[str, Effect] = {
-    effect.kind: effect for effect in (Gravity(), TipWrench(), PointForceAndMoment(), DistributedWrench())
+    effect.kind: effect for effect in (Gravity(), TipWrench(), PointForceAndMoment(), DistributedWrench(), BodyWrench())
 }
 """Loads by the word of the scene format."""
 

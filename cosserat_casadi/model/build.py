@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -18,14 +18,15 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
 from cosserat_casadi.model.mesh import discretise
 from cosserat_casadi.model.system import Frame, frame
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.properties import RodProperties
 
 
 @dataclass(frozen=True)
 class Model:
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
-    ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of its supports;
-    all are without unit. Every function is exact for the discrete model and can be differentiated again.
+    ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
+    joints, then where bodies and the bases of carried rods have moved to; all are without unit. Every function is exact for the discrete model and can be differentiated again.
 
     Attributes:
         frame: the scene with its constant matrices.
@@ -114,6 +115,11 @@ class Model:
         return {rod: functions.fields(self.frame, rod) for rod in self.frame.bases}
 
     @cached_property
+    def body(self) -> dict[str, ca.Function]:
+        """For each rigid body (x, inputs) ↦ (position, quaternion, rotation), world frame."""
+        return {body.name: functions.body(self.frame, body.name) for body in self.scene.bodies}
+
+    @cached_property
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of all rods, J."""
         return functions.energy(self.frame)
@@ -143,12 +149,21 @@ class Model:
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
         values = load_values(self.scene, self.inputs, inputs)
-        return all(
-            EFFECTS[load.kind].has_potential(load, values[load.name], basis.rod)
+        on_rods = all(
+            EFFECTS[load.kind].has_potential(load, values[load.name], self._turning(basis.rod))
             for load in self.scene.loads
             for basis in self.frame.bases.values()
             if EFFECTS[load.kind].acts_on(load, basis.rod.name)
         )
+        return on_rods and all(
+            EFFECTS[load.kind].has_potential_on_bodies(load, values[load.name], flat=self.frame.couplings.all_flat)
+            for load in self.scene.loads
+        )
+
+    def _turning(self, rod: RodProperties) -> RodProperties:
+        """A rod as it turns in the world: one that is carried about may turn about every axis."""
+        still = self.frame.couplings.carrier(rod.name) is None or self.frame.couplings.flat(rod.name) is not None
+        return rod if still else replace(rod, admitted=(0, 1, 2))
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""

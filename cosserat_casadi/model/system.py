@@ -19,6 +19,8 @@ from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.effects.support import Hold, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.assembly import Coupled
+from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
 from cosserat_casadi.model.inputs import InputLayout, magnitude
 from cosserat_casadi.model.rods import base_pose, rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -27,7 +29,7 @@ from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, ActuationStress
+from cosserat_casadi.rod.wrenches import Action, ActuationStress, Wrench
 
 
 @dataclass(frozen=True)
@@ -61,8 +63,39 @@ class Frame:
 
     @cached_property
     def holds(self) -> list[tuple[scenes.Support, Hold]]:
-        """Supports, each as the scene and as the mechanics have it."""
-        return [(support, self.hold(support)) for support in self.scene.supports]
+        """Supports of rods that start in the world, each as the scene and as the mechanics have it."""
+        still = [support for support in self.scene.supports if self.couplings.carrier(support.rod) is None]
+        return [(support, self.hold(support)) for support in still]
+
+    @cached_property
+    def couplings(self) -> Couplings:
+        """What couples the rods."""
+        return Couplings(self.scene, self.bases)
+
+    @cached_property
+    def hold_slices(self) -> list[slice]:
+        """Where each support's multipliers stand in x."""
+        return _slices(self.strain_size, [hold.size for _, hold in self.holds])
+
+    @cached_property
+    def tie_slices(self) -> dict[str, slice]:
+        """Where each tie's multipliers stand in x."""
+        start, ties = self.strain_size + sum(hold.size for _, hold in self.holds), self.couplings.ties
+        places = _slices(start, [tie.joint.size for tie in ties])
+        return {tie.where: place for tie, place in zip(ties, places, strict=True)}
+
+    @cached_property
+    def moving_slices(self) -> dict[Carrier, slice]:
+        """Where each moving frame's deviation stands in x."""
+        start = self.strain_size + self.multiplier_size
+        places = _slices(start, [MovingFrame.SIZE] * len(self.couplings.moving))
+        return dict(zip(self.couplings.moving, places, strict=True))
+
+    @cached_property
+    def multiplier_size(self) -> int:
+        """Number of multipliers of supports and ties."""
+        ties = sum(tie.joint.size for tie in self.couplings.ties)
+        return ties + sum(hold.size for _, hold in self.holds)
 
     @cached_property
     def rod_slices(self) -> dict[str, slice]:
@@ -78,7 +111,7 @@ class Frame:
     @cached_property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.strain_size + sum(hold.size for _, hold in self.holds)
+        return self.strain_size + self.multiplier_size + MovingFrame.SIZE * len(self.couplings.moving)
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
@@ -95,6 +128,11 @@ def frame(scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str,
     """Constant matrices of every rod of a scene."""
     bases = {rod.name: StrainBasis(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
     return Frame(scene, layout, bases)
+
+
+def _slices(start: int, sizes: Sequence[int]) -> list[slice]:
+    ends = np.cumsum([start, *sizes])
+    return [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
 
 
 @dataclass(frozen=True)
@@ -121,22 +159,30 @@ class System:
 
     @cached_property
     def residual(self) -> Matrix:
-        """Residuals of the rods, then the gaps of the supports; zero in equilibrium, without unit."""
-        gaps = [self._closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
-        return ca.vertcat(*[igm.residual for igm in self.rods.values()], *gaps)
+        """Residuals of the rods, gaps of supports and ties, balance of moving frames: zero in equilibrium, no unit."""
+        gaps = [self.closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
+        rods = [igm.residual for igm in self.rods.values()]
+        return ca.vertcat(*rods, *gaps, *self.coupled.gaps, *self.coupled.balances)
+
+    @cached_property
+    def coupled(self) -> Coupled:
+        """What moving frames and ties add."""
+        return Coupled(self)
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
         if any(b.discretisation.transport == "permuted" for b in self.frame.bases.values()):
             return ca.jacobian(self.residual, self.arguments.x)
+        if self.frame.couplings.ties:
+            return self.coupled.jacobian
         blocks = ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
         if not self._holds:
             return blocks
         right, below = zip(*[self._hold_columns(s, hold) for s, hold, _ in self._holds], strict=True)
         size = sum(column.shape[1] for column in right)
         yielding = type(blocks)(size, size)
-        if not self._whole:
+        if not self.whole:
             yielding = (1 - self.arguments.factor) * ca.MX.eye(size)
         return ca.blockcat([[blocks, ca.horzcat(*right)], [ca.vertcat(*below), yielding]])
 
@@ -145,6 +191,13 @@ class System:
         place = self.rods[rod].shape
         return Pose(place.position_at(-1), place.quaternion[:, -1])
 
+    def base(self, rod: str) -> Pose:
+        """World pose of a rod's base."""
+        if self.frame.couplings.carrier(rod) is None:
+            return self.frame.base(rod)
+        place = self.coupled.base(rod)
+        return Pose(place.position, place.direction)
+
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
         return ca.sum1(ca.vertcat(*[igm.energy for igm in self.rods.values()]))
@@ -152,19 +205,33 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.frame.scene.supports or any(term is None for term in terms):
+        if self.frame.scene.supports or self.frame.couplings.ties or any(term is None for term in terms):
             return None
         return ca.sum1(ca.vertcat(*terms))
 
     @property
-    def _whole(self) -> bool:
+    def whole(self) -> bool:
         """Whether the equations are those of the scene itself, not of a point on the way to it."""
         return isinstance(self.arguments.factor, float) and self.arguments.factor == 1.0
 
-    def _closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
-        """A support on the way to the scene: a spring between the tip and its target, from limp to rigid."""
+    def closing(self, equation: Matrix, unknown: Matrix) -> Matrix:
+        """Supports, ties and frames on the way to the scene.
+
+        A support or tie is a spring between the section and its place, from limp to rigid; a frame is held where the
+        unloaded scene has it by a spring, from rigid to limp.
+        """
         factor = self.arguments.factor
-        return gap if self._whole else factor * gap + (1 - factor) * multipliers
+        return equation if self.whole else factor * equation + (1 - factor) * unknown
+
+    def values(self, load: scenes.Load) -> dict[str, Matrix | None]:
+        """Magnitudes of a load in these arguments; None where one is zero for good."""
+        magnitudes = EFFECTS[load.kind].magnitudes
+        return {field: _value(self.frame.layout, load, field, self.arguments) for field in magnitudes}
+
+    def dead_wrenches(self, rod: str) -> list[Wrench]:
+        """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
+        actions = rod_actions(self.frame, rod, self._base_R_world(rod), self.arguments)
+        return [a for a in actions if not isinstance(a, ActuationStress) and not a.follower]
 
     @cached_property
     def _holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
@@ -180,7 +247,7 @@ class System:
         before, after = columns.start, self.frame.strain_size - columns.stop
         force = hold.force_variation(moved, turned)
         gap = hold.gap_variation(self.tip(support.rod), moved, turned)
-        gap = gap if self._whole else self.arguments.factor * gap
+        gap = gap if self.whole else self.arguments.factor * gap
         pad = type(force)
         column = ca.vertcat(pad(before, hold.size), force, pad(after, hold.size))
         row = ca.horzcat(pad(hold.size, before), gap, pad(hold.size, after))
@@ -189,10 +256,17 @@ class System:
     def _rod(self, name: str) -> InverseGeometricModel:
         basis = self.frame.bases[name]
         q = self.arguments.x[self.frame.rod_slices[name]]
-        rotation = quaternion_to_matrix(self.frame.base(name).quaternion)
-        actions = rod_actions(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
+        actions = rod_actions(self.frame, name, self._base_R_world(name), self.arguments)
         actions += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        ties = [tie for tie in self.frame.couplings.ties if tie.rod == name]
+        actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
         return balance(shape(basis, q), actions)
+
+    def _base_R_world(self, rod: str) -> Matrix:
+        if self.frame.couplings.carrier(rod) is not None:
+            return self.coupled.base(rod).rotation.T
+        rotation = quaternion_to_matrix(self.frame.base(rod).quaternion)
+        return ca.sparsify(rotation, 1e-16).T
 
 
 def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
