@@ -41,7 +41,8 @@ BETWEEN = (0.25, 0.5, 0.75, 1.0)
 
 def watched(model: Model, rod: str) -> FloatArray:
     """Abscissae of the sections whose poses must be right to the tolerance, shape (k,)."""
-    held = any(support.rod == rod for support in model.scene.supports)
+    scene = model.scene
+    held = any(holder.rod == rod for holder in (*scene.supports, *scene.joints))
     return np.array(BETWEEN if held else (1.0,))
 
 
@@ -136,7 +137,7 @@ class Preview:
     def _tips_of(self, system: System) -> FloatArray:
         found = []
         for name, basis in system.frame.bases.items():
-            X, shape, base = watched(self.model, name), system.rods[name].shape, system.frame.base(name)
+            X, shape, base = watched(self.model, name), system.rods[name].shape, system.base(name)
             if len(X) == 1:
                 position, quaternion = shape.position_at(-1), shape.quaternion[:, -1]
             else:
