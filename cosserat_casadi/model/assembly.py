@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from cosserat_casadi.model.system import System
 
 
+GIVE = 3
+"""Power of (1 − factor) with which springs vanish: what holds rods that do not fit is far stiffer than they are."""
+
+
 @dataclass
 class Blocks:
     """A square matrix made of blocks, those that meet the same place added.
@@ -89,7 +93,7 @@ class Coupled:
     @cached_property
     def gaps(self) -> list[Matrix]:
         """Gap of every tie, on the way to the scene with the tie's give."""
-        return [self.system.closing(self.gap(tie), self.multipliers(tie)) for tie in self.couplings.ties]
+        return [self._closing(self.gap(tie), self.multipliers(tie)) for tie in self.couplings.ties]
 
     def gap(self, tie: Tie) -> Matrix:
         """What a tie has left to close, without unit."""
@@ -107,7 +111,7 @@ class Coupled:
                 -frame.length / frame.unit * force,
                 excess * place.quaternion - place.turn.T @ moment / frame.unit,
             )
-            found.append(self.system.closing(rows, self._deviation(carrier)))
+            found.append(self._closing(rows, self._deviation(carrier)))
         return found
 
     @cached_property
@@ -127,6 +131,19 @@ class Coupled:
         for rod in self.couplings.carried:
             self._add_reaction(blocks, rod.name)
         return blocks.matrix()
+
+    def _closing(self, equation: Matrix, unknown: Matrix) -> Matrix:
+        """Ties and frames on the way to the scene.
+
+        A tie is a spring between the section and its place, from limp to rigid; a frame is held where the unloaded
+        scene has it by a spring, from rigid to limp.
+        """
+        return equation if self.system.whole else self._scaled(equation) + self._give * unknown
+
+    @property
+    def _give(self) -> Matrix:
+        """Compliance of the springs of ties, stiffness of those of frames, without unit."""
+        return (1 - self.system.arguments.factor) ** GIVE
 
     def _placement(self, carrier: Carrier, frame: MovingFrame) -> Placement:
         moved = self._deviation(carrier)
@@ -206,7 +223,8 @@ class Coupled:
             moved, turned = tangent.position(-1), tangent.rotation_of(-1)
             blocks.add(rod, place, hold.force_variation(moved, turned))
             blocks.add(place, rod, self._scaled(hold.gap_variation(self.system.tip(support.rod), moved, turned)))
-            self._add_give(blocks, place)
+            if not self.system.whole:
+                blocks.add(place, place, (1 - self.system.arguments.factor) * ca.MX.eye(hold.size))
 
     def _add_gap(self, blocks: Blocks, tie: Tie) -> None:
         """Rows of a tie's gap, and its multipliers' columns in the rod's residual."""
@@ -291,7 +309,7 @@ class Coupled:
 
     def _add_give(self, blocks: Blocks, rows: slice) -> None:
         if not self.system.whole:
-            blocks.add(rows, rows, (1 - self.system.arguments.factor) * ca.MX.eye(rows.stop - rows.start))
+            blocks.add(rows, rows, self._give * ca.MX.eye(rows.stop - rows.start))
 
     def _scaled(self, rows: Matrix) -> Matrix:
         return rows if self.system.whole else self.system.arguments.factor * rows

@@ -214,14 +214,10 @@ class System:
         """Whether the equations are those of the scene itself, not of a point on the way to it."""
         return isinstance(self.arguments.factor, float) and self.arguments.factor == 1.0
 
-    def closing(self, equation: Matrix, unknown: Matrix) -> Matrix:
-        """Supports, ties and frames on the way to the scene.
-
-        A support or tie is a spring between the section and its place, from limp to rigid; a frame is held where the
-        unloaded scene has it by a spring, from rigid to limp.
-        """
+    def closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
+        """A support on the way to the scene: a spring between the tip and its target, from limp to rigid."""
         factor = self.arguments.factor
-        return equation if self.whole else factor * equation + (1 - factor) * unknown
+        return gap if self.whole else factor * gap + (1 - factor) * multipliers
 
     def values(self, load: scenes.Load) -> dict[str, Matrix | None]:
         """Magnitudes of a load in these arguments; None where one is zero for good."""

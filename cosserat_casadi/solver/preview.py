@@ -25,7 +25,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System, frame
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solution import Solution, rotations
 
 Mask = npt.NDArray[np.bool_]
 Modes = Mapping[str, tuple[int, ...]]
@@ -152,8 +152,8 @@ class Preview:
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
     """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
     columns = _numbers(quaternion).T
-    turns = [_numbers(quaternion_to_matrix(ca.DM(q / np.linalg.norm(q)))).ravel() for q in columns]
-    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, *turns])
+    turns = rotations(columns / np.linalg.norm(columns, axis=1, keepdims=True))
+    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, turns.ravel()])
     return entries
 
 

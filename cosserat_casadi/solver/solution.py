@@ -94,7 +94,7 @@ class Solution:
         nodal = self._fields(name)
         position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
         quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
-        return Pose(position, _rotations(quaternion), quaternion)
+        return Pose(position, rotations(quaternion), quaternion)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
@@ -122,7 +122,7 @@ class Solution:
         return self.model.frame.bases[rod].grid.interpolation_matrix(abscissae)
 
 
-def _rotations(q: FloatArray) -> FloatArray:
+def rotations(q: FloatArray) -> FloatArray:
     """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
     w, x, y, z = q.T
     rows = [
