@@ -55,6 +55,8 @@ def print_check(console: Console, model: Model) -> None:
         console.print(_load_table(model))
     if model.scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in model.scene.supports))
+    if model.frame.couplings.ties:
+        console.print("Ties: " + "; ".join(tie.what for tie in model.frame.couplings.ties), highlight=False)
     with console.status("Counting operations"):
         cost = price(model)
     console.print(
@@ -124,6 +126,10 @@ def _rod_table(solution: Solution) -> Table:
         table.add_row("", "tip tangent", *_digits(tip.rotation[0][:, 2]))
         table.add_row("", "clamp force, N", *_digits(base.force))
         table.add_row("", "clamp moment, N m", *_digits(base.moment), end_section=True)
+    for name in solution.model.body:
+        pose = solution.body(name)
+        table.add_row(escape(name), "body position, m", *_digits(pose.position[0]))
+        table.add_row("", "body z axis", *_digits(pose.rotation[0][:, 2]), end_section=True)
     return table
 
 

@@ -128,8 +128,8 @@ class Coupled:
             self._add_pull(blocks, tie)
         for carrier in self.couplings.moving:
             self._add_frame(blocks, carrier)
-        for rod in self.couplings.carried:
-            self._add_reaction(blocks, rod.name)
+        for carried in self.couplings.carried:
+            self._add_reaction(blocks, carried.name)
         return blocks.matrix()
 
     def _closing(self, equation: Matrix, unknown: Matrix) -> Matrix:

@@ -14,6 +14,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
+from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
 from cosserat_casadi.model.mesh import discretise
 from cosserat_casadi.model.system import Frame, frame
@@ -181,6 +182,10 @@ def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | No
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
             :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
+
+    Raises:
+        SceneError: joints over-constrain.
     """
+    check_constraints(scene)
     chosen = discretise(scene) if discretisation is None else discretisation
     return Model(frame(scene, input_layout(scene), chosen))

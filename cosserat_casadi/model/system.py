@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -132,7 +133,7 @@ def frame(scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str,
 
 def _slices(start: int, sizes: Sequence[int]) -> list[slice]:
     ends = np.cumsum([start, *sizes])
-    return [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
+    return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
 
 @dataclass(frozen=True)

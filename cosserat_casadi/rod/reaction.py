@@ -126,5 +126,3 @@ def _cross(vectors: Matrix, axis: int) -> Matrix:
     x, y, z = ca.vertsplit(vectors)
     zero = type(x)(*x.shape)
     return ca.vertcat(*((zero, z, -y), (-z, zero, x), (y, -x, zero))[axis])
-
-

@@ -82,6 +82,19 @@ class Solution:
         """Pose of a rod's tip."""
         return self.pose(np.array([1.0]), rod)
 
+    def body(self, name: str | None = None) -> Pose:
+        """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
+
+        Raises:
+            KeyError: there is no such body, or there are several to choose from.
+        """
+        names = list(self.model.body)
+        chosen = names[0] if name is None and len(names) == 1 else name
+        if chosen not in names:
+            raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
+        position, quaternion, rotation = (m.full() for m in self.model.body[chosen](self.x, self.inputs))
+        return Pose(position.T, rotation[None], quaternion.T)
+
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
 
