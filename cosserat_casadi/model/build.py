@@ -27,7 +27,8 @@ class Model:
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
-    joints, then where bodies and the bases of carried rods have moved to; all are without unit. Every function is exact for the discrete model and can be differentiated again.
+    joints, then where bodies and the bases of carried rods have moved to; all are without unit.
+    Every function is exact for the discrete model and can be differentiated again.
 
     Attributes:
         frame: the scene with its constant matrices.

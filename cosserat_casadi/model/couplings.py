@@ -279,7 +279,7 @@ class Couplings:
         return IN_PLANE, ACROSS if fixed else ()
 
     def _coplanar(self, joint: scenes.Joint) -> list[scenes.Joint]:
-        """Joints of the same body on planar rods of the same plane, in the order of the scene; none off a planar rod."""
+        """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
         own = self.flat(joint.rod)
         if own is None:
             return []
