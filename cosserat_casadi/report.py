@@ -20,7 +20,6 @@ from cosserat_casadi.solver.path import EquilibriumPath
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import Tuning
 
-
 ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}
 
 
@@ -60,6 +59,8 @@ def print_check(console: Console, model: Model) -> None:
         console.print(_load_table(model))
     if model.scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in model.scene.supports))
+    if model.frame.couplings.ties:
+        console.print("Ties: " + "; ".join(tie.what for tie in model.frame.couplings.ties), highlight=False)
     with console.status("Counting operations"):
         cost = price(model)
     console.print(
@@ -129,6 +130,10 @@ def _rod_table(solution: Solution) -> Table:
         table.add_row("", "tip tangent", *_digits(tip.rotation[0][:, 2]))
         table.add_row("", "clamp force, N", *_digits(base.force))
         table.add_row("", "clamp moment, N m", *_digits(base.moment), end_section=True)
+    for name in solution.model.body:
+        pose = solution.body(name)
+        table.add_row(escape(name), "body position, m", *_digits(pose.position[0]))
+        table.add_row("", "body z axis", *_digits(pose.rotation[0][:, 2]), end_section=True)
     return table
 
 

@@ -45,6 +45,8 @@ def result(solution: Solution) -> dict[str, Any]:
         },
         "rods": {name: _rod(solution, name) for name in model.frame.bases},
     }
+    if model.scene.bodies:
+        data["bodies"] = {body.name: _body(solution, body.name) for body in model.scene.bodies}
     if model.scene.actuators:
         data["actuators"] = {one.name: solution.actuator(one.name) for one in model.scene.actuators}
     found: dict[str, Any] = plain(data)
@@ -73,6 +75,11 @@ def _rod(solution: Solution, name: str) -> dict[str, Any]:
         "tip": {"position": tip.position[0], "rotation": tip.rotation[0], "quaternion": tip.quaternion[0]},
         "base_wrench": {"force": base.force, "moment": base.moment},
     }
+
+
+def _body(solution: Solution, name: str) -> dict[str, Any]:
+    pose = solution.body(name)
+    return {"position": pose.position[0], "rotation": pose.rotation[0], "quaternion": pose.quaternion[0]}
 
 
 def _abscissae(breaks: tuple[float, ...]) -> FloatArray:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from cosserat_casadi.errors import ExportError, Problem
-from cosserat_casadi.scene.schema import shown
+from cosserat_casadi.scene.faults import shown
 
 LONGEST = 48
 """Characters of the longest name: C99 promises to tell apart 31 of an external symbol, compilers take far more."""

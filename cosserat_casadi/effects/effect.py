@@ -41,6 +41,23 @@ class Site:
         return PointWrench(X, force, moment, follower)
 
 
+@dataclass(frozen=True)
+class BodyAction:
+    """Force and moment on a rigid body.
+
+    Attributes:
+        position: the point that the force acts on, in the axes of the body, m.
+        force: 3×1, N, or None.
+        moment: 3×1, N m, or None.
+        follower: whether force and moment turn with the body; their axes are then those of the body.
+    """
+
+    position: tuple[float, float, float]
+    force: Matrix | None
+    moment: Matrix | None
+    follower: bool
+
+
 class Effect(ABC):
     """One kind of load. A member is one file and one line of the registry.
 
@@ -65,6 +82,20 @@ class Effect(ABC):
     def acts_on(self, load: Any, rod: str) -> bool:
         """Whether the load acts on the rod of this name."""
         return bool(load.rod == rod)
+
+    def on_body(self, load: Any, body: Any, values: Mapping[str, Matrix | None]) -> BodyAction | None:
+        """What the load does to a rigid body; most loads act on rods alone.
+
+        Args:
+            load: the load as the scene has it.
+            body: the body as the scene has it.
+            values: as in :meth:`actions`.
+        """
+        return None
+
+    def has_potential_on_bodies(self, load: Any, values: Mapping[str, FloatArray], *, flat: bool) -> bool:
+        """Whether what these values do to bodies derives from a potential; ``flat``: all turn about one axis."""
+        return True
 
     def breaks(self, load: Any) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""

@@ -1,11 +1,11 @@
-"""Weight: linear density times acceleration, a dead force per length; f̄ of report (1.17)."""
+"""Weight: linear density times acceleration, a dead force per length, f̄ of report (1.17); on bodies mass times it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-from cosserat_casadi.effects.effect import Effect, Site
+from cosserat_casadi.effects.effect import BodyAction, Effect, Site
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.wrenches import Action, LineWrench
 
@@ -26,5 +26,12 @@ class Gravity(Effect):
         return [LineWrench(acceleration, None, profile, follower=False)]
 
     def acts_on(self, load: Any, rod: str) -> bool:
-        """Every rod, unless the load names some."""
-        return load.rods is None or rod in load.rods
+        """Every rod, unless the load names some rods or bodies."""
+        return bool(load.acts_on_rod(rod))
+
+    def on_body(self, load: Any, body: Any, values: Mapping[str, Matrix | None]) -> BodyAction | None:
+        """The body's weight, at its centre of mass."""
+        acceleration = values["acceleration"]
+        if acceleration is None or body.mass == 0.0 or not load.acts_on_body(body.name):
+            return None
+        return BodyAction(body.centre_of_mass, body.mass * acceleration, None, follower=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cosserat_casadi.effects.body_wrench import BodyWrench
 from cosserat_casadi.effects.chamber import Chamber
 from cosserat_casadi.effects.distributed_wrench import DistributedWrench
 from cosserat_casadi.effects.effect import Effect
@@ -13,7 +14,15 @@ from cosserat_casadi.effects.tip_wrench import TipWrench
 
 EFFECTS: dict[str, Effect] = {
     effect.kind: effect
-    for effect in (Gravity(), TipWrench(), PointForceAndMoment(), DistributedWrench(), Tendon(), Chamber())
+    for effect in (
+        Gravity(),
+        TipWrench(),
+        PointForceAndMoment(),
+        DistributedWrench(),
+        BodyWrench(),
+        Tendon(),
+        Chamber(),
+    )
 }
 """Loads and actuators by the word of the scene format."""
 

@@ -96,8 +96,13 @@ class Hold:
 
     @property
     def _planar(self) -> bool:
-        in_plane = not any(self.rod.intrinsic[3:][1]) and 4 not in self.rod.admitted
-        return self.rod.turning_axes in ((), (1,)) and in_plane
+        return stays_in_plane(self.rod)
+
+
+def stays_in_plane(rod: RodProperties) -> bool:
+    """Whether nothing takes a rod out of the local x–z plane of its base."""
+    in_plane = not any(rod.intrinsic[3:][1]) and 4 not in rod.admitted
+    return rod.turning_axes in ((), (1,)) and in_plane
 
 
 class Support(ABC):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -14,18 +14,21 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
+from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
 from cosserat_casadi.model.mesh import discretise
 from cosserat_casadi.model.system import Frame, frame
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.properties import RodProperties
 
 
 @dataclass(frozen=True)
 class Model:
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
-    ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of its supports;
-    all are without unit. Every function is exact for the discrete model and can be differentiated again.
+    ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
+    joints, then where bodies and the bases of carried rods have moved to; all are without unit.
+    Every function is exact for the discrete model and can be differentiated again.
 
     Attributes:
         frame: the scene with its constant matrices.
@@ -119,6 +122,11 @@ class Model:
         return {one.name: functions.actuator(self.frame, one.name) for one in self.scene.actuators}
 
     @cached_property
+    def body(self) -> dict[str, ca.Function]:
+        """For each rigid body (x, inputs) ↦ (position, quaternion, rotation), world frame."""
+        return {body.name: functions.body(self.frame, body.name) for body in self.scene.bodies}
+
+    @cached_property
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of all rods, J."""
         return functions.energy(self.frame)
@@ -148,12 +156,21 @@ class Model:
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
         values = load_values(self.scene, self.inputs, inputs)
-        return all(
-            EFFECTS[cause.kind].has_potential(cause, values[cause.name], basis.rod)
+        on_rods = all(
+            EFFECTS[cause.kind].has_potential(cause, values[cause.name], self._turning(basis.rod))
             for cause in self.scene.causes
             for basis in self.frame.bases.values()
             if EFFECTS[cause.kind].acts_on(cause, basis.rod.name)
         )
+        return on_rods and all(
+            EFFECTS[load.kind].has_potential_on_bodies(load, values[load.name], flat=self.frame.couplings.all_flat)
+            for load in self.scene.loads
+        )
+
+    def _turning(self, rod: RodProperties) -> RodProperties:
+        """A rod as it turns in the world: one that is carried about may turn about every axis."""
+        still = self.frame.couplings.carrier(rod.name) is None or self.frame.couplings.flat(rod.name) is not None
+        return rod if still else replace(rod, admitted=(0, 1, 2))
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""
@@ -171,6 +188,10 @@ def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | No
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
             :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
+
+    Raises:
+        SceneError: joints over-constrain.
     """
+    check_constraints(scene)
     chosen = discretise(scene) if discretisation is None else discretisation
     return Model(frame(scene, input_layout(scene), chosen))

@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.couplings import Carrier
 from cosserat_casadi.model.system import Arguments, Frame, System, balance, rod_actions
 from cosserat_casadi.rod import kinematics
 
@@ -123,7 +124,8 @@ def igm(frame: Frame, rod: str) -> ca.Function:
 def tip(frame: Frame, rod: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
     a = _arguments(frame)
-    pose, base = System(frame, a).tip(rod), frame.base(rod)
+    system = System(frame, a)
+    pose, base = system.tip(rod), system.base(rod)
     quaternion = quaternion_product(ca.MX(base.quaternion), pose.quaternion)
     position = base.position + rotate(ca.MX(base.quaternion), pose.position)
     outputs = [position, quaternion, quaternion_to_matrix(quaternion)]
@@ -138,7 +140,8 @@ def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
     """
     a = _arguments(frame)
     system, base = System(frame, a), frame.base(rod)
-    if frame.bases[rod].discretisation.transport == "permuted":
+    moving = frame.couplings.carrier(rod) is not None
+    if moving or frame.bases[rod].discretisation.transport == "permuted":
         pose = ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2])
         own = ca.jacobian(pose, a.x)
     else:
@@ -163,9 +166,9 @@ def shape(frame: Frame, rod: str) -> ca.Function:
     derivatives with respect to X too.
     """
     a, X = _arguments(frame), ca.MX.sym("X")
-    place = System(frame, a).rods[rod].shape
+    system = System(frame, a)
+    place, base = system.rods[rod].shape, system.base(rod)
     row = _interpolation_row(frame, rod, X)
-    base = frame.base(rod)
     position = base.position + rotate(ca.MX(base.quaternion), place.position @ row)
     local = place.quaternion @ row
     quaternion = quaternion_product(ca.MX(base.quaternion), local / ca.sqrt(ca.sumsqr(local)))
@@ -176,8 +179,8 @@ def shape(frame: Frame, rod: str) -> ca.Function:
 def fields(frame: Frame, rod: str) -> ca.Function:
     """(x, inputs) ↦ fields at the nodes, world frame but for the internal wrench, which is in the section's."""
     a = _arguments(frame)
-    model = System(frame, a).rods[rod]
-    base = frame.base(rod)
+    system = System(frame, a)
+    model, base = system.rods[rod], system.base(rod)
     count = frame.bases[rod].grid.size
     turn = ca.repmat(base.quaternion, 1, count)
     rotation = quaternion_to_matrix(base.quaternion)
@@ -205,6 +208,15 @@ def actuator(frame: Frame, name: str) -> ca.Function:
     return ca.Function(
         _name("actuator", name), [a.x, a.inputs], outputs, ["x", "inputs"], [*names, f"d_{names[1]}_d_x"]
     )
+
+
+def body(frame: Frame, name: str) -> ca.Function:
+    """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
+    a = _arguments(frame)
+    place = System(frame, a).coupled.placements[Carrier("body", name)]
+    outputs = [place.position, place.direction, place.rotation]
+    names = ["position", "quaternion", "rotation"]
+    return ca.Function(_name("body", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
 def energy(frame: Frame) -> ca.Function:

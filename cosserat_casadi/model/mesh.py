@@ -16,12 +16,13 @@ DEFAULT_TRANSPORT = "magnus6"
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae at which a rod is cut: its ends and the sections at which a load makes a jump."""
+    """Abscissae at which a rod is cut: its ends and where a load, or a rod that it carries, makes a jump."""
     cuts = {0.0, 1.0}
     for cause in scene.causes:
         effect = EFFECTS[cause.kind]
         if effect.acts_on(cause, rod):
             cuts.update(effect.breaks(cause))
+    cuts.update(carried.base.at for carried in scene.rods if carried.base.rod == rod)
     return tuple(sorted(cuts))
 
 

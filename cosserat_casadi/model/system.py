@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -22,6 +23,8 @@ from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.effects.support import Hold, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.assembly import Coupled
+from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
 from cosserat_casadi.model.inputs import InputLayout, magnitude
 from cosserat_casadi.model.rods import base_pose, rod_properties
 from cosserat_casadi.rod.cable import LedCable
@@ -31,7 +34,7 @@ from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course
+from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course, Wrench
 
 
 @dataclass(frozen=True)
@@ -65,8 +68,39 @@ class Frame:
 
     @cached_property
     def holds(self) -> list[tuple[scenes.Support, Hold]]:
-        """Supports, each as the scene and as the mechanics have it."""
-        return [(support, self.hold(support)) for support in self.scene.supports]
+        """Supports of rods that start in the world, each as the scene and as the mechanics have it."""
+        still = [support for support in self.scene.supports if self.couplings.carrier(support.rod) is None]
+        return [(support, self.hold(support)) for support in still]
+
+    @cached_property
+    def couplings(self) -> Couplings:
+        """What couples the rods."""
+        return Couplings(self.scene, self.bases)
+
+    @cached_property
+    def hold_slices(self) -> list[slice]:
+        """Where each support's multipliers stand in x."""
+        return _slices(self.strain_size, [hold.size for _, hold in self.holds])
+
+    @cached_property
+    def tie_slices(self) -> dict[str, slice]:
+        """Where each tie's multipliers stand in x."""
+        start, ties = self.strain_size + sum(hold.size for _, hold in self.holds), self.couplings.ties
+        places = _slices(start, [tie.joint.size for tie in ties])
+        return {tie.where: place for tie, place in zip(ties, places, strict=True)}
+
+    @cached_property
+    def moving_slices(self) -> dict[Carrier, slice]:
+        """Where each moving frame's deviation stands in x."""
+        start = self.strain_size + self.multiplier_size
+        places = _slices(start, [MovingFrame.SIZE] * len(self.couplings.moving))
+        return dict(zip(self.couplings.moving, places, strict=True))
+
+    @cached_property
+    def multiplier_size(self) -> int:
+        """Number of multipliers of supports and ties."""
+        ties = sum(tie.joint.size for tie in self.couplings.ties)
+        return ties + sum(hold.size for _, hold in self.holds)
 
     @cached_property
     def rod_slices(self) -> dict[str, slice]:
@@ -82,7 +116,8 @@ class Frame:
     @cached_property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.strain_size + sum(hold.size for _, hold in self.holds) + len(self.cables)
+        moving = MovingFrame.SIZE * len(self.couplings.moving)
+        return self.strain_size + self.multiplier_size + moving + len(self.cables)
 
     @cached_property
     def cables(self) -> list[tuple[scenes.Tendon, Course]]:
@@ -90,10 +125,14 @@ class Frame:
         held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
         return [(tendon, course(tendon, self.bases[tendon.rod].grid)) for tendon in held]
 
+    @cached_property
+    def tension_slices(self) -> list[slice]:
+        """Where the tensions of tendons of given length stand in x."""
+        return _slices(self.size - len(self.cables), [1] * len(self.cables))
+
     def tension_place(self, tendon: str) -> int:
-        """Where the tension of a tendon of given length stands in x."""
-        first = self.size - len(self.cables)
-        return first + [cable.name for cable, _ in self.cables].index(tendon)
+        """Where the tension of one of them stands in x."""
+        return int(self.tension_slices[[cable.name for cable, _ in self.cables].index(tendon)].start)
 
     def tension_unit(self, rod: str) -> float:
         """EI/ℓ² of a rod, N."""
@@ -114,6 +153,11 @@ def frame(scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str,
     """Constant matrices of every rod of a scene."""
     bases = {rod.name: StrainBasis(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
     return Frame(scene, layout, bases)
+
+
+def _slices(start: int, sizes: Sequence[int]) -> list[slice]:
+    ends = np.cumsum([start, *sizes])
+    return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
 
 @dataclass(frozen=True)
@@ -140,23 +184,25 @@ class System:
 
     @cached_property
     def residual(self) -> Matrix:
-        """Residuals of the rods, the gaps of the supports, of the cables; zero in equilibrium, without unit."""
-        gaps = [self._closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
-        gaps += [length.gap for length in self._lengths]
-        return ca.vertcat(*[igm.residual for igm in self.rods.values()], *gaps)
+        """Residuals of the rods, gaps of supports and ties, balance of moving frames, gaps of cables: without unit."""
+        gaps = [self.closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
+        rods = [igm.residual for igm in self.rods.values()]
+        lengths = [length.gap for length in self.lengths]
+        return ca.vertcat(*rods, *gaps, *self.coupled.gaps, *self.coupled.balances, *lengths)
+
+    @cached_property
+    def coupled(self) -> Coupled:
+        """What moving frames and ties add."""
+        return Coupled(self)
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
         if any(b.discretisation.transport == "permuted" for b in self.frame.bases.values()):
             return ca.jacobian(self.residual, self.arguments.x)
-        blocks = ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
-        borders = [self._hold_border(s, hold) for s, hold, _ in self._holds]
-        borders += [self._length_border(length) for length in self._lengths]
-        if not borders:
-            return blocks
-        right, below, corner = zip(*borders, strict=True)
-        return ca.blockcat([[blocks, ca.horzcat(*right)], [ca.vertcat(*below), ca.diagcat(*corner)]])
+        if self.frame.couplings.ties or self.frame.holds or self.frame.cables:
+            return self.coupled.jacobian
+        return ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
 
     def tip(self, rod: str) -> Pose:
         """Pose of a rod's tip in its base frame."""
@@ -183,6 +229,13 @@ class System:
         value = _value(self.frame.layout, actuator, field, self.arguments)
         return ca.DM(0.0) if value is None else value
 
+    def base(self, rod: str) -> Pose:
+        """World pose of a rod's base."""
+        if self.frame.couplings.carrier(rod) is None:
+            return self.frame.base(rod)
+        place = self.coupled.base(rod)
+        return Pose(place.position, place.direction)
+
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
         return ca.sum1(ca.vertcat(*[igm.energy for igm in self.rods.values()]))
@@ -190,19 +243,29 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.frame.scene.supports or any(term is None for term in terms):
+        if self.frame.scene.supports or self.frame.couplings.ties or any(term is None for term in terms):
             return None
         return ca.sum1(ca.vertcat(*terms))
 
     @property
-    def _whole(self) -> bool:
+    def whole(self) -> bool:
         """Whether the equations are those of the scene itself, not of a point on the way to it."""
         return isinstance(self.arguments.factor, float) and self.arguments.factor == 1.0
 
-    def _closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
+    def closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
         """A support on the way to the scene: a spring between the tip and its target, from limp to rigid."""
         factor = self.arguments.factor
-        return gap if self._whole else factor * gap + (1 - factor) * multipliers
+        return gap if self.whole else factor * gap + (1 - factor) * multipliers
+
+    def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
+        """Magnitudes of a load in these arguments; None where one is zero for good."""
+        magnitudes = EFFECTS[load.kind].magnitudes
+        return {field: _value(self.frame.layout, load, field, self.arguments) for field in magnitudes}
+
+    def dead_wrenches(self, rod: str) -> list[Wrench]:
+        """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
+        actions = rod_actions(self.frame, rod, self._base_R_world(rod), self.arguments)
+        return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
 
     @cached_property
     def _holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
@@ -213,7 +276,8 @@ class System:
         return found
 
     @cached_property
-    def _lengths(self) -> list[HeldLength]:
+    def lengths(self) -> list[HeldLength]:
+        """Equations of the cables of given length."""
         return [self._held_length(tendon, course) for tendon, course in self.frame.cables]
 
     def _held_length(self, tendon: scenes.Tendon, course: Course) -> HeldLength:
@@ -226,24 +290,6 @@ class System:
             factor=self.arguments.factor,
         )
 
-    def _hold_border(self, support: scenes.Support, hold: Hold) -> tuple[Matrix, Matrix, Matrix]:
-        """Columns, rows and corner that a support adds to the Jacobian."""
-        tangent = self.tangents[support.rod]
-        moved, turned = tangent.position(-1), tangent.rotation_of(-1)
-        force = hold.force_variation(moved, turned)
-        gap = hold.gap_variation(self.tip(support.rod), moved, turned)
-        gap = gap if self._whole else self.arguments.factor * gap
-        yielding = type(force)(hold.size, hold.size)
-        if not self._whole:
-            yielding = (1 - self.arguments.factor) * ca.MX.eye(hold.size)
-        return self._among_strains(support.rod, force), self._among_strains(support.rod, gap.T).T, yielding
-
-    def _length_border(self, length: HeldLength) -> tuple[Matrix, Matrix, Matrix]:
-        """Column, row and corner that a cable of given length adds to the Jacobian."""
-        rod = length.cable.shape.basis.rod.name
-        column = self._among_strains(rod, length.pull)
-        return column, (length.gap_with_length * column).T, length.gap_with_tension
-
     def _among_strains(self, rod: str, columns: Matrix) -> Matrix:
         """Columns on the coordinates of one rod, among those of all."""
         place, count = self.frame.rod_slices[rod], columns.shape[1]
@@ -254,15 +300,22 @@ class System:
     def _rod(self, name: str) -> InverseGeometricModel:
         basis = self.frame.bases[name]
         q = self.arguments.x[self.frame.rod_slices[name]]
-        rotation = quaternion_to_matrix(self.frame.base(name).quaternion)
-        actions = rod_actions(self.frame, name, ca.sparsify(rotation, 1e-16).T, self.arguments)
+        actions = rod_actions(self.frame, name, self._base_R_world(name), self.arguments)
         actions += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        ties = [tie for tie in self.frame.couplings.ties if tie.rod == name]
+        actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
         actions += [Cable(course, self._tension(t)) for t, course in self.frame.cables if t.rod == name]
         return balance(shape(basis, q), actions)
 
     def _tension(self, tendon: scenes.Tendon) -> Matrix:
         """Unknown tension of a tendon of given length, N."""
         return self.frame.tension_unit(tendon.rod) * self.arguments.x[self.frame.tension_place(tendon.name)]
+
+    def _base_R_world(self, rod: str) -> Matrix:
+        if self.frame.couplings.carrier(rod) is not None:
+            return self.coupled.base(rod).rotation.T
+        rotation = quaternion_to_matrix(self.frame.base(rod).quaternion)
+        return ca.sparsify(rotation, 1e-16).T
 
 
 def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:

@@ -21,7 +21,9 @@ from pydantic.fields import FieldInfo
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene import schema
-from cosserat_casadi.scene.schema import Fault, Scene, shown
+from cosserat_casadi.scene.faults import Fault, shown
+from cosserat_casadi.scene.faults import Path as FaultPath
+from cosserat_casadi.scene.schema import Scene
 
 LARGEST = 1_000_000
 """Bytes of the largest scene that is read."""
@@ -43,6 +45,10 @@ _RECORDS: dict[str | int, type[BaseModel]] = {
     "⟨tip_wrench⟩": schema.TipWrench,
     "⟨point_wrench⟩": schema.PointWrench,
     "⟨distributed_wrench⟩": schema.DistributedWrench,
+    "⟨body_wrench⟩": schema.BodyWrench,
+    "bodies": schema.Body,
+    "⟨fixed⟩": schema.FixedJoint,
+    "⟨spherical⟩": schema.SphericalJoint,
     "⟨clamped⟩": schema.ClampedSupport,
     "⟨pinned⟩": schema.PinnedSupport,
     "⟨tendon⟩": schema.Tendon,
@@ -197,8 +203,8 @@ class _Assignment:
     """
 
     key: str
-    leaf: schema.Path
-    created: schema.Path
+    leaf: FaultPath
+    created: FaultPath
 
 
 def _override(tables: dict[str, Any], overrides: Sequence[str]) -> tuple[list[_Assignment], list[Problem]]:
@@ -233,7 +239,7 @@ def _value(text: str) -> Any:
 def _assign(tables: dict[str, Any], key: str, value: Any) -> _Assignment:
     container: Any = tables
     path: list[str | int] = []
-    created: schema.Path | None = None
+    created: FaultPath | None = None
     segments = _start(tables, key)
     for segment in segments[:-1]:
         index = _index(container, segment)
@@ -251,7 +257,7 @@ def _start(tables: Mapping[str, Any], key: str) -> list[str]:
     """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
     segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
     names = {}
-    for array in ("supports", "rods", "actuators", "loads"):
+    for array in ("supports", "joints", "bodies", "rods", "actuators", "loads"):
         entries = tables.get(array)
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict) and isinstance(entry.get("name"), str):
@@ -343,7 +349,7 @@ def _sentence(kind: str, error: Any) -> str:
     return f"must be {_WANTED.get(kind, 'something else')}, got {got}"
 
 
-def _remedy(kind: str, path: schema.Path, record: type[BaseModel], error: Any) -> str:
+def _remedy(kind: str, path: FaultPath, record: type[BaseModel], error: Any) -> str:
     """The closest word, or what the field is, where the problem alone does not say it."""
     if kind in _BOUNDS or kind == "finite_number":
         return ""
@@ -387,11 +393,11 @@ def _problem(fault: Fault, applied: Sequence[_Assignment]) -> Problem:
     return Problem(_path(fault.path), fault.problem, fault.remedy)
 
 
-def _path(parts: schema.Path) -> str:
+def _path(parts: FaultPath) -> str:
     return _suffix(parts).removeprefix(".")
 
 
-def _suffix(parts: schema.Path) -> str:
+def _suffix(parts: FaultPath) -> str:
     return "".join(f"[{part}]" if isinstance(part, int) else f".{_key(part)}" for part in parts)
 
 

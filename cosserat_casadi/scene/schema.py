@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -30,6 +30,12 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
+from cosserat_casadi.scene.assembly import assembly_faults
+from cosserat_casadi.scene.faults import Fault, Path, shown
+from cosserat_casadi.scene.faults import listing as _listing
+from cosserat_casadi.scene.faults import named as _named
+from cosserat_casadi.scene.faults import tables as _tables
+
 STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
 """Names of the six strains, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
 
@@ -42,7 +48,6 @@ NOT_YET = "is part of the scene format but this version cannot solve it yet"
 ROUNDING = 1e-15
 """Norms as near to 1 as this are left as they are: what is read, written and read again stays the same."""
 
-Path = tuple[str | int, ...]
 Quadruple = tuple[float, float, float, float]
 Triple = tuple[float, float, float]
 RecordType = TypeVar("RecordType", bound="Record")
@@ -50,37 +55,6 @@ Chosen = TypeVar("Chosen")
 
 
 # Faults
-
-
-class Fault(NamedTuple):
-    """One fault at a path of the scene.
-
-    Attributes:
-        path: keys and indices from the record that is checked.
-        problem: what is wrong.
-        remedy: what to do about it; empty when the problem says it already.
-    """
-
-    path: Path
-    problem: str
-    remedy: str = ""
-
-
-def shown(value: object) -> str:
-    """A value of the file as it is quoted in a message: short, in the words of TOML."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return repr(value if len(value) <= 60 else value[:57] + "...")
-    if isinstance(value, int):
-        return str(value) if abs(value) < 10**30 else "a whole number beyond all range"
-    if isinstance(value, float):
-        return repr(float(value))
-    if isinstance(value, list | tuple):
-        return f"a list of {len(value)}"
-    if isinstance(value, Mapping | BaseModel):
-        return "a table"
-    return f"a {type(value).__name__}"
 
 
 def _refusal(faults: Iterable[Fault], others: ValidationError | None = None) -> ValidationError:
@@ -251,12 +225,6 @@ def _not_yet(value: Any) -> Any:
     raise _refusal([Fault((), NOT_YET)])
 
 
-def _starts_in_the_world(value: Any) -> Any:
-    if isinstance(value, Mapping) and ("rod" in value or "at" in value):
-        raise _refusal([Fault((), "a rod that starts on another rod is not available in this version")])
-    return value
-
-
 Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
@@ -412,9 +380,24 @@ class Intrinsic(Record):
     )
 
 
-class Base(Record):
-    """World pose of the section X = 0."""
+def _carrying_section(value: float) -> float:
+    if not 0.0 < value <= 1.0:
+        remedy = "at its base the other rod does not move: give a pose in the world" if value == 0.0 else ""
+        raise _refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
+    return value
 
+
+class Base(Record):
+    """Pose of the section X = 0, in the world or in a section of another rod."""
+
+    rod: str | None = Field(
+        None, description="name of the rod that carries this one: the pose of the base is then that in its section"
+    )
+    at: Annotated[
+        Number,
+        AfterValidator(_carrying_section),
+        Field(json_schema_extra={"exclusiveMinimum": 0, "maximum": 1}),
+    ] = Field(1.0, description="abscissa X of the carrying section, without unit, above 0 and at most 1; with rod")
     position: Vector = Field((0.0, 0.0, 0.0), description="position of the base, m")
     quaternion: Quaternion = Field(
         (1.0, 0.0, 0.0, 0.0), description="orientation of the base w, x, y, z, of norm 1, without unit"
@@ -429,6 +412,8 @@ class Base(Record):
         """A tangent says the orientation already."""
         if "tangent" in given and "quaternion" in given:
             yield Fault(("tangent",), "stands beside quaternion", "give one of the two")
+        if "at" in given and "rod" not in given:
+            yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
 
 
 class Rod(Record):
@@ -448,9 +433,7 @@ class Rod(Record):
         None, description="mass per length, kg/m, with stiffness; a list of two goes linearly from base to tip"
     )
     intrinsic: Intrinsic = Field(Intrinsic(), description="strains of the unloaded rod, 1/m and without unit")
-    base: Annotated[Base, BeforeValidator(_starts_in_the_world)] = Field(
-        Base(), description="world pose of the base, m"
-    )
+    base: Base = Field(Base(), description="pose of the base, in the world or in a section of another rod, m")
 
     @property
     def admitted(self) -> tuple[int, ...]:
@@ -506,11 +489,22 @@ class Gravity(Record):
     magnitudes: ClassVar[tuple[str, ...]] = ("acceleration",)
 
     name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
-    kind: Literal["gravity"] = Field(description="weight of the rods")
+    kind: Literal["gravity"] = Field(description="weight of the rods and bodies")
     acceleration: Vector = Field(description="acceleration in world axes, m/s²")
     rods: Annotated[tuple[str, ...], _NotEmpty(), AfterValidator(_without_repetition)] | None = Field(
-        None, description="names of the rods that it acts on; all when left out"
+        None, description="names of the rods that it acts on; all rods when neither rods nor bodies are named"
     )
+    bodies: Annotated[tuple[str, ...], _NotEmpty(), AfterValidator(_without_repetition)] | None = Field(
+        None, description="names of the bodies that it acts on; all bodies when neither rods nor bodies are named"
+    )
+
+    def acts_on_rod(self, rod: str) -> bool:
+        """Whether it weighs the rod of this name."""
+        return (self.rods is None and self.bodies is None) or rod in (self.rods or ())
+
+    def acts_on_body(self, body: str) -> bool:
+        """Whether it weighs the body of this name."""
+        return (self.rods is None and self.bodies is None) or body in (self.bodies or ())
 
 
 class _Wrench(Record):
@@ -564,13 +558,35 @@ class DistributedWrench(_Wrench):
     )
 
 
+class BodyWrench(Record):
+    """A force and a moment on a rigid body."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("force", "moment")
+
+    name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
+    kind: Literal["body_wrench"] = Field(description="force and moment on a body")
+    body: str = Field(description="name of the body that it acts on")
+    force: Vector = Field((0.0, 0.0, 0.0), description="force, N")
+    moment: Vector = Field((0.0, 0.0, 0.0), description="moment, N m")
+    position: Vector = Field((0.0, 0.0, 0.0), description="point of the body that the force acts on, in its axes, m")
+    frame: Literal["world", "body"] = Field(
+        "world", description="axes of force and moment: 'world' is a dead load, 'body' turns with the body"
+    )
+
+    @classmethod
+    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+        """A wrench has a force or a moment."""
+        yield from _Wrench.conflicts(given)
+
+
 Load = Annotated[
     Annotated[Gravity, Tag("⟨gravity⟩")]
     | Annotated[TipWrench, Tag("⟨tip_wrench⟩")]
     | Annotated[PointWrench, Tag("⟨point_wrench⟩")]
-    | Annotated[DistributedWrench, Tag("⟨distributed_wrench⟩")],
+    | Annotated[DistributedWrench, Tag("⟨distributed_wrench⟩")]
+    | Annotated[BodyWrench, Tag("⟨body_wrench⟩")],
     Discriminator(_by("kind")),
-    _word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench"), ("body_wrench",)),
+    _word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench", "body_wrench")),
 ]
 
 # Supports
@@ -689,6 +705,7 @@ MAGNITUDES: dict[str, tuple[str, ...]] = {
     "tip_wrench": TipWrench.magnitudes,
     "point_wrench": PointWrench.magnitudes,
     "distributed_wrench": DistributedWrench.magnitudes,
+    "body_wrench": BodyWrench.magnitudes,
     "tendon": Tendon.magnitudes,
     "chamber": Chamber.magnitudes,
 }
@@ -697,6 +714,46 @@ MAGNITUDES: dict[str, tuple[str, ...]] = {
 
 ROD_INPUTS: tuple[str, ...] = ()
 """What of a rod itself may stay free at run time."""
+
+
+# Bodies and joints
+
+
+class Body(Record):
+    """A rigid body that rods carry."""
+
+    name: Name = Field(description="name of the body, a letter, then letters, digits and underscores")
+    mass: Annotated[Number, Field(ge=0)] = Field(0.0, description="mass, kg")
+    centre_of_mass: Vector = Field((0.0, 0.0, 0.0), description="centre of mass in the axes of the body, m")
+
+
+class _Joint(Record):
+    name: Name | None = Field(None, description="name of the joint, a letter, then letters, digits and underscores")
+    body: str = Field(description="name of the body")
+    rod: str = Field(description="name of the rod whose tip is jointed to it")
+    position: Vector = Field((0.0, 0.0, 0.0), description="position of the joint in the axes of the body, m")
+    quaternion: Quaternion = Field(
+        (1.0, 0.0, 0.0, 0.0), description="orientation of the tip section in the axes of the body, of norm 1"
+    )
+
+
+class FixedJoint(_Joint):
+    """The tip of a rod is clamped in a body."""
+
+    kind: Literal["fixed"] = Field(description="the tip is clamped in the body")
+
+
+class SphericalJoint(_Joint):
+    """The tip of a rod meets a point of a body and turns freely."""
+
+    kind: Literal["spherical"] = Field(description="the tip stays at a point of the body and turns freely")
+
+
+Joint = Annotated[
+    Annotated[FixedJoint, Tag("⟨fixed⟩")] | Annotated[SphericalJoint, Tag("⟨spherical⟩")],
+    Discriminator(_by("kind")),
+    _word("kind", ("fixed", "spherical")),
+]
 
 
 # The scene
@@ -718,8 +775,8 @@ class Scene(Record):
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
-    bodies: Unavailable = Field((), description="rigid bodies that rods carry; not in this version")
-    joints: Unavailable = Field((), description="joints between rods and bodies; not in this version")
+    bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
+    joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     targets: Unavailable = Field((), description="prescribed motions; not in this version")
 
     @property
@@ -745,41 +802,16 @@ class Scene(Record):
     @classmethod
     def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
         """Tables that contradict each other, or name what is not there."""
-        for key in ("rods", "loads", "supports", "actuators"):
+        for key in ("rods", "loads", "supports", "actuators", "bodies", "joints"):
             yield from _repeated_names(given, key)
         yield from _shared_names(given)
         yield from _dangling_names(given)
+        yield from assembly_faults(given)
         yield from _weightless_rods(given)
         yield from _overlapping_supports(given)
         yield from _unreachable_supports(given)
         yield from _miscounted_modes(given)
         yield from _inputs_that_are_not(given)
-
-
-Tables = list[tuple[int, Mapping[str, Any]]]
-
-
-def _tables(given: Mapping[str, Any], key: str) -> Tables:
-    """The tables of an array with their indices, without what is not a table."""
-    entries = given.get(key)
-    if not isinstance(entries, list):
-        return []
-    return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
-
-
-def _named(tables: Tables) -> dict[str, tuple[int, Mapping[str, Any]]]:
-    """The first table of every name."""
-    found: dict[str, tuple[int, Mapping[str, Any]]] = {}
-    for i, table in tables:
-        if isinstance(name := table.get("name"), str):
-            found.setdefault(name, (i, table))
-    return found
-
-
-def _listing(names: Iterable[str], what: str) -> str:
-    """A remedy that lists the known names, the first few of many."""
-    known = [name if name.isprintable() else repr(name) for name in names]
-    return f"{what}: {', '.join(known[:12])}{', …' if len(known) > 12 else ''}" if known else f"there are no {what}"
 
 
 def _repeated_names(given: Mapping[str, Any], key: str) -> Iterator[Fault]:
@@ -808,7 +840,7 @@ def _references(given: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
             yield from ((("loads", i, "rods", j), name) for j, name in enumerate(load["rods"]))
         elif kind in ("tip_wrench", "point_wrench", "distributed_wrench"):
             yield ("loads", i, "rod"), load.get("rod")
-    for key in ("supports", "actuators"):
+    for key in ("supports", "joints", "actuators"):
         yield from (((key, i, "rod"), table.get("rod")) for i, table in _tables(given, key))
 
 
@@ -842,9 +874,9 @@ def _gravity(given: Mapping[str, Any]) -> tuple[str | None, dict[str, str]]:
     everywhere: str | None = None
     named: dict[str, str] = {}
     for i, load in _tables(given, "loads"):
-        if load.get("kind") == "gravity" and "rods" not in load:
+        if load.get("kind") == "gravity" and "rods" not in load and "bodies" not in load:
             everywhere = everywhere or f"loads[{i}]"
-        elif load.get("kind") == "gravity" and isinstance(load["rods"], list):
+        elif load.get("kind") == "gravity" and isinstance(load.get("rods"), list):
             named.update({name: f"loads[{i}]" for name in load["rods"] if isinstance(name, str)})
     return everywhere, named
 
@@ -912,7 +944,7 @@ def _unreachable_supports(given: Mapping[str, Any]) -> Iterator[Fault]:
         if model is None or not isinstance(name, str) or name not in rods:
             continue
         rod, support = _sound(Rod, rods[name][1]), _sound(model, table)
-        if rod is not None and support is not None:
+        if rod is not None and rod.base.rod is None and support is not None:
             for path, problem, remedy in _out_of_reach(rod, support):
                 yield Fault(("supports", i, *path), f"unreachable combination: {problem}", remedy)
 

@@ -18,7 +18,7 @@ from cosserat_casadi.solver.newton import relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.solve import input_path, solve
-from cosserat_casadi.solver.stability import admissible_eigenvalues, judged
+from cosserat_casadi.solver.stability import admissible_eigenvalues, judged, variations
 from cosserat_casadi.solver.trace import PathOutcome, Trace, trace
 
 
@@ -105,7 +105,7 @@ class EquilibriumPath:
     def section(self, rod: str | None = None) -> float:
         """Abscissa of the section whose way tells most: the tip, of a held rod where the followed load acts, or 1/2."""
         name, scene = self.model.rod_name(rod), self.model.scene
-        if all(support.rod != name for support in scene.supports):
+        if all(holder.rod != name for holder in (*scene.supports, *scene.joints)):
             return 1.0
         load = next(load for load in scene.causes if load.name == self.name.split(".")[0])
         return float(getattr(load, "at", 0.5)) if getattr(load, "rod", name) == name else 0.5
@@ -161,8 +161,8 @@ class _Followed:
         """Eigenvalues of the second variation where that has a meaning, else the determinant."""
         if not self.potential:
             return DETERMINANT
-        strains = self.model.frame.strain_size
-        return Monitor(lambda jacobian, _: admissible_eigenvalues(jacobian, strains), feels_limits=True)
+        allowed = variations(self.model)
+        return Monitor(lambda jacobian, _: admissible_eigenvalues(jacobian, allowed), feels_limits=True)
 
     @cached_property
     def scale(self) -> FloatArray:
@@ -172,7 +172,7 @@ class _Followed:
         """
         rate = self.model.path_rate(np.zeros(self.model.size), self.base, 1.0, self.change, 0.0).full()
         scale = np.ones(self.model.size)
-        scale[self.model.frame.strain_size :] = max(1.0, float(np.linalg.norm(rate)))
+        scale[variations(self.model).held] = max(1.0, float(np.linalg.norm(rate)))
         return scale
 
     def curve(self, start: FloatArray, settings: ArcSettings) -> Curve:

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System, frame
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solution import Solution, rotations
 
 Mask = npt.NDArray[np.bool_]
 Modes = Mapping[str, tuple[int, ...]]
@@ -41,7 +41,8 @@ BETWEEN = (0.25, 0.5, 0.75, 1.0)
 
 def watched(model: Model, rod: str) -> FloatArray:
     """Abscissae of the sections whose poses must be right to the tolerance, shape (k,)."""
-    held = any(support.rod == rod for support in model.scene.supports)
+    scene = model.scene
+    held = any(holder.rod == rod for holder in (*scene.supports, *scene.joints))
     return np.array(BETWEEN if held else (1.0,))
 
 
@@ -136,7 +137,7 @@ class Preview:
     def _tips_of(self, system: System) -> FloatArray:
         found = []
         for name, basis in system.frame.bases.items():
-            X, shape, base = watched(self.model, name), system.rods[name].shape, system.frame.base(name)
+            X, shape, base = watched(self.model, name), system.rods[name].shape, system.base(name)
             if len(X) == 1:
                 position, quaternion = shape.position_at(-1), shape.quaternion[:, -1]
             else:
@@ -151,8 +152,8 @@ class Preview:
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
     """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
     columns = _numbers(quaternion).T
-    turns = [_numbers(quaternion_to_matrix(ca.DM(q / np.linalg.norm(q)))).ravel() for q in columns]
-    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, *turns])
+    turns = rotations(columns / np.linalg.norm(columns, axis=1, keepdims=True))
+    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, turns.ravel()])
     return entries
 
 

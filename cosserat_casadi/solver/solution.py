@@ -82,6 +82,19 @@ class Solution:
         """Pose of a rod's tip."""
         return self.pose(np.array([1.0]), rod)
 
+    def body(self, name: str | None = None) -> Pose:
+        """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
+
+        Raises:
+            KeyError: there is no such body, or there are several to choose from.
+        """
+        names = list(self.model.body)
+        chosen = names[0] if name is None and len(names) == 1 else name
+        if chosen not in names:
+            raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
+        position, quaternion, rotation = (m.full() for m in self.model.body[chosen](self.x, self.inputs))
+        return Pose(position.T, rotation[None], quaternion.T)
+
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
 
@@ -94,7 +107,7 @@ class Solution:
         nodal = self._fields(name)
         position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
         quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
-        return Pose(position, _rotations(quaternion), quaternion)
+        return Pose(position, rotations(quaternion), quaternion)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
@@ -128,7 +141,7 @@ class Solution:
         return self.model.frame.bases[rod].grid.interpolation_matrix(abscissae)
 
 
-def _rotations(q: FloatArray) -> FloatArray:
+def rotations(q: FloatArray) -> FloatArray:
     """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
     w, x, y, z = q.T
     rows = [

@@ -16,7 +16,7 @@ from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Prog
 from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.stability import second_variation
+from cosserat_casadi.solver.stability import second_variation, variations
 
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
@@ -92,8 +92,22 @@ def judge(
     if load_factor == 1.0:
         outcome = _verdict(outcome, norm, tolerance)
     message = outcome.value if load_factor == 1.0 else f"{outcome.value} Load factor reached: {load_factor:.6g}."
+    message += "" if outcome is Outcome.CONVERGED else gap_left(model, inputs, x)
     bare = Solution(model, inputs, x, outcome, message, norm, iterations, load_factor)
     return _with_stability(bare) if bare.converged else bare
+
+
+def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
+    """The widest gap between rods and what they are tied to, as a sentence; empty where nothing is tied."""
+    ties = model.frame.couplings.ties
+    if not ties or not np.all(np.isfinite(x)):
+        return ""
+    gaps = _column(model.path_residual(x, inputs, 1.0))
+    own = [gaps[model.frame.tie_slices[tie.where]][: len(tie.joint.position_axes)] for tie in ties]
+    worst = int(np.argmax([length_of(gap) for gap in own]))
+    share, tie = length_of(own[worst]), ties[worst]
+    metres = share * tie.joint.rod.length
+    return f" The assembly is not closed: {tie.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
 
 
 def _verdict(outcome: Outcome, norm: float, tolerance: float) -> Outcome:
@@ -109,7 +123,7 @@ def _with_stability(solution: Solution) -> Solution:
     if not model.has_potential(solution.inputs):
         return solution
     jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
-    test = second_variation(jacobian, model.frame.strain_size)
+    test = second_variation(jacobian, variations(model))
     notes = {
         (True, False): "",
         (False, False): " It is unstable.",

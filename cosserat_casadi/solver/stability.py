@@ -5,8 +5,37 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+
+@dataclass(frozen=True)
+class Variations:
+    """Which unknowns vary freely, and which equations restrict them.
+
+    Attributes:
+        free: places of strain coordinates and of moving frames, shape (n,).
+        held: places of multipliers, whose equations are the gaps of supports and ties, shape (m,).
+        units: energy that the equation of each free unknown is divided by, shape (n,), J.
+    """
+
+    free: npt.NDArray[np.int64]
+    held: npt.NDArray[np.int64]
+    units: FloatArray
+
+
+def variations(model: Model) -> Variations:
+    """Variations of a model."""
+    frame = model.frame
+    units = np.zeros(frame.size)
+    for rod, place in frame.rod_slices.items():
+        units[place] = frame.bases[rod].energy_unit
+    for carrier, place in frame.moving_slices.items():
+        units[place] = frame.couplings.moving[carrier].unit
+    free = np.flatnonzero(units)
+    return Variations(free, np.flatnonzero(units == 0.0), units[free])
 
 
 @dataclass(frozen=True)
@@ -27,28 +56,33 @@ class Stability:
         return self.smallest_eigenvalue > 0.0 and not self.neutral
 
 
-def second_variation(jacobian: FloatArray, strains: int) -> Stability:
+def second_variation(jacobian: FloatArray, allowed: Variations) -> Stability:
     """Eigenvalue test of an equilibrium.
 
     Args:
         jacobian: of the whole system at the equilibrium, (n + m)×(n + m).
-        strains: n, number of strain coordinates; the m rows below hold the linearised supports, and only
-            variations in their null space are admissible.
+        allowed: what varies; only variations in the null space of the linearised gaps are admissible.
     """
-    return judged(admissible_eigenvalues(jacobian, strains))
+    return judged(admissible_eigenvalues(jacobian, allowed))
 
 
-def admissible_eigenvalues(jacobian: FloatArray, strains: int) -> FloatArray:
+def admissible_eigenvalues(jacobian: FloatArray, allowed: Variations) -> FloatArray:
     """Eigenvalues of the second variation over the admissible variations, ascending.
+
+    Each unknown counts in the energy unit of its own rod or frame. A frame whose quaternion changes its length, which
+    moves nothing, has the eigenvalue 2 there.
 
     Args:
         jacobian: as in :func:`second_variation`.
-        strains: as there.
+        allowed: as there.
     """
-    hessian = jacobian[:strains, :strains]
-    constraints = jacobian[strains:, :strains]
+    hessian = jacobian[np.ix_(allowed.free, allowed.free)]
+    constraints = jacobian[np.ix_(allowed.held, allowed.free)]
     # A slack cable asks nothing of the rod: its equation is about its tension alone.
-    constraints = constraints[np.linalg.norm(constraints, axis=1) > np.abs(np.diagonal(jacobian)[strains:])]
+    constraints = constraints[np.linalg.norm(constraints, axis=1) > np.abs(np.diagonal(jacobian)[allowed.held])]
+    if len(set(allowed.units)) > 1:
+        roots = np.sqrt(allowed.units / allowed.units.max())
+        hessian, constraints = roots[:, None] * hessian / roots, constraints / roots
     if len(constraints):
         _, singular, basis = np.linalg.svd(constraints)
         rank = int(np.sum(singular > 1e-12 * singular[0]))

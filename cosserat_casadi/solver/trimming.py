@@ -98,24 +98,36 @@ class Trim:
             bound: on the change of the tips that modes alone make, and on that which both make together.
         """
         here = dict(modes)
-        open_places = {(name, place) for name in here for place in range(len(here[name]))}
+        open_places = {(names, place) for names in self._alike for place in range(len(here[names[0]]))}
         while open_places:
             trials = []
-            for name, place in sorted(open_places):
-                if here[name][place] == 1:
-                    open_places.discard((name, place))
+            for names, place in sorted(open_places):
+                if here[names[0]][place] == 1:
+                    open_places.discard((names, place))
                     continue
-                trial = _less(here, name, place)
+                trial = _less(here, names, place)
                 change = self.preview.mode_shift(trial)
                 size = max(_size(change), _size(change + shift))
                 if size <= bound:
-                    trials.append((size / self._saving(name, place), trial))
+                    trials.append((size / self._saving(names[0], place), trial))
                 else:
                     # What a component gives up grows with what others have: it stays closed.
-                    open_places.discard((name, place))
+                    open_places.discard((names, place))
             if trials:
                 here = min(trials, key=lambda trial: trial[0])[1]
         return here
+
+    @cached_property
+    def _alike(self) -> list[tuple[str, ...]]:
+        """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
+        frame = self.preview.model.frame
+        if not frame.couplings.ties:
+            return [(name,) for name in frame.bases]
+        found: dict[object, tuple[str, ...]] = {}
+        for name, basis in frame.bases.items():
+            key = (basis.rod.admitted, basis.grid.elements)
+            found[key] = (*found.get(key, ()), name)
+        return list(found.values())
 
     def _saving(self, name: str, place: int) -> float:
         """Weight of a mode: those of bending and torsion cost about twice those of shear and extension."""
@@ -127,30 +139,36 @@ class Trim:
         """The cheapest grid of every rod within the bound, and the change of the tips that all make together."""
         grids = {n: replace(d, modes=modes[n]) for n, d in self.preview.model.discretisation.items()}
         shift = np.zeros_like(self.preview.tips)
-        for name in grids:
-            search = _GridSearch(self, modes, grids, name, shift)
-            grids[name], shift = search.cheapest()
+        for names in self._alike:
+            search = _GridSearch(self, modes, grids, names, shift)
+            found, shift = search.cheapest()
+            grids.update({name: replace(grids[name], nodes=found.nodes, transport=found.transport) for name in names})
         return grids, shift
 
 
 @dataclass
 class _GridSearch:
-    """Search for the grid of one rod, those of the others kept.
+    """Search for the grid of rods that are discretised alike, those of the others kept.
 
     Attributes:
         trim: bound and preview.
         modes: modes of every rod.
         grids: discretisations of every rod.
-        name: the rod.
+        names: the rods.
         before: change of the tips that the grids make now.
     """
 
     trim: Trim
     modes: Modes
     grids: dict[str, Discretisation]
-    name: str
+    names: tuple[str, ...]
     before: FloatArray
     _seen: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """One of the rods."""
+        return self.names[0]
 
     def cheapest(self) -> tuple[Discretisation, FloatArray]:
         """The cheapest grid within the bound and the change of the tips with it."""
@@ -203,7 +221,7 @@ class _GridSearch:
 
     def _shift(self, order: str, nodes: int) -> FloatArray:
         if (order, nodes) not in self._seen:
-            trial = {**self.grids, self.name: self._grid(order, nodes)}
+            trial = self.grids | {n: replace(self.grids[n], nodes=nodes, transport=order) for n in self.names}
             self._seen[order, nodes] = self.trim.preview.grid_shift(self._unknowns, self.modes, trial)
         return self._seen[order, nodes]
 
@@ -224,11 +242,11 @@ class _GridSearch:
         return replace(self.grids[self.name], nodes=nodes, transport=order)
 
 
-def _less(modes: Modes, name: str, place: int) -> dict[str, tuple[int, ...]]:
-    """The same modes but for one less in a place."""
-    counts = list(modes[name])
+def _less(modes: Modes, names: tuple[str, ...], place: int) -> dict[str, tuple[int, ...]]:
+    """The same modes but for one less in a place of some rods."""
+    counts = list(modes[names[0]])
     counts[place] -= 1
-    return {**modes, name: tuple(counts)}
+    return {**modes, **dict.fromkeys(names, tuple(counts))}
 
 
 def _size(shift: FloatArray) -> float:

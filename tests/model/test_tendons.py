@@ -73,15 +73,18 @@ MANY += tendon(COURSES["helical"], "tension = 1.5", "third")
 
 @pytest.mark.parametrize("cables", [*map(tendon, COURSES.values()), MANY], ids=[*COURSES, "several"])
 def test_tendons_vs_distributed_loads(cables: str) -> None:
-    """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there."""
+    """From the strain at the base the rod with distributed loads comes to the same tip, and nothing is left there.
+
+    The strain of a section is less exact than the tip, which bounds what can be asked here; the test below asks more.
+    """
     text = rod() + PRECURVED + LOADED + cables
     solution, reference = solved(text, 14), TendonRod(tomllib.loads(text))
     strain = solution.strain(0.0)[0]
     start = np.concatenate([strain[3:], strain[:3]])
     end = reference.shoot(start, 1.0)
     assert_allclose(reference.miss(end, 1.0), 0.0, rtol=0, atol=1e-6)
-    assert_allclose(solution.tip().position[0], end[:3], rtol=0, atol=0.2e-9)
-    assert_allclose(solution.tip().rotation[0], end[3:12].reshape(3, 3), rtol=0, atol=1e-9)
+    assert_allclose(solution.tip().position[0], end[:3], rtol=0, atol=2e-8)
+    assert_allclose(solution.tip().rotation[0], end[3:12].reshape(3, 3), rtol=0, atol=2e-7)
 
 
 @pytest.mark.slow
