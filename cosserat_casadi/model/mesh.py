@@ -16,7 +16,7 @@ DEFAULT_TRANSPORT = "magnus6"
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae at which a rod is cut: its ends and sections at which a load, or a rod that it carries, makes a jump."""
+    """Abscissae at which a rod is cut: its ends and sections at which a load, or a carried rod, makes a jump."""
     cuts = {0.0, 1.0}
     for load in scene.loads:
         effect = EFFECTS[load.kind]

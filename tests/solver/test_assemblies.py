@@ -80,7 +80,7 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     assert_allclose(two.tip("b").rotation, one.tip().rotation, rtol=0, atol=2e-9)
     assert_allclose(two.base_wrench("a").moment, one.base_wrench().moment, rtol=0, atol=2e-8)
     passed = two.pose([1.0], "a").rotation[0] @ two.internal_wrench([1.0], "a")[0, :3]
-    assert_allclose(two.base_wrench("b").moment, passed, rtol=0, atol=1e-7)
+    assert_allclose(two.base_wrench("b").moment, -passed, rtol=0, atol=1e-7)
     assert two.stable is one.stable
     # A dead moment has a potential only where all turns share an axis.
     assert (one.stable is not None) == (strain == "planar")
@@ -164,13 +164,19 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
 
 
 def test_portal_vs_its_half() -> None:
-    """Two equal planar legs under a heavy beam: by symmetry each carries half, and its tip neither sinks nor turns free.
+    """Two equal planar legs under a heavy beam: by symmetry each carries half.
 
     The tip of a leg, held upright by the beam, slides sideways not at all: a leg alone under half of the weight, its
     tip clamped to where it goes by symmetry, has the same moment.
     """
     legs = [
-        rod(n, 0.5, "planar", base={"position": [x, 0, 0], "quaternion": q}, intrinsic={"curvature": [0, 0.6, 0]})
+        rod(
+            n,
+            0.5,
+            ["bending_y", "shear_x", "extension"],
+            base={"position": [x, 0, 0], "quaternion": q},
+            intrinsic={"curvature": [0, 0.6, 0]},
+        )
         for n, x, q in (("l", 0.0, [1, 0, 0, 0]), ("r", 0.4, [0, 0, 0, 1]))
     ]
     joints = [
@@ -238,7 +244,8 @@ def test_stability_of_a_carried_column_vs_eulers_load() -> None:
         push = {"name": "p", "kind": "body_wrench", "body": "cap", "force": [0, 0, -share * critical]}
         parts = (rod("a", 0.5, "kirchhoff"), rod("b", 0.3, "kirchhoff", base={"rod": "a"}))
         cap = {"body": "cap", "rod": "b", "kind": "fixed"}
-        own = solved(scene(*parts, tolerance=1e-6, bodies=[{"name": "cap"}], joints=[cap], loads=[push]))
+        fixed = {"modes": 5, "nodes": 12}
+        own = solved(scene(*parts, accuracy=fixed, bodies=[{"name": "cap"}], joints=[cap], loads=[push]))
         assert own.stable is stable
 
 
