@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, length_of, newton
 from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.secant import newton_step
+from cosserat_casadi.solver.secant import Jacobian, newton_step
 
 Progress = Callable[[float], None]
 """Told the t reached."""
@@ -27,14 +27,14 @@ class Path:
 
     Attributes:
         residual: (x, t) ↦ g, shape (n,).
-        jacobian: (x, t) ↦ ∂g/∂x, shape (n, n).
+        jacobian: (x, t) ↦ ∂g/∂x, n×n, dense or sparse.
         rate: (x, t) ↦ ∂g/∂t, shape (n,).
         start: unknowns at or near the equilibrium at t = 0, shape (n,).
         tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
-    jacobian: Callable[[FloatArray, float], FloatArray]
+    jacobian: Callable[[FloatArray, float], Jacobian]
     rate: Callable[[FloatArray, float], FloatArray]
     start: FloatArray
     tangent: FloatArray | None = None

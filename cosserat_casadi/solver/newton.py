@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.secant import Secant
+from cosserat_casadi.solver.secant import Jacobian, Secant
 
 SUFFICIENT_DECREASE = 1e-4
 SHORTEST_STEP = 2.0**-12
@@ -32,11 +32,11 @@ class Equations:
 
     Attributes:
         residual: x ↦ g, shape (n,).
-        jacobian: x ↦ ∂g/∂x, shape (n, n).
+        jacobian: x ↦ ∂g/∂x, n×n, dense or sparse.
     """
 
     residual: Callable[[FloatArray], FloatArray]
-    jacobian: Callable[[FloatArray], FloatArray]
+    jacobian: Callable[[FloatArray], Jacobian]
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
             return end(Outcome.CONVERGED if done else Outcome.MAX_ITERATIONS, iteration)
         if not keep:
             secant, jacobians, keep = Secant(equations.jacobian(x)), jacobians + 1, False
-            if not np.all(np.isfinite(secant.jacobian)):
+            if not secant.finite:
                 return end(Outcome.NOT_FINITE, iteration)
         step = secant.step(residual)
         found = None if step is None else _search(equations, x, step, norm, 1.0 if keep or done else SHORTEST_STEP)

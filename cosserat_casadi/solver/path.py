@@ -16,6 +16,7 @@ from cosserat_casadi.solver.continuation import Path, Progress
 from cosserat_casadi.solver.events import DETERMINANT
 from cosserat_casadi.solver.newton import relative_norm
 from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.secant import dense
 from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.solve import input_path, solve
 from cosserat_casadi.solver.stability import admissible_eigenvalues, judged, variations
@@ -180,7 +181,7 @@ class _Followed:
         plain, scale = input_path(self.model, start, self.base, self.base + self.change), self.scale
         scaled = Path(
             residual=lambda x, t: plain.residual(scale * x, t),
-            jacobian=lambda x, t: plain.jacobian(scale * x, t) * scale,
+            jacobian=lambda x, t: dense(plain.jacobian(scale * x, t)) * scale,
             rate=lambda x, t: plain.rate(scale * x, t),
             start=start / scale,
         )

@@ -98,7 +98,10 @@ class Preview:
         """Change of the watched poses by having fewer modes, 12 entries for each section."""
         key = tuple(modes.items())
         if key not in self._shifts:
-            self._shifts[key] = self._tips(self.with_modes(modes)) - self.tips
+            # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
+            with np.errstate(all="ignore"):
+                shift = self._tips(self.with_modes(modes)) - self.tips
+            self._shifts[key] = np.where(np.isfinite(shift), shift, np.inf)
         return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:

@@ -23,6 +23,12 @@ CAREFUL, CAREFUL_GRID = 2.0, 1.5
 FASTEST, SLOWEST = 0.02, 0.7
 """Ratios of the errors with two modes more and without that are believed."""
 
+UNKNOWN = 4
+"""Further modes where the error is beyond all bounds and tells nothing."""
+
+CLOSING = 3
+"""Modes of an assembly below which nothing is told: with fewer its rods may not reach each other."""
+
 
 @dataclass(frozen=True)
 class Resolution:
@@ -38,6 +44,8 @@ class Resolution:
     def ratio(self) -> float:
         """Share of the error that two modes more leave."""
         two, four = self._without(2), self._without(4)
+        if not np.isfinite(four):
+            return SLOWEST
         return float(np.clip(two / four, FASTEST, SLOWEST)) if four > 0 else FASTEST
 
     @cached_property
@@ -55,6 +63,8 @@ class Resolution:
     def modes_lacking(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
         error = self.modes_error
+        if not np.isfinite(error):
+            return UNKNOWN
         return 2 * ceil(log(bound / error) / log(self.ratio)) if error > bound else 0
 
     @property
@@ -62,7 +72,8 @@ class Resolution:
         return self.preview.model.discretisation
 
     def _without(self, count: int) -> float:
-        fewer = {n: tuple(max(1, m - count) for m in d.modes) for n, d in self._discretisation.items()}
+        least = CLOSING if self.preview.model.frame.couplings.ties else 1
+        fewer = {n: tuple(max(min(m, least), m - count) for m in d.modes) for n, d in self._discretisation.items()}
         return _size(self.preview.mode_shift(fewer))
 
 

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
+import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+Jacobian: TypeAlias = FloatArray | Matrix
+"""Dense, shape (n, n); or sparse, n×n: of an assembly, whose blocks keep the work linear in the number of rods."""
+
+SINGULAR = 1e-13
+"""Share of the largest diagonal entry of the triangular factor below which a sparse Jacobian counts as singular."""
 
 
 @dataclass
@@ -17,12 +25,18 @@ class Secant:
     Nonlinear Equations*, SIAM 1995, section 7.3.
 
     Attributes:
-        jacobian: Jacobian where the first step began, shape (n, n).
+        jacobian: Jacobian where the first step began.
         steps: the steps since, each the full one that :meth:`step` gave, shape (n,).
     """
 
-    jacobian: FloatArray
+    jacobian: Jacobian
     steps: list[FloatArray] = field(default_factory=list)
+
+    @property
+    def finite(self) -> bool:
+        """Whether every entry of the Jacobian is a finite number."""
+        entries = self.jacobian.nonzeros() if isinstance(self.jacobian, ca.DM) else self.jacobian
+        return bool(np.all(np.isfinite(entries)))
 
     def step(self, residual: FloatArray) -> FloatArray | None:
         """Minus the inverse of the updated Jacobian times a vector of shape (n,); None where it is not finite."""
@@ -37,10 +51,15 @@ class Secant:
         return z if np.all(np.isfinite(z)) else None
 
 
-def newton_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
+def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
     """The Newton step; the shortest one where the Jacobian is singular; None where there is none."""
     if not len(residual):
         return np.zeros(0)
+    if isinstance(jacobian, ca.DM):
+        sparse_step = _sparse_step(jacobian, residual)
+        if sparse_step is not None:
+            return sparse_step
+        jacobian = dense(jacobian)
     if not (np.all(np.isfinite(jacobian)) and np.all(np.isfinite(residual))):
         return None
     step: FloatArray
@@ -48,4 +67,21 @@ def newton_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None
         step = np.asarray(np.linalg.solve(jacobian, -residual), dtype=np.float64)
     except np.linalg.LinAlgError:
         step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=1e-12)[0], dtype=np.float64)
+    return step if np.all(np.isfinite(step)) else None
+
+
+def dense(jacobian: Jacobian) -> FloatArray:
+    """A Jacobian as an array, shape (n, n)."""
+    return np.asarray(jacobian.full() if isinstance(jacobian, ca.DM) else jacobian, dtype=np.float64)
+
+
+def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:
+    """The Newton step by a sparse QR factorisation; None where that cannot tell the Jacobian from a singular one."""
+    if not (np.all(np.isfinite(jacobian.nonzeros())) and np.all(np.isfinite(residual))):
+        return None
+    _, triangular, *_ = factors = ca.qr_sparse(jacobian)
+    diagonal = np.abs(np.array(ca.diag(triangular).full()[:, 0]))
+    if diagonal.min() <= SINGULAR * diagonal.max():
+        return None
+    step: FloatArray = np.asarray(ca.qr_solve(ca.DM(-residual), *factors).full()[:, 0])
     return step if np.all(np.isfinite(step)) else None

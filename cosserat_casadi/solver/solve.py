@@ -15,6 +15,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
 from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
 from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.solver.secant import Jacobian
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.stability import second_variation, variations
 
@@ -174,7 +175,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
     none = np.zeros(model.inputs.size)
     return Path(
         residual=lambda x, t: _column(model.path_residual(x, inputs, t)),
-        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, inputs, t).full()),
+        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, inputs, t)),
         rate=lambda x, t: _column(model.path_rate(x, inputs, t, none, 1.0)),
         start=model.unloaded(),
         tangent=_column(model.path_tangent(inputs)),
@@ -191,10 +192,15 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
 
     return Path(
         residual=lambda x, t: _column(model.path_residual(x, at(t), 1.0)),
-        jacobian=lambda x, t: np.asarray(model.path_jacobian(x, at(t), 1.0).full()),
+        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
         rate=lambda x, t: _column(model.path_rate(x, at(t), 1.0, change, 0.0)),
         start=start,
     )
+
+
+def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
+    """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
+    return jacobian if model.frame.couplings.ties else np.asarray(jacobian.full())
 
 
 def _column(vector: ca.DM) -> FloatArray:

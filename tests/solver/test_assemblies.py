@@ -80,7 +80,7 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     assert_allclose(two.tip("b").rotation, one.tip().rotation, rtol=0, atol=2e-9)
     assert_allclose(two.base_wrench("a").moment, one.base_wrench().moment, rtol=0, atol=2e-8)
     passed = two.pose([1.0], "a").rotation[0] @ two.internal_wrench([1.0], "a")[0, :3]
-    assert_allclose(two.base_wrench("b").moment, passed, rtol=0, atol=1e-7)
+    assert_allclose(two.base_wrench("b").moment, -passed, rtol=0, atol=1e-7)
     assert two.stable is one.stable
     # A dead moment has a potential only where all turns share an axis.
     assert (one.stable is not None) == (strain == "planar")
@@ -123,7 +123,7 @@ CENTRE = np.array([0.02, 0.01, 0.05])
 SIDE = np.array([0.4, -0.3, 0.2])
 
 
-@pytest.mark.parametrize("kind", ["fixed", "spherical"])
+@pytest.mark.parametrize("kind", [pytest.param("fixed", marks=pytest.mark.slow), "spherical"])
 def test_tripod_with_mass_vs_shooting(kind: str) -> None:
     """Three rods that do not fit a body unloaded: all root wrenches and the body's pose found at once."""
     mass = 0.3
@@ -164,13 +164,19 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
 
 
 def test_portal_vs_its_half() -> None:
-    """Two equal planar legs under a heavy beam: by symmetry each carries half; its tip neither sinks nor turns.
+    """Two equal planar legs under a heavy beam: by symmetry each carries half.
 
     The tip of a leg, held upright by the beam, slides sideways not at all: a leg alone under half of the weight, its
     tip clamped to where it goes by symmetry, has the same moment.
     """
     legs = [
-        rod(n, 0.5, "planar", base={"position": [x, 0, 0], "quaternion": q}, intrinsic={"curvature": [0, 0.6, 0]})
+        rod(
+            n,
+            0.5,
+            ["bending_y", "shear_x", "extension"],
+            base={"position": [x, 0, 0], "quaternion": q},
+            intrinsic={"curvature": [0, 0.6, 0]},
+        )
         for n, x, q in (("l", 0.0, [1, 0, 0, 0]), ("r", 0.4, [0, 0, 0, 1]))
     ]
     joints = [
@@ -223,7 +229,8 @@ def test_assembly_that_cannot_close_says_what_is_left() -> None:
     joints = [
         {"body": "plate", "rod": n, "kind": "spherical", "position": [x, 0, 0]} for n, x in (("a", -0.1), ("b", 0.1))
     ]
-    solution = solve_scene(scene(*rods, tolerance=1e-4, bodies=[{"name": "plate"}], joints=joints))
+    few = {"modes": 3, "nodes": 8}
+    solution = solve_scene(scene(*rods, accuracy=few, bodies=[{"name": "plate"}], joints=joints))
     assert not solution.converged
     assert "The assembly is not closed: the tip of " in solution.message
     # 1.5 m between the feet, 0.3 m of each rod and 0.2 m of the body: 0.7 m are lacking, shared by two joints.
@@ -238,7 +245,8 @@ def test_stability_of_a_carried_column_vs_eulers_load() -> None:
         push = {"name": "p", "kind": "body_wrench", "body": "cap", "force": [0, 0, -share * critical]}
         parts = (rod("a", 0.5, "kirchhoff"), rod("b", 0.3, "kirchhoff", base={"rod": "a"}))
         cap = {"body": "cap", "rod": "b", "kind": "fixed"}
-        own = solved(scene(*parts, tolerance=1e-6, bodies=[{"name": "cap"}], joints=[cap], loads=[push]))
+        fixed = {"modes": 5, "nodes": 12}
+        own = solved(scene(*parts, accuracy=fixed, bodies=[{"name": "cap"}], joints=[cap], loads=[push]))
         assert own.stable is stable
 
 
