@@ -18,7 +18,8 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
 
-AXES = ("x", "y", "z")
+AXES = {1: ("",), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
+"""Names of the entries of a number, a vector and a quaternion."""
 
 
 def column_places(layout: InputLayout) -> dict[str, int]:
@@ -26,8 +27,9 @@ def column_places(layout: InputLayout) -> dict[str, int]:
     places = {}
     for name, place, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
         for k in range(default.size):
-            axis = f".{AXES[k % 3]}" if default.shape[0] == 3 else ""
-            degree = f".{k // 3}" if k >= 3 else ""
+            axes = AXES[len(default)]
+            axis = f".{axes[k % len(axes)]}" if len(axes) > 1 else ""
+            degree = f".{k // len(axes)}" if k >= len(axes) else ""
             places[f"{name}{axis}{degree}"] = place.start + k
     return places
 

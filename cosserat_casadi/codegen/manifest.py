@@ -12,6 +12,7 @@ from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import ROD_UNITS
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
@@ -56,12 +57,13 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
     for name, place, default in zip(
         model.inputs.names, model.inputs.slices.values(), model.inputs.defaults, strict=True
     ):
-        load, field = name.split(".")
+        load, field = name.split(".", 1)
+        cause = kinds.get(load)
         entries.append(
             {
                 "name": name,
-                "unit": EFFECTS[kinds[load].kind].magnitudes[field],
-                "axes": _axes(kinds[load], default),
+                "unit": ROD_UNITS[field] if cause is None else EFFECTS[cause.kind].magnitudes[field],
+                "axes": _axes(cause, default),
                 "first": place.start,
                 "shape": list(default.shape),
                 "value": default.ravel(order="F").tolist(),

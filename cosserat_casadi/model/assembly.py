@@ -83,7 +83,7 @@ class Coupled:
         carrier = self.couplings.carrier(rod)
         if carrier is not None:
             return self.placements[carrier]
-        pose = self.system.frame.base(rod)
+        pose = self.system.base(rod)
         return Placement(pose.position, pose.quaternion)
 
     def multipliers(self, tie: Tie) -> Matrix:
@@ -220,7 +220,7 @@ class Coupled:
 
     def _add_holds(self, blocks: Blocks) -> None:
         frame = self.system.frame
-        for (support, hold), place in zip(frame.holds, frame.hold_slices, strict=True):
+        for (support, hold, _), place in zip(self.system.holds, frame.hold_slices, strict=True):
             tangent, rod = self.system.tangents[support.rod], frame.rod_slices[support.rod]
             moved, turned = tangent.position(-1), tangent.rotation_of(-1)
             blocks.add(rod, place, hold.force_variation(moved, turned))

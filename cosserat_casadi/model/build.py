@@ -17,7 +17,7 @@ from cosserat_casadi.model import functions
 from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
 from cosserat_casadi.model.mesh import discretise
-from cosserat_casadi.model.system import Frame, frame
+from cosserat_casadi.model.system import Arguments, Frame, frame, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -152,6 +152,11 @@ class Model:
         if rod not in names:
             raise KeyError(f"{rod!r} is not a rod of this scene; its rods are {', '.join(names)}")
         return rod
+
+    def length_ratio(self, rod: str, inputs: FloatArray) -> float:
+        """Length of a rod for these inputs, relative to the scene's."""
+        ratio = ratio_of(self.frame, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
+        return 1.0 if ratio is None else float(ratio)
 
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""

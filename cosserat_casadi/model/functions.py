@@ -11,7 +11,7 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier
-from cosserat_casadi.model.system import Arguments, Frame, System, balance, rod_actions
+from cosserat_casadi.model.system import Arguments, Frame, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
 
 
@@ -83,16 +83,24 @@ def path_rate(frame: Frame) -> ca.Function:
 def path_tangent(frame: Frame) -> ca.Function:
     """Inputs ↦ dx/dfactor of the unloaded scene: its linear response.
 
-    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it.
+    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
+    lengths and bases of rods are inputs, it is the map's linear part at the scene's own values.
     """
     size, inputs = frame.layout.size, ca.MX.sym("inputs", frame.layout.size)
-    unloaded, none = np.zeros(frame.size), np.zeros(size)
-    jacobian = path_jacobian(frame)(unloaded, none, 0.0)
-    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
-    rates = path_rate(frame).map(size + 1)(unloaded, probes, 0.0, none, 1.0).full()
+    unloaded, still, rest = np.zeros(frame.size), np.zeros(size), np.zeros(size)
+    geometry = frame.layout.geometry
+    rest[geometry] = frame.layout.pack()[geometry]
+    jacobian = path_jacobian(frame)(unloaded, rest, 0.0)
+    rate, probes = path_rate(frame), np.hstack([np.zeros((size, 1)), np.eye(size)])
+    probes[:, 1:][:, geometry] = 0.0
+    rates = rate.map(size + 1)(unloaded, rest[:, None] + probes, 0.0, still, 1.0).full()
+    if geometry:
+        slope = ca.Function("slope", [inputs], [ca.jacobian(rate(unloaded, inputs, 0.0, still, 1.0), inputs)])
+        rates[:, 1:][:, geometry] = rates[:, :1] + slope(frame.layout.pack()).full()[:, geometry]
     response = -np.linalg.solve(jacobian.full(), rates) if frame.size else rates
     matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
-    return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ inputs], ["inputs"], ["tangent"])
+    moved = inputs - ca.DM(rest) if geometry else inputs
+    return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ moved], ["inputs"], ["tangent"])
 
 
 def igm(frame: Frame, rod: str) -> ca.Function:
@@ -105,7 +113,9 @@ def igm(frame: Frame, rod: str) -> ca.Function:
     q, inputs = ca.MX.sym("q", basis.size), ca.MX.sym("inputs", frame.layout.size)
     position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
     rotation = quaternion_to_matrix(quaternion)
-    model = balance(kinematics.shape(basis, q), rod_actions(frame, rod, rotation.T, Arguments(q, inputs)))
+    arguments = Arguments(q, inputs)
+    place = kinematics.shape(basis, q, ratio_of(frame, rod, arguments))
+    model = balance(place, rod_actions(frame, rod, rotation.T, arguments))
     actuated = model.actuation_force
     outputs = [
         model.generalised_force if actuated is None else model.generalised_force + actuated,
@@ -139,7 +149,8 @@ def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
     From the variations of the rod's fields: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q.
     """
     a = _arguments(frame)
-    system, base = System(frame, a), frame.base(rod)
+    system = System(frame, a)
+    base = system.base(rod)
     moving = frame.couplings.carrier(rod) is not None
     if moving or frame.bases[rod].discretisation.transport == "permuted":
         pose = ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2])
@@ -154,7 +165,10 @@ def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
         place = frame.rod_slices[rod]
         before, after = ca.DM(7, place.start), ca.DM(7, frame.size - place.stop)
         own = ca.horzcat(before, ca.vertcat(moved, world), after)
-    outputs = [ca.densify(own), ca.DM.zeros(7, frame.layout.size)]
+    directly = ca.DM.zeros(7, frame.layout.size)
+    if frame.layout.geometry:
+        directly = ca.densify(ca.jacobian(ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2]), a.inputs))
+    outputs = [ca.densify(own), directly]
     names = ["d_pose_d_x", "d_pose_d_inputs"]
     return ca.Function(_name("tip_jacobian", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 

@@ -13,6 +13,7 @@ from cosserat_casadi.effects.effect import coefficients
 from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.rods import base_pose
 
 
 @dataclass(frozen=True)
@@ -23,10 +24,12 @@ class InputLayout:
         names: ``load.field`` or ``actuator.field`` in the order of the vector.
         defaults: the scene's value of each, shape (1, 1) of a tension, a length or a pressure, (3, k) of a vector:
             column k holds the k-th Legendre coefficient.
+        rods: names of the rods that leave some of their own geometry free.
     """
 
     names: tuple[str, ...]
     defaults: tuple[FloatArray, ...]
+    rods: frozenset[str] = frozenset()
 
     @property
     def size(self) -> int:
@@ -64,10 +67,20 @@ class InputLayout:
                 problems.append(Problem(name, f"must have {default.size} numbers, got {value.size}"))
             elif not np.all(np.isfinite(value)):
                 problems.append(Problem(name, f"must be finite, got {value.tolist()}"))
+            elif name.endswith(".length") and not value.item() > 0.0:
+                problems.append(Problem(name, f"must be > 0, got {value.item()}"))
+            elif name.endswith(".base.quaternion") and not np.any(value):
+                problems.append(Problem(name, "must not be zero", "w, x, y, z; its norm does not matter"))
             parts.append(value.ravel(order="F"))
         if problems:
             raise SceneError(*problems)
         return np.concatenate([np.zeros(0), *parts])
+
+    @property
+    def geometry(self) -> list[int]:
+        """Places of what the equations are not linear in and must not be zero: lengths and poses of rods."""
+        names = [name for name in self.names if name.split(".", 1)[1] in ROD_UNITS and name.split(".")[0] in self.rods]
+        return [i for name in names for i in range(*self.slices[name].indices(self.size))]
 
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
@@ -77,9 +90,15 @@ class InputLayout:
         }
 
 
+ROD_UNITS: dict[str, str] = {"length": "m", "base.position": "m", "base.quaternion": "1"}
+"""What may be free of a rod itself, each with its unit."""
+
+
 def rod_field(rod: scenes.Rod, field: str) -> FloatArray:
-    """What may be free of a rod itself, as the scene has it: its length, shape (1, 1), m."""
-    return {"length": np.array([[rod.length]])}[field]
+    """What may be free of a rod itself, as the scene has it: shape (1, 1), (3, 1) or (4, 1)."""
+    if field == "length":
+        return np.array([[rod.length]])
+    return base_pose(rod)[("base.position", "base.quaternion").index(field)][:, None]
 
 
 def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
@@ -93,7 +112,9 @@ def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
 def input_layout(scene: scenes.Scene) -> InputLayout:
     """The inputs a scene asks for, by default every magnitude of loads and actuators."""
     names = scene.input_names()
-    return InputLayout(names, tuple(_default(scene, *name.split(".", 1)) for name in names))
+    causes = {cause.name for cause in scene.causes}
+    rods = frozenset(rod.name for rod in scene.rods) - causes
+    return InputLayout(names, tuple(_default(scene, *name.split(".", 1)) for name in names), rods)
 
 
 def _default(scene: scenes.Scene, name: str, field: str) -> FloatArray:

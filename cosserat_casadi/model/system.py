@@ -32,9 +32,9 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import Ratio, StrainBasis
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course, Wrench
+from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course, LineWrench, Wrench
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ class System:
     @cached_property
     def residual(self) -> Matrix:
         """Residuals of the rods, gaps of supports and ties, balance of moving frames, gaps of cables: without unit."""
-        gaps = [self.closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self._holds]
+        gaps = [self.closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self.holds]
         rods = [igm.residual for igm in self.rods.values()]
         lengths = [length.gap for length in self.lengths]
         return ca.vertcat(*rods, *gaps, *self.coupled.gaps, *self.coupled.balances, *lengths)
@@ -232,9 +232,21 @@ class System:
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
         if self.frame.couplings.carrier(rod) is None:
-            return self.frame.base(rod)
+            return self._still_base(rod)
         place = self.coupled.base(rod)
         return Pose(place.position, place.direction)
+
+    def _still_base(self, rod: str) -> Pose:
+        """Pose of a base that rests in the world: the scene's, or what the inputs say."""
+        pose = self.frame.base(rod)
+        position, quaternion = (self._input(f"{rod}.base.{word}") for word in ("position", "quaternion"))
+        turn = pose.quaternion if quaternion is None else quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        return Pose(pose.position if position is None else position, turn)
+
+    def _input(self, name: str) -> Matrix | None:
+        """An input of a rod's own geometry; None where the scene fixes it."""
+        place = self.frame.layout.slices.get(name)
+        return None if place is None else self.arguments.inputs[place]
 
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
@@ -268,12 +280,20 @@ class System:
         return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
 
     @cached_property
-    def _holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
+    def holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
+        """Supports of rods that start in the world, with their multipliers."""
         found, start = [], self.frame.strain_size
-        for support, hold in self.frame.holds:
+        for support, fixed in self.frame.holds:
+            hold = self._held(support, fixed)
             found.append((support, hold, self.arguments.x[start : start + hold.size]))
             start += hold.size
         return found
+
+    def _held(self, support: scenes.Support, hold: Hold) -> Hold:
+        """A support as the rod sees it from a base that inputs may move."""
+        if not any(f"{support.rod}.base.{word}" in self.frame.layout.slices for word in ("position", "quaternion")):
+            return hold
+        return replace(hold, target=SUPPORTS[support.kind].target(support, self.base(support.rod)))
 
     @cached_property
     def lengths(self) -> list[HeldLength]:
@@ -301,11 +321,11 @@ class System:
         basis = self.frame.bases[name]
         q = self.arguments.x[self.frame.rod_slices[name]]
         actions = rod_actions(self.frame, name, self._base_R_world(name), self.arguments)
-        actions += [hold.wrench(m) for s, hold, m in self._holds if s.rod == name]
+        actions += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
         ties = [tie for tie in self.frame.couplings.ties if tie.rod == name]
         actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
         actions += [Cable(course, self._tension(t)) for t, course in self.frame.cables if t.rod == name]
-        return balance(shape(basis, q), actions)
+        return balance(shape(basis, q, ratio_of(self.frame, name, self.arguments)), actions)
 
     def _tension(self, tendon: scenes.Tendon) -> Matrix:
         """Unknown tension of a tendon of given length, N."""
@@ -314,8 +334,8 @@ class System:
     def _base_R_world(self, rod: str) -> Matrix:
         if self.frame.couplings.carrier(rod) is not None:
             return self.coupled.base(rod).rotation.T
-        rotation = quaternion_to_matrix(self.frame.base(rod).quaternion)
-        return ca.sparsify(rotation, 1e-16).T
+        rotation = quaternion_to_matrix(self._still_base(rod).quaternion)
+        return ca.sparsify(rotation, 1e-16).T if isinstance(rotation, ca.DM) else rotation.T
 
 
 def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
@@ -330,12 +350,27 @@ def rod_actions(frame: Frame, rod: str, base_R_world: Matrix, arguments: Argumen
     basis = frame.bases[rod]
     site = Site(basis.rod, basis.grid, base_R_world)
     found: list[Action] = []
+    ratio = ratio_of(frame, rod, arguments)
     for cause in frame.scene.causes:
         effect = EFFECTS[cause.kind]
         if effect.acts_on(cause, rod):
             values = {field: _value(frame.layout, cause, field, arguments) for field in effect.magnitudes}
-            found.extend(effect.actions(cause, site, values))
+            found.extend(drawn_out(action, ratio) for action in effect.actions(cause, site, values))
     return found
+
+
+def ratio_of(frame: Frame, rod: str, arguments: Arguments) -> Ratio:
+    """Length of a rod relative to the scene's where it is an input, else None."""
+    place = frame.layout.slices.get(f"{rod}.length") if rod in frame.layout.rods else None
+    return None if place is None else arguments.inputs[place] / frame.bases[rod].rod.length
+
+
+def drawn_out(action: Action, ratio: Ratio) -> Action:
+    """An action on a rod whose length is free: what acts per length acts on more or less of it."""
+    if ratio is None or not isinstance(action, LineWrench):
+        return action
+    force, moment = (part if part is None else part * ratio for part in (action.force, action.moment))
+    return replace(action, force=force, moment=moment)
 
 
 def _value(

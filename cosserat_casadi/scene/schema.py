@@ -712,7 +712,7 @@ MAGNITUDES: dict[str, tuple[str, ...]] = {
 """Fields of each kind of load and actuator that may stay free at run time."""
 
 
-ROD_INPUTS: tuple[str, ...] = ()
+ROD_INPUTS = ("length", "base.position", "base.quaternion")
 """What of a rod itself may stay free at run time."""
 
 
@@ -915,13 +915,25 @@ def _inputs_that_are_not(given: Mapping[str, Any]) -> Iterator[Fault]:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
         elif name in causes:
             yield from (Fault(("inputs", i), *told) for told in _no_magnitude(name, causes[name][1], field))
-        elif name in rods and field not in ROD_INPUTS:
-            yield Fault(
-                ("inputs", i), f"{shown(name)} has no {shown(field)} to leave free", _listing(ROD_INPUTS, "fields")
-            )
-        elif name not in rods:
+        elif name in rods:
+            yield from (Fault(("inputs", i), *told) for told in _not_free(given, name, rods[name][1], field))
+        else:
             known = _listing([*causes, *rods], "names")
             yield Fault(("inputs", i), f"no load, actuator or rod is named {shown(name)}", known)
+
+
+def _not_free(given: Mapping[str, Any], name: str, rod: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:
+    """Why something of a rod cannot be left free at run time."""
+    if field not in ROD_INPUTS:
+        yield f"{shown(name)} has no {shown(field)} to leave free", _listing(ROD_INPUTS, "fields")
+    if field not in ROD_INPUTS[1:]:
+        return
+    base = rod.get("base")
+    if isinstance(base, Mapping) and "rod" in base:
+        yield f"{shown(name)} starts on another rod", "move the base of that one"
+    held = any(table.get("rod") == name for key in ("supports", "joints") for _, table in _tables(given, key))
+    if held and set(_admitted(rod.get("strain"))) <= {1, 3, 5}:
+        yield f"{shown(name)} bends in a plane and its tip is held", "admit torsion, or its base could leave the plane"
 
 
 def _no_magnitude(name: str, cause: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:

@@ -113,7 +113,8 @@ class Solution:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
         name = self.model.rod_name(rod)
         basis, columns = self.model.frame.bases[name], self.model.frame.rod_slices[name]
-        strain: FloatArray = basis.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float))).full().T
+        ratio = self.model.length_ratio(name, self.inputs)
+        strain: FloatArray = basis.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float)), ratio).full().T
         return strain
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
