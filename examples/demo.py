@@ -18,6 +18,8 @@ SCENES = (
     "loaded_strip",
     "euler_column",
     "deep_arch",
+    "branching_rod",
+    "six_rod_platform",
 )
 
 
