@@ -17,7 +17,7 @@ from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solution import Pose, Solution
 
 FORMATS = (".png", ".pdf", ".svg")
 """Suffixes a figure may have."""
@@ -25,11 +25,18 @@ FORMATS = (".png", ".pdf", ".svg")
 SAMPLES = np.linspace(0.0, 1.0, 201)
 RODS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")
 AXES = ("#cc3311", "#228833", "#0055bb")
+STROKES = ("-", "--", "-.")
 LOADS = "#b2560d"
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
 
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
+BODIES = "#777777"
+JOINTS: dict[str, dict[str, Any]] = {
+    "fixed": {"marker": "s", "markersize": 7, "color": "0.35"},
+    "spherical": {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"},
+}
+"""How joints are marked; rods that start on rods are fixed there."""
 
 
 class PlotUnavailableError(CosseratError):
@@ -93,7 +100,7 @@ def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
     Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick,
-    unloaded dashed, section frames (x red, y green, z blue), loads as arrows. Right, along X: the strains that are
+    unloaded dashed, section frames (x red, y green, z blue), bodies filled, joints, loads as arrows. Right, along X: the strains that are
     admitted, the internal moment and the internal force in the sections' frames.
 
     Returns:
@@ -168,17 +175,21 @@ def _lies_flat(arrow: Arrow, flat: int) -> bool:
 
 
 def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
-    several = len(solution.model.frame.bases) > 1
+    several, size = len(solution.model.frame.bases) > 1, _size(solution)
     for i, name in enumerate(solution.model.frame.bases):
         colour = RODS[i % len(RODS)]
         unloaded = _unloaded(solution, name)
         _line(axes, unloaded, plane, color="0.55", linestyle="--", linewidth=1.2, label=None if i else "unloaded")
         shape = solution.pose(SAMPLES, name).position
         _line(axes, shape, plane, color=colour, linewidth=3.5, label=name if several else "deformed")
-        _line(axes, shape[:1], plane, color="0.2", marker="s", markersize=9, linestyle="none")
-        _draw_frames(axes, solution, name, plane)
+        clamped = solution.model.frame.couplings.carrier(name) is None
+        style = {"color": "0.2", "marker": "s", "markersize": 9} if clamped else JOINTS["fixed"]
+        _line(axes, shape[:1], plane, linestyle="none", **style)
+        _draw_frames(axes, solution, name, plane, 0.06 * size)
     _draw_supports(axes, solution, plane)
     _draw_actuators(axes, solution, plane)
+    for body in solution.model.scene.bodies:
+        _draw_body(axes, solution, body, plane)
     _draw_arrows(axes, solution, plane)
     names = "xyz"
     shown = plane or (0, 1, 2)
@@ -205,9 +216,8 @@ def _line(axes: Any, points: FloatArray, plane: tuple[int, int] | None, **style:
     axes.plot(*[points[:, c] for c in columns], **style)
 
 
-def _draw_frames(axes: Any, solution: Solution, name: str, plane: tuple[int, int] | None) -> None:
+def _draw_frames(axes: Any, solution: Solution, name: str, plane: tuple[int, int] | None, length: float) -> None:
     pose = solution.pose(np.linspace(0.0, 1.0, 9), name)
-    length = 0.06 * _size(solution)
     for position, rotation in zip(pose.position, pose.rotation, strict=True):
         for axis, colour in enumerate(AXES):
             ends = np.array([position, position + length * rotation[:, axis]])
@@ -246,6 +256,41 @@ def actuator_course(solution: Solution, actuator: Any) -> FloatArray:
     return np.asarray(pose.position + np.einsum("kij,jk->ki", pose.rotation[:, :, :2], offset))
 
 
+def _draw_body(axes: Any, solution: Solution, body: Any, plane: tuple[int, int] | None) -> None:
+    """A body as the polygon through its joints, or the line to its centre of mass from a joint that is alone."""
+    pose = solution.body(body.name)
+    joints = [joint for joint in solution.model.scene.joints if joint.body == body.name]
+    points = _in_world(pose, np.array([joint.position for joint in joints]))
+    corners = points[_around(points)]
+    if len(corners) < 2:
+        corners = np.concatenate([corners, _in_world(pose, np.array([body.centre_of_mass]))])
+    _fill(axes, corners, plane)
+    _line(axes, np.concatenate([corners, corners[:1]]), plane, color=BODIES, linewidth=2.0, label=body.name)
+    for joint, point in zip(joints, points, strict=True):
+        _line(axes, point[None], plane, linestyle="none", **JOINTS[joint.kind])
+
+
+def _in_world(pose: Pose, points: FloatArray) -> FloatArray:
+    """World coordinates of points of a body, shape (k, 3)."""
+    return np.asarray(pose.position[0] + points @ pose.rotation[0].T)
+
+
+def _around(points: FloatArray) -> FloatArray:
+    """Order of points round their middle, seen along the direction in which they spread least."""
+    arms = points - points.mean(axis=0)
+    across, up, _ = np.linalg.svd(arms, full_matrices=len(points) < 3)[2][:3]
+    return np.argsort(np.arctan2(arms @ up, arms @ across), kind="stable")
+
+
+def _fill(axes: Any, corners: FloatArray, plane: tuple[int, int] | None) -> None:
+    if plane is not None:
+        axes.fill(*(corners[:, c] for c in plane), color=BODIES, alpha=0.25)
+        return
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    axes.add_collection3d(Poly3DCollection([corners], facecolors=BODIES, alpha=0.25))
+
+
 def _arrows(solution: Solution) -> list[Arrow]:
     model = solution.model
     values = load_values(model.scene, model.inputs, solution.inputs)
@@ -253,6 +298,7 @@ def _arrows(solution: Solution) -> list[Arrow]:
     for load in model.scene.loads:
         if load.kind == "gravity":
             arrows += _weights(solution, load, values[load.name]["acceleration"])
+            arrows += _body_weights(solution, load, values[load.name]["acceleration"])
         elif load.kind == "distributed_wrench":
             arrows += _distributed(solution, load, values[load.name]["force"])
         else:
@@ -261,15 +307,31 @@ def _arrows(solution: Solution) -> list[Arrow]:
 
 
 def _points(solution: Solution, load: Any, values: dict[str, FloatArray]) -> list[Arrow]:
-    pose = solution.pose(np.array([getattr(load, "at", 1.0)]), load.rod)
+    if load.kind == "body_wrench":
+        pose = solution.body(load.body)
+        start = _in_world(pose, np.array([load.position]))[0]
+    else:
+        pose = solution.pose(np.array([getattr(load, "at", 1.0)]), load.rod)
+        start = pose.position[0]
     turn = pose.rotation[0] if load.frame == "body" else np.eye(3)
     arrows: list[Arrow] = []
     for field, unit, style in (("force", "N", "point"), ("moment", "N m", "moment")):
         vector = turn @ values[field][:, 0]
         if np.any(vector):
             label = f"{load.name}: {np.linalg.norm(vector):.3g} {unit}"
-            arrows.append((pose.position[0], vector, label, style))
+            arrows.append((start, vector, label, style))
     return arrows
+
+
+def _body_weights(solution: Solution, load: Any, acceleration: FloatArray) -> list[Arrow]:
+    weighed = [b for b in solution.model.scene.bodies if b.mass and load.acts_on_body(b.name)]
+    found: list[Arrow] = []
+    for body in weighed:
+        start = _in_world(solution.body(body.name), np.array([body.centre_of_mass]))[0]
+        weight = body.mass * acceleration[:, 0]
+        if np.any(weight):
+            found.append((start, weight, f"{load.name} of {body.name}: {np.linalg.norm(weight):.3g} N", "point"))
+    return found
 
 
 def _distributed(solution: Solution, load: Any, coefficients: FloatArray) -> list[Arrow]:
@@ -290,7 +352,7 @@ def _weights(solution: Solution, load: Any, acceleration: FloatArray) -> list[Ar
     X = np.linspace(0.05, 0.95, 8)
     arrows: list[Arrow] = []
     for name, basis in solution.model.frame.bases.items():
-        if basis.rod.linear_density is None or (load.rods is not None and name not in load.rods):
+        if basis.rod.linear_density is None or not load.acts_on_rod(name):
             continue
         weight = basis.rod.linear_density(X)[:, None] * acceleration[:, 0]
         label = f"{load.name}: up to {np.linalg.norm(weight, axis=1).max():.3g} N/m"
@@ -306,7 +368,7 @@ def _weights(solution: Solution, load: Any, acceleration: FloatArray) -> list[Ar
 def _draw_arrows(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
     """Arrows scaled within their own kind: the largest point load is a fifth of the rod, a line load a tenth."""
     styles = {"point": (0.22, LOADS, 2.2), "moment": (0.18, "#7a3e9d", 2.2), "line": (0.09, "#c98b4b", 1.0)}
-    arrows = _arrows(solution)
+    arrows, size = _arrows(solution), _size(solution)
     for style, (share, colour, width) in styles.items():
         chosen = [arrow for arrow in arrows if arrow[3] == style]
         largest = max((float(np.linalg.norm(vector)) for _, vector, *_ in chosen), default=0.0)
@@ -314,7 +376,7 @@ def _draw_arrows(axes: Any, solution: Solution, plane: tuple[int, int] | None) -
             if style == "moment" and plane is not None:
                 axes.plot([], [], color=colour, linewidth=width, label=label)
                 continue
-            scaled = vector * share * _size(solution) / largest
+            scaled = vector * share * size / largest
             _arrow(axes, start, scaled, plane, color=colour, linewidth=width, label=label)
     _show_moments_in_the_plane(axes, arrows, plane)
 
@@ -357,7 +419,8 @@ def _equal_box(axes: Any, solution: Solution) -> None:
 
 
 def _draw_panel(panel: Any, solution: Solution, quantity: str, labels: tuple[str, ...], unit: str) -> None:
-    several = len(solution.model.frame.bases) > 1
+    several, many = (len(solution.model.frame.bases) > count for count in (1, 2))
+    named: set[str] = set()
     panel.set_ylabel(unit)
     # Shear and stretch have no unit and are small beside curvatures: an axis of their own, on the right.
     shown = {False: panel, True: panel.twinx() if _has_linear_strain(solution, quantity) else None}
@@ -368,7 +431,11 @@ def _draw_panel(panel: Any, solution: Solution, quantity: str, labels: tuple[str
                 continue
             colour = AXES[j % 3] if not several else RODS[i % len(RODS)]
             text = f"{name} {label}" if several else label
-            shown[j >= 3].plot(SAMPLES, values[:, j], color=colour, linestyle="-" if j < 3 else ":", label=text)
+            line = "-" if j < 3 else ":"
+            if many:  # colours tell the rods, as in the picture beside; strokes tell the components
+                text, line = "" if label in named else label, line if j >= 3 else STROKES[j]
+                named.add(label)
+            shown[j >= 3].plot(SAMPLES, values[:, j], color=colour, linestyle=line, label=text or None)
         for cut in basis.grid.breaks[1:-1]:
             panel.axvline(cut, color="0.6", linewidth=0.8)
     panel.set_xlim(-0.01, 1.01)

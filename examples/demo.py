@@ -22,6 +22,8 @@ SCENES = (
     "helical_tendon",
     "two_section_robot",
     "soft_arm",
+    "branching_rod",
+    "six_rod_platform",
 )
 
 

@@ -182,7 +182,7 @@ class _Problem:
     def acceleration(self) -> FloatArray:
         """Sum of the fields that weigh the rod, m/s²."""
         fields = [load for load in self.scene.loads if load.kind == "gravity"]
-        mine = [load for load in fields if load.rods is None or self.rod.name in load.rods]
+        mine = [load for load in fields if load.acts_on_rod(self.rod.name)]
         return sum((self.values[load.name]["acceleration"][:, 0] for load in mine), np.zeros(3))
 
     def strain(self, X: float, state: _State) -> tuple[Batch, Batch]:

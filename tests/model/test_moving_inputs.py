@@ -10,9 +10,8 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, SceneError, build, parse_scene, solve
 from cosserat_casadi.load_cases import column_places
 
-FREE = (
-    'inputs = ["push.force", "wind.force", "cable.tension", "arm.length", "arm.base.position", "arm.base.quaternion"]'
-)
+NAMES = ("push.force", "wind.force", "cable.tension", "arm.length", "arm.base.position", "arm.base.quaternion")
+FREE = f"inputs = {list(NAMES)}"
 SCENE = """
 schema = 1
 {inputs}
