@@ -8,6 +8,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 
+SINGULAR = 1e-12
+"""Reciprocal of the condition beyond which a Jacobian counts as singular."""
+
 
 @dataclass
 class Secant:
@@ -38,14 +41,30 @@ class Secant:
 
 
 def newton_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """The Newton step; the shortest one where the Jacobian is singular; None where there is none."""
+    """The Newton step; the shortest one where the Jacobian is singular to rounding; None where there is none.
+
+    A rod that symmetry lets turn without energy has a singular Jacobian: along that direction nothing moves.
+    """
     if not len(residual):
         return np.zeros(0)
     if not (np.all(np.isfinite(jacobian)) and np.all(np.isfinite(residual))):
         return None
-    step: FloatArray
-    try:
-        step = np.asarray(np.linalg.solve(jacobian, -residual), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=1e-12)[0], dtype=np.float64)
+    step: FloatArray | None = _regular_step(jacobian, residual)
+    if step is None:
+        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)[0], dtype=np.float64)
     return step if np.all(np.isfinite(step)) else None
+
+
+def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
+    """The step of a Jacobian that is not singular to rounding, else None.
+
+    The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
+    """
+    probe = np.cos(np.arange(1.0, len(residual) + 1.0) ** 2)
+    try:
+        steps = np.linalg.solve(jacobian, np.column_stack([-residual, probe / np.linalg.norm(probe)]))
+    except np.linalg.LinAlgError:
+        return None
+    with np.errstate(all="ignore"):
+        stretch = float(np.linalg.norm(steps[:, 1]) * np.abs(jacobian).max())
+    return np.asarray(steps[:, 0], dtype=np.float64) if stretch <= 1.0 / SINGULAR else None
