@@ -92,7 +92,7 @@ def check_potential(model: Model, inputs: FloatArray) -> None:
     """
     if not model.has_potential(inputs):
         problem = "the loads have no potential, so no energy tells which equilibrium is stable"
-        raise SceneError(Problem("stable", problem, "leave it out, or make the loads dead forces"))
+        raise SceneError(Problem("--stable", problem, "leave it out, or make the loads dead forces"))
 
 
 def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progress | None = None) -> Solution:
