@@ -11,6 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from math import ceil
+
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
@@ -38,6 +40,9 @@ AIM = 0.7
 
 FEWEST = 2
 """Chebyshev intervals below which nothing is tried."""
+
+UNBOUNDED = 1e9
+"""Excess of a grid that does not resolve the rod at all, so that its tips may be anything, no numbers too."""
 
 
 @dataclass(frozen=True)
@@ -168,10 +173,10 @@ class _GridSearch:
     def _fewest(self, order: str, most: int, first: bool) -> int | None:
         """Fewest intervals, at most ``most``, with which an integrator stays within the bound; None if none do."""
         likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
-        if most < (FEWEST if first else LEAST_LIKELY / LIKELY * likely):
+        if most < (self._fewest_resolving if first else LEAST_LIKELY / LIKELY * likely):
             return None
-        enough, short = most + 1, FEWEST - 1
-        guess = min(most, likely) if first else most
+        enough, short = most + 1, min(most, self._fewest_resolving) - 1
+        guess = min(most, max(likely, short + 1)) if first else most
         for _ in range(LOOKS):
             if self._within(order, guess):
                 enough = guess
@@ -198,14 +203,22 @@ class _GridSearch:
         return max(self._excess(order, nodes), _size(together) / self.trim.bound) <= 1
 
     def _excess(self, order: str, nodes: int) -> float:
-        """Change of the tips by grids alone over the bound; rounding apart."""
-        return max(_size(self._shift(order, nodes)) / self.trim.bound, 1e-9)
+        """Change of the tips by grids alone over the bound; rounding apart, and bounded where nothing is resolved."""
+        excess = _size(self._shift(order, nodes)) / self.trim.bound
+        return max(excess, 1e-9) if excess < UNBOUNDED else UNBOUNDED
 
     def _shift(self, order: str, nodes: int) -> FloatArray:
         if (order, nodes) not in self._seen:
             trial = {**self.grids, self.name: self._grid(order, nodes)}
             self._seen[order, nodes] = self.trim.preview.grid_shift(self._unknowns, self.modes, trial)
         return self._seen[order, nodes]
+
+    @cached_property
+    def _fewest_resolving(self) -> int:
+        """Intervals below which one would turn too far, from the turns of the witness."""
+        witness = self.trim.preview.witness
+        turning = float(witness.model.coarseness(witness.x)) * witness.model.discretisation[self.name].nodes
+        return max(FEWEST, ceil(turning))
 
     @cached_property
     def _unknowns(self) -> FloatArray:
