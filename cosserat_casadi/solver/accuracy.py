@@ -26,13 +26,14 @@ from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
+from cosserat_casadi.solver.node_residual import modes_to_see
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.preview import Preview, watched
 from cosserat_casadi.solver.resolution import Resolution
 from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.judgement import correct, judge
 from cosserat_casadi.solver.settling import PATH_OF_ENERGY
-from cosserat_casadi.solver.solve import check_potential, solve, stabilised
+from cosserat_casadi.solver.solve import NONE_STABLE, check_potential, solve, stabilised
 from cosserat_casadi.solver.trimming import Trim
 
 LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
@@ -157,7 +158,10 @@ class _Climb:
                 continue
             below, resolution = fine, Resolution(Preview(fine))
             lacking = resolution.modes_lacking(max(WITNESS * self.tolerance, FLOOR))
-            if lacking > 0:
+            seeing = modes_to_see(fine, largest_turn(fine), self.tolerance)
+            if seeing > LADDER[rung]:
+                rung = next((r for r, modes in enumerate(LADDER) if modes >= seeing), len(LADDER))
+            elif lacking > 0:
                 rung = _next_rung(rung, lacking)
             elif resolution.grid_error <= max(WITNESS / 3 * self.tolerance, FLOOR):
                 # Only now: with few modes a rod may seem unstable that is not.
@@ -178,7 +182,7 @@ class _Climb:
             trimmed = Trim(resolution.preview, share * self.tolerance - own).run()
             found = _polish(self._build(trimmed.discretisation), trimmed.start, witness.inputs)
             # Few modes meet the tip and may still be too stiff to buckle: the witness decides what is stable.
-            if found is None or found.stable is not witness.stable:
+            if found is None or not found.converged or found.stable is not witness.stable:
                 continue
             judged = with_estimate(found, witness, MARGIN, own)
             if judged.error_estimate is not None and judged.error_estimate <= self.tolerance:
@@ -202,8 +206,10 @@ class _Climb:
         coarse = self._stabilised(self.solve(modes, nodes, None, self.scene.accuracy.rotation))
         if not coarse.converged:
             return coarse
-        finer = modes + 4 if isinstance(modes, int) else tuple(m + 4 for m in modes)
-        witness = self.solve(finer, max(nodes + 10, self._nodes(most + 4, largest_turn(coarse))), coarse)
+        turn = largest_turn(coarse)
+        seeing = modes_to_see(coarse, turn, self.scene.accuracy.tolerance)
+        finer = max(modes + 4, seeing) if isinstance(modes, int) else tuple(max(m + 4, seeing) for m in modes)
+        witness = self.solve(finer, max(nodes + 10, self._nodes(max(most + 4, seeing), turn)), coarse)
         return with_estimate(coarse, witness) if witness.converged else _unresolved(coarse)
 
     def _nodes(self, modes: int, turn: float) -> int:
@@ -248,6 +254,8 @@ def solve_scene(
     found = climb.fixed() if chosen else climb.ladder()
     if climb.settled and found.stable and PATH_OF_ENERGY not in found.message:
         found = replace(found, message=found.message + PATH_OF_ENERGY)
+    if stable and found.converged and not found.stable and NONE_STABLE not in found.message:
+        found = replace(found, message=found.message + NONE_STABLE)
     return found
 
 

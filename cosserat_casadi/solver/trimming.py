@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-
 from math import ceil
 
 import numpy as np
@@ -40,6 +39,9 @@ AIM = 0.7
 
 FEWEST = 2
 """Chebyshev intervals below which nothing is tried."""
+
+MORE = 1.1
+"""Factor on the intervals that would just resolve the witness: the trimmed rod may turn a little more somewhere."""
 
 UNBOUNDED = 1e9
 """Excess of a grid that does not resolve the rod at all, so that its tips may be anything, no numbers too."""
@@ -218,7 +220,7 @@ class _GridSearch:
         """Intervals below which one would turn too far, from the turns of the witness."""
         witness = self.trim.preview.witness
         turning = float(witness.model.coarseness(witness.x)) * witness.model.discretisation[self.name].nodes
-        return max(FEWEST, ceil(turning))
+        return max(FEWEST, ceil(MORE * turning))
 
     @cached_property
     def _unknowns(self) -> FloatArray:
