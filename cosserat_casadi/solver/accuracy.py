@@ -184,7 +184,8 @@ class _Climb:
             # Few modes meet the tip and may still be too stiff to buckle: the witness decides what is stable.
             if found is None or not found.converged or found.stable is not witness.stable:
                 continue
-            judged = with_estimate(found, witness, MARGIN, own)
+            verdict = {"smallest_eigenvalue": witness.smallest_eigenvalue, "message": witness.message}
+            judged = replace(with_estimate(found, witness, MARGIN, own), **verdict)
             if judged.error_estimate is not None and judged.error_estimate <= self.tolerance:
                 return judged
         return replace(witness, error_estimate=own + ROUNDING)
