@@ -16,8 +16,8 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import ContinuationSettings
-from cosserat_casadi.solver.secant import SINGULAR
 from cosserat_casadi.solver.judgement import NEAR
+from cosserat_casadi.solver.secant import SINGULAR
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""

@@ -90,7 +90,7 @@ class Model:
 
     @cached_property
     def coarseness(self) -> ca.Function:
-        """x ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
+        """X ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
         return functions.coarseness(self.frame)
 
     @cached_property

@@ -218,7 +218,7 @@ def potential(frame: Frame) -> ca.Function | None:
 
 
 def coarseness(frame: Frame) -> ca.Function:
-    """x ↦ largest turn of an interval over that which can be resolved; in the literal system error of the tip's |Q|."""
+    """X ↦ largest turn of an interval over that which can be resolved; in the literal system error of the tip's |Q|."""
     a = _arguments(frame)
     shares: list[Matrix] = [ca.MX(0.0)]
     for rod, basis in frame.bases.items():

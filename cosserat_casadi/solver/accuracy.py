@@ -26,13 +26,13 @@ from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
+from cosserat_casadi.solver.judgement import correct, judge
 from cosserat_casadi.solver.node_residual import modes_to_see
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.preview import Preview, watched
 from cosserat_casadi.solver.resolution import Resolution
-from cosserat_casadi.solver.solution import Pose, Solution
-from cosserat_casadi.solver.judgement import correct, judge
 from cosserat_casadi.solver.settling import PATH_OF_ENERGY
+from cosserat_casadi.solver.solution import Pose, Solution
 from cosserat_casadi.solver.solve import NONE_STABLE, check_potential, solve, stabilised
 from cosserat_casadi.solver.trimming import Trim
 
@@ -184,8 +184,11 @@ class _Climb:
             # Few modes meet the tip and may still be too stiff to buckle: the witness decides what is stable.
             if found is None or not found.converged or found.stable is not witness.stable:
                 continue
-            verdict = {"smallest_eigenvalue": witness.smallest_eigenvalue, "message": witness.message}
-            judged = replace(with_estimate(found, witness, MARGIN, own), **verdict)
+            judged = replace(
+                with_estimate(found, witness, MARGIN, own),
+                smallest_eigenvalue=witness.smallest_eigenvalue,
+                message=witness.message,
+            )
             if judged.error_estimate is not None and judged.error_estimate <= self.tolerance:
                 return judged
         return replace(witness, error_estimate=own + ROUNDING)

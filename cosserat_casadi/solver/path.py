@@ -14,10 +14,10 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.arclength import ArcSettings, Curve, Monitor
 from cosserat_casadi.solver.continuation import Path, Progress
 from cosserat_casadi.solver.events import DETERMINANT
+from cosserat_casadi.solver.load_path import input_path
 from cosserat_casadi.solver.newton import relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.solution import Pose, Solution
-from cosserat_casadi.solver.load_path import input_path
 from cosserat_casadi.solver.solve import solve
 from cosserat_casadi.solver.stability import admissible_eigenvalues, judged
 from cosserat_casadi.solver.trace import PathOutcome, Trace, trace

@@ -8,7 +8,6 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 
-
 ZERO = 1e-10
 """An eigenvalue below this share of the largest, or of EI/ℓ where that is more, is zero to rounding."""
 

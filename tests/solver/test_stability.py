@@ -195,9 +195,7 @@ def test_step_in_the_ball_vs_brute_force() -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_descent_leaves_a_saddle_to_either_side(side: float) -> None:
     """Double well (x² − 1)²/4 + y²: a saddle at zero, minima at x = ±1."""
-    energy = Energy(
-        lambda x: np.array([x[0] ** 3 - x[0], 2 * x[1]]), lambda x: np.diag([3 * x[0] ** 2 - 1, 2.0])
-    )
+    energy = Energy(lambda x: np.array([x[0] ** 3 - x[0], 2 * x[1]]), lambda x: np.diag([3 * x[0] ** 2 - 1, 2.0]))
     found = descend(energy, np.zeros(2), side, DescentSettings())
     assert found is not None
     assert_allclose(np.abs(found), [1.0, 0.0], rtol=0, atol=1e-7)
