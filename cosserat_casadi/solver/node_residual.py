@@ -18,7 +18,7 @@ BEYOND = 2
 
 
 def node_residual(solution: Solution) -> float:
-    """Largest strain by which stress and internal wrench differ at the nodes; curvatures times the length of the rod."""
+    """Largest strain by which stress and internal wrench differ at the nodes; curvatures times the length."""
     largest = 0.0
     for name, basis in solution.model.frame.bases.items():
         X, rod = basis.grid.nodes, basis.rod

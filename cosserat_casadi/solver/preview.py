@@ -72,7 +72,8 @@ class Preview:
         """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
         left, singular, right = np.linalg.svd(self.jacobian)
         largest = float(singular.max(initial=0.0))
-        return self.jacobian + largest * left[:, singular <= SINGULAR * largest] @ right[singular <= SINGULAR * largest]
+        neutral = singular <= SINGULAR * largest
+        return np.asarray(self.jacobian + largest * left[:, neutral] @ right[neutral])
 
     @cached_property
     def tips(self) -> FloatArray:
