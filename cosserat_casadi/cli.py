@@ -80,10 +80,13 @@ def solve(
     output: Annotated[Path | None, typer.Option(help="Write the result file (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+    stable: Annotated[
+        bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
+    ] = False,
 ) -> None:
-    """Find the equilibrium of a scene. Exit codes: 0 solved, 2 scene refused, 3 no equilibrium found."""
+    """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
     _check_outputs(output, plot)
-    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())))
+    solution = _solve_with_progress(read_scene(scene, tuple(settings or ())), stable=stable)
     if output is not None:
         write_atomically(output, result_text(solution).encode())
     if plot is not None:
@@ -92,7 +95,9 @@ def solve(
         sys.stdout.write(result_text(solution))
     else:
         report.print_solution(Console(), solution, [p for p in (output, plot) if p is not None])
-    if not solution.converged:
+    if solution.converged and solution.stable is False and not stable:
+        report.print_unstable(Console(stderr=True))
+    if not solution.converged or (stable and not solution.stable):
         raise typer.Exit(NOT_FOUND)
 
 
@@ -327,9 +332,9 @@ def _draw_path(found: EquilibriumPath, file: Path) -> None:
     save_path_plot(found, file)
 
 
-def _solve_with_progress(scene: Scene) -> Solution:
+def _solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution:
     with _told("Solving") as (told, said):
-        return solve_scene(scene, progress=told, report=said)
+        return solve_scene(scene, stable=stable, progress=told, report=said)
 
 
 def _progress() -> Progress:

@@ -15,6 +15,7 @@ import numpy as np
 from cosserat_casadi.effects.course import offset_at
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.solver.solution import Pose, Solution
@@ -99,9 +100,9 @@ def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
 def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
-    Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick,
-    unloaded dashed, section frames (x red, y green, z blue), bodies filled, joints, loads as arrows. Right, along X: the strains that are
-    admitted, the internal moment and the internal force in the sections' frames.
+    Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick, unloaded
+    dashed, section frames (x red, y green, z blue), tendons and chambers, bodies filled, joints, loads as arrows.
+    Right, along X: the strains that are admitted, the internal moment and the internal force in the sections' frames.
 
     Returns:
         matplotlib.figure.Figure.
@@ -275,7 +276,7 @@ def _in_world(pose: Pose, points: FloatArray) -> FloatArray:
     return np.asarray(pose.position[0] + points @ pose.rotation[0].T)
 
 
-def _around(points: FloatArray) -> FloatArray:
+def _around(points: FloatArray) -> Indices:
     """Order of points round their middle, seen along the direction in which they spread least."""
     arms = points - points.mean(axis=0)
     across, up, _ = np.linalg.svd(arms, full_matrices=len(points) < 3)[2][:3]

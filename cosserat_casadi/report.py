@@ -36,6 +36,16 @@ def print_solution(console: Console, solution: Solution, written: Sequence[Path]
         console.print(f"wrote {escape(str(path))}", highlight=False)
 
 
+def print_unstable(console: Console) -> None:
+    """A warning, and what to do about it."""
+    console.print(
+        "[bold yellow]Warning:[/] this equilibrium is not stable: a real rod leaves it. "
+        "Add --stable to find one that it keeps.",
+        highlight=False,
+        soft_wrap=True,
+    )
+
+
 def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:
     """Outcome, table of events and of the end, and the files that were written."""
     console.print(f"[bold]{escape(path.model.scene.title or 'Untitled scene')}[/]", highlight=False)

@@ -378,3 +378,40 @@ def test_tune_refuses_a_tolerance_out_of_range(wire: Path) -> None:
     assert done.returncode == 2
     assert "accuracy.tolerance: must be <= 0.1, got 5.0" in done.stderr
     assert not (wire / "tuned.toml").exists()
+
+
+COLUMN = """
+schema = 1
+[[rods]]
+name = "column"
+length = 1.0
+strain = "planar"
+stiffness = { bending_y = 1.0 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "column"
+force = [0, 0, -5.0]
+"""
+
+
+def test_unstable_equilibrium_is_warned_of_and_stable_one_found(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    straight = cosserat("solve", "column.toml", "--output", "straight.json", cwd=tmp_path)
+    assert straight.returncode == 0
+    assert "--stable" in straight.stderr
+    bent = cosserat("solve", "column.toml", "--stable", "--output", "bent.json", cwd=tmp_path)
+    assert bent.returncode == 0, bent.stderr
+    assert "Warning" not in bent.stderr
+    results = [json.loads((tmp_path / f"{name}.json").read_text()) for name in ("straight", "bent")]
+    assert [result["stable"] for result in results] == [False, True]
+    assert results[0]["smallest_eigenvalue"] < 0.0 < results[1]["smallest_eigenvalue"]
+    assert "unstable" in results[0]["message"]
+
+
+def test_stable_is_refused_where_loads_have_no_potential(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN + 'frame = "body"\n')
+    done = cosserat("solve", "column.toml", "--stable", "--output", "r.json", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no potential" in done.stderr
+    assert not (tmp_path / "r.json").exists()

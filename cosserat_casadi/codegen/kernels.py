@@ -24,6 +24,7 @@ def kernels(model: Model, names: Names) -> list[ca.Function]:
         names.kernel("jacobian"): model.path_jacobian,
         names.kernel("rate"): model.path_rate,
         names.kernel("tangent"): model.path_tangent,
+        names.kernel("coarseness"): model.coarseness,
     }
     for rod in names.rods:
         wanted[names.kernel("igm", rod)] = model.igm[rod]

@@ -16,9 +16,10 @@ from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import ContinuationSettings
-from cosserat_casadi.solver.solve import NEAR
+from cosserat_casadi.solver.judgement import NEAR
+from cosserat_casadi.solver.secant import SINGULAR
 
-SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4"}
+SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
 
 NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
@@ -97,6 +98,7 @@ def _solver_constants() -> dict[str, Any]:
         "near": NEAR,
         "kept_steps": newton.KEPT_STEPS,
         "kept_decrease": newton.KEPT_DECREASE,
+        "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
         **SINGLE,

@@ -8,5 +8,6 @@ OUTCOMES = (
     Outcome.NOT_FINITE,
     Outcome.SINGULAR,
     Outcome.LOAD_STALLED,
+    Outcome.UNRESOLVED,
 )
 """Statuses of the solver in C, in the order of their numbers."""

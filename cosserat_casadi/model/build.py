@@ -92,6 +92,11 @@ class Model:
         return functions.path_tangent(self.frame)
 
     @cached_property
+    def coarseness(self) -> ca.Function:
+        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
+        return functions.coarseness(self.frame)
+
+    @cached_property
     def igm(self) -> dict[str, ca.Function]:
         """For each rod (q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment)."""
         return {rod: functions.igm(self.frame, rod) for rod in self.frame.bases}

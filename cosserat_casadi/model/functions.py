@@ -13,6 +13,16 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier
 from cosserat_casadi.model.system import Arguments, Frame, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
+from cosserat_casadi.rod.transport import largest_turn
+
+RESOLVED_TURN = 2.0
+"""Turn of an interval between nodes, rad, beyond which no polynomial through the nodes follows the rod.
+
+Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magnus series up to a turn of π.
+"""
+
+RESOLVED_NORM = 1e-2
+"""Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
 
 
 def _arguments(frame: Frame) -> Arguments:
@@ -246,6 +256,21 @@ def potential(frame: Frame) -> ca.Function | None:
     if value is None:
         return None
     return ca.Function("potential", [a.x, a.inputs], [value], ["x", "inputs"], ["potential"])
+
+
+def coarseness(frame: Frame) -> ca.Function:
+    """(x, inputs) ↦ largest turn of an interval over what can be resolved; in the literal system error of tip's |Q|."""
+    a = _arguments(frame)
+    shares: list[Matrix] = [ca.MX(0.0)]
+    for rod, basis in frame.bases.items():
+        q, ratio = a.x[frame.rod_slices[rod]], ratio_of(frame, rod, a)
+        if basis.discretisation.transport == "permuted":
+            tip = kinematics.shape(basis, q, ratio).quaternion[:, -1]
+            shares.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)
+        elif basis.rod.turning_axes:
+            shares.append(largest_turn(basis, q, ratio) / RESOLVED_TURN)
+    largest = ca.mmax(ca.vertcat(*shares))
+    return ca.Function("coarseness", [a.x, a.inputs], [largest], ["x", "inputs"], ["coarseness"])
 
 
 def operations(function: ca.Function) -> int:

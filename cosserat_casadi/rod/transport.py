@@ -130,6 +130,16 @@ def interval_turns(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Matrix
     return drawn(ca.DM(intrinsic), ratio) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 
+def largest_turn(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Matrix:
+    """Largest turn of an interval between nodes, 1×1, rad: a bound on ∫|K| ds over it, from the Taylor coefficients."""
+    axes, turns = len(basis.rod.turning_axes), interval_turns(basis, q, ratio)
+    total = ca.DM.zeros(1, turns.shape[1])
+    for order in range(turns.shape[0] // axes):
+        rows = turns[order * axes : (order + 1) * axes, :]
+        total = total + ca.sqrt(ca.sum1(rows**2)) / (2**order * (order + 1))
+    return ca.mmax(total)
+
+
 @dataclass(frozen=True)
 class Increments:
     """Rotations of all intervals.

@@ -26,11 +26,14 @@ from cosserat_casadi.model.mesh import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import StrainBasis
 from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
+from cosserat_casadi.solver.judgement import correct, judge
+from cosserat_casadi.solver.node_residual import modes_to_see
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.preview import Preview, watched
 from cosserat_casadi.solver.resolution import Resolution
+from cosserat_casadi.solver.settling import PATH_OF_ENERGY
 from cosserat_casadi.solver.solution import Pose, Solution
-from cosserat_casadi.solver.solve import correct, judge, solve
+from cosserat_casadi.solver.solve import NONE_STABLE, check_potential, solve, stabilised
 from cosserat_casadi.solver.trimming import Trim
 
 LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
@@ -63,6 +66,9 @@ FLOOR = 1e-13
 TIGHT = 1e-6
 """Witnesses for tolerances below this take the rotation integrator of eighth order, others that of sixth."""
 
+MOST_NODES = 400
+"""Intervals of an element beyond which a rod too bent for them is given up."""
+
 GIVE_UP = 2
 """Rungs beyond the first failure after which no equilibrium is sought any more."""
 
@@ -82,6 +88,10 @@ class _Climb:
         values: inputs by name.
         progress: told the share of the load path that is done.
         report: told what is being tried.
+        stable: whether a stable equilibrium is wanted.
+        settled: whether the equilibrium was reached by settling to less energy.
+        unsettled: whether settling was tried in vain.
+        floor: intervals below which a grid was found too coarse for so bent a rod.
         failures: rungs on which no equilibrium was found.
     """
 
@@ -89,6 +99,10 @@ class _Climb:
     values: Mapping[str, npt.ArrayLike] | None
     progress: Progress | None = None
     report: Report | None = None
+    stable: bool = False
+    settled: bool = False
+    unsettled: bool = False
+    floor: int = 0
     failures: list[Solution] = field(default_factory=list)
 
     @property
@@ -110,7 +124,20 @@ class _Climb:
             near = _polish(model, prolong(below, model), below.inputs)
             if near is not None:
                 return near
-        return solve(model, self.values, progress=self.progress)
+        found, self.settled = solve(model, self.values, progress=self.progress), False
+        return self._stabilised(found) if found.outcome is Outcome.LOAD_STALLED else found
+
+    def _stabilised(self, solution: Solution) -> Solution:
+        """A stable solution where one is wanted and can be found.
+
+        A held rod is always wanted stable: what leads to its supports are springs of our own, not loads of the scene.
+        """
+        wanted = (self.stable or bool(self.scene.supports)) and not self.unsettled
+        if not wanted or solution.stable or not solution.model.has_potential(solution.inputs):
+            return solution
+        found = stabilised(solution, ContinuationSettings(), self.progress)
+        self.settled, self.unsettled = bool(found.stable), not found.stable
+        return found
 
     def ladder(self) -> Solution:
         """The cheapest solution found whose estimated error is below the tolerance."""
@@ -118,7 +145,11 @@ class _Climb:
         below: Solution | None = None
         while rung < len(LADDER):
             turn = 0.0 if below is None else largest_turn(below)
-            fine = self.solve(LADDER[rung], ceil(stretch * self._nodes(LADDER[rung], turn)), below)
+            nodes = max(ceil(stretch * self._nodes(LADDER[rung], turn)), self.floor)
+            fine = self.solve(LADDER[rung], nodes, below)
+            if fine.outcome is Outcome.UNRESOLVED and nodes < MOST_NODES:
+                below, self.floor = fine, finer_grid(fine, nodes)
+                continue
             if not fine.converged:
                 self.failures.append(fine)
                 if len(self.failures) > GIVE_UP:
@@ -127,10 +158,16 @@ class _Climb:
                 continue
             below, resolution = fine, Resolution(Preview(fine))
             lacking = resolution.modes_lacking(max(WITNESS * self.tolerance, FLOOR))
-            if lacking > 0:
+            seeing = modes_to_see(fine, largest_turn(fine), self.tolerance)
+            if seeing > LADDER[rung]:
+                rung = next((r for r, modes in enumerate(LADDER) if modes >= seeing), len(LADDER))
+            elif lacking > 0:
                 rung = _next_rung(rung, lacking)
             elif resolution.grid_error <= max(WITNESS / 3 * self.tolerance, FLOOR):
-                return self._trimmed(resolution)
+                # Only now: with few modes a rod may seem unstable that is not.
+                below = self._stabilised(fine)
+                if below is fine or not below.stable:
+                    return self._trimmed(resolution)
             elif stretch < MOST_STRETCH:
                 stretch *= STRETCH
             else:
@@ -144,9 +181,14 @@ class _Climb:
         for share in TRIMS:
             trimmed = Trim(resolution.preview, share * self.tolerance - own).run()
             found = _polish(self._build(trimmed.discretisation), trimmed.start, witness.inputs)
-            if found is None:
+            # Few modes meet the tip and may still be too stiff to buckle: the witness decides what is stable.
+            if found is None or not found.converged or found.stable is not witness.stable:
                 continue
-            judged = with_estimate(found, witness, MARGIN, own)
+            judged = replace(
+                with_estimate(found, witness, MARGIN, own),
+                smallest_eigenvalue=witness.smallest_eigenvalue,
+                message=witness.message,
+            )
             if judged.error_estimate is not None and judged.error_estimate <= self.tolerance:
                 return judged
         return replace(witness, error_estimate=own + ROUNDING)
@@ -165,11 +207,13 @@ class _Climb:
         modes = DEFAULT_MODES if self.scene.accuracy.modes is None else self.scene.accuracy.modes
         most = modes if isinstance(modes, int) else max(modes)
         nodes = nodes_for(most) if self.scene.accuracy.nodes is None else self.scene.accuracy.nodes
-        coarse = self.solve(modes, nodes, None, self.scene.accuracy.rotation)
+        coarse = self._stabilised(self.solve(modes, nodes, None, self.scene.accuracy.rotation))
         if not coarse.converged:
             return coarse
-        finer = modes + 4 if isinstance(modes, int) else tuple(m + 4 for m in modes)
-        witness = self.solve(finer, max(nodes + 10, self._nodes(most + 4, largest_turn(coarse))), coarse)
+        turn = largest_turn(coarse)
+        seeing = modes_to_see(coarse, turn, self.scene.accuracy.tolerance)
+        finer = max(modes + 4, seeing) if isinstance(modes, int) else tuple(max(m + 4, seeing) for m in modes)
+        witness = self.solve(finer, max(nodes + 10, self._nodes(max(most + 4, seeing), turn)), coarse)
         return with_estimate(coarse, witness) if witness.converged else _unresolved(coarse)
 
     def _nodes(self, modes: int, turn: float) -> int:
@@ -184,6 +228,7 @@ def solve_scene(
     scene: scenes.Scene,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
+    stable: bool = False,
     progress: Progress | None = None,
     report: Report | None = None,
 ) -> Solution:
@@ -192,19 +237,30 @@ def solve_scene(
     The discretisation suits these inputs: a strain that they do not excite has one mode. Where
     the scene fixes modes or nodes they are used as they are, and only the error is estimated.
 
+    A held rod whose load path ends at an unstable equilibrium, or at none, is let settle to a stable one.
+
     Args:
         scene: a validated scene.
         values: inputs by name; those not named keep the scene's values.
+        stable: whether a free rod is let settle too; under loads that have a potential.
         progress: told the share of the load path that is done.
         report: told the discretisation being solved.
 
     Raises:
-        SceneError: a value is refused.
+        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
     """
-    climb = _Climb(scene, values, progress, report)
+    if stable:
+        coarsest = build(scene, discretise(scene, 1, 2))
+        check_potential(coarsest, coarsest.pack(values))
+    climb = _Climb(scene, values, progress, report, stable)
     accuracy = scene.accuracy
     chosen = any(choice is not None for choice in (accuracy.modes, accuracy.nodes, accuracy.rotation))
-    return climb.fixed() if chosen else climb.ladder()
+    found = climb.fixed() if chosen else climb.ladder()
+    if climb.settled and found.stable and PATH_OF_ENERGY not in found.message:
+        found = replace(found, message=found.message + PATH_OF_ENERGY)
+    if stable and found.converged and not found.stable and NONE_STABLE not in found.message:
+        found = replace(found, message=found.message + NONE_STABLE)
+    return found
 
 
 def with_estimate(coarse: Solution, fine: Solution, factor: float = SAFETY, own: float = 0.0) -> Solution:
@@ -268,6 +324,11 @@ def _polish(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | N
     if found is None:
         return None
     return judge(model, inputs, found.x, found.outcome, found.iterations, 1.0, settings.tolerance)
+
+
+def finer_grid(solution: Solution, nodes: int) -> int:
+    """Intervals that should resolve a rod too bent for its grid; at most twice as many, for it may be another rod."""
+    return ceil(nodes * min(2.0, 1.2 * float(solution.model.coarseness(solution.x, solution.inputs))))
 
 
 def _next_rung(rung: int, lacking: int) -> int:

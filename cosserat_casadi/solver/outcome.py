@@ -17,8 +17,8 @@ class Outcome(Enum):
         "there may be a limit point or a buckling load."
     )
     UNRESOLVED = (
-        "An equilibrium of the discrete model was found, but the rod is not resolved to the tolerance asked for: "
-        "allow more modes and nodes, or a larger tolerance."
+        "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: "
+        "allow more of them, or a larger tolerance."
     )
 
     @property

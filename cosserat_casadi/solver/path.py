@@ -14,11 +14,12 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.arclength import ArcSettings, Curve, Monitor
 from cosserat_casadi.solver.continuation import Path, Progress
 from cosserat_casadi.solver.events import DETERMINANT
+from cosserat_casadi.solver.load_path import input_path
 from cosserat_casadi.solver.newton import relative_norm
 from cosserat_casadi.solver.outcome import Outcome
 from cosserat_casadi.solver.secant import dense
 from cosserat_casadi.solver.solution import Pose, Solution
-from cosserat_casadi.solver.solve import input_path, solve
+from cosserat_casadi.solver.solve import solve
 from cosserat_casadi.solver.stability import admissible_eigenvalues, judged, variations
 from cosserat_casadi.solver.trace import PathOutcome, Trace, trace
 
@@ -57,7 +58,7 @@ class EquilibriumPath:
         factor: share of the value at each of k points in the order of travel, shape (k,).
         x: unknowns, shape (k, model.size).
         smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
-        neutral: whether that eigenvalue is zero to rounding, shape (k,); None likewise.
+        neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
         events: limit points and bifurcations in the order of travel.
         branch: index of the first point on the branch that was switched to; None on the first path.
         error_estimate: estimated error of the events' factors, relative, and of the tips there and at the end,
@@ -86,10 +87,10 @@ class EquilibriumPath:
 
     @property
     def stable(self) -> npt.NDArray[np.bool_] | None:
-        """Whether every admissible variation of a point costs energy, shape (k,); None where that has no meaning."""
+        """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
         if self.smallest_eigenvalue is None or self.neutral is None:
             return None
-        return (self.smallest_eigenvalue > 0.0) & ~self.neutral
+        return (self.smallest_eigenvalue > 0.0) | self.neutral
 
     def inputs(self, factor: float) -> FloatArray:
         """Stacked inputs at a factor."""

@@ -25,6 +25,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.system import Arguments, System, frame
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.solver.secant import SINGULAR
 from cosserat_casadi.solver.solution import Solution, rotations
 
 Mask = npt.NDArray[np.bool_]
@@ -68,6 +69,14 @@ class Preview:
         return _numbers(self.model.path_jacobian(self.witness.x, self._inputs, 1.0))
 
     @cached_property
+    def _held(self) -> FloatArray:
+        """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
+        left, singular, right = np.linalg.svd(self.jacobian)
+        largest = float(singular.max(initial=0.0))
+        neutral = singular <= SINGULAR * largest
+        return np.asarray(self.jacobian + largest * left[:, neutral] @ right[neutral])
+
+    @cached_property
     def tips(self) -> FloatArray:
         """Watched poses of the witness: positions over length and rotation entries, 12 for each section."""
         return self._tips(self.witness.x)
@@ -87,7 +96,7 @@ class Preview:
     def with_modes(self, modes: Modes) -> FloatArray:
         """Unknowns of the equilibrium with fewer modes on the witness's grid, shape (n,), zero where dropped."""
         kept = self.kept(modes)
-        inverse = _inverse(self.jacobian[np.ix_(kept, kept)])
+        inverse = _inverse(self._held[np.ix_(kept, kept)])
         x = np.where(kept, self.witness.x, 0.0)
         x[kept] += inverse @ (self.jacobian[np.ix_(kept, ~kept)] @ self.witness.x[~kept])
         for _ in range(CORRECTIONS):
@@ -116,7 +125,7 @@ class Preview:
         full = {n: replace(grids[n], modes=d.modes) for n, d in self.model.discretisation.items()}
         other = System(frame(self.model.scene, self.model.inputs, full), Arguments(ca.DM(x), ca.DM(self._inputs)))
         moved = x.copy()
-        moved[kept] -= _inverse(self.jacobian[np.ix_(kept, kept)]) @ _numbers(other.residual)[kept, 0]
+        moved[kept] -= _inverse(self._held[np.ix_(kept, kept)]) @ _numbers(other.residual)[kept, 0]
         # The unknowns move by far less than the tips can tell apart on two grids: the witness's grid serves.
         return self._tips_of(other) - self._tips(x) + self._tips(moved) - self._tips(x)
 
@@ -161,7 +170,7 @@ def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:
-    """The inverse; of a singular matrix, where the rod is neutral, the pseudo-inverse."""
+    """The inverse; of a singular matrix the pseudo-inverse."""
     try:
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:

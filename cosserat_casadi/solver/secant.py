@@ -13,8 +13,11 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 Jacobian: TypeAlias = FloatArray | Matrix
 """Dense, shape (n, n); or sparse, n×n: of an assembly, whose blocks keep the work linear in the number of rods."""
 
-SINGULAR = 1e-13
+THIN = 1e-13
 """Share of the largest diagonal entry of the triangular factor below which a sparse Jacobian counts as singular."""
+
+SINGULAR = 1e-12
+"""Reciprocal of the condition beyond which a Jacobian counts as singular."""
 
 
 @dataclass
@@ -52,7 +55,10 @@ class Secant:
 
 
 def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
-    """The Newton step; the shortest one where the Jacobian is singular; None where there is none."""
+    """The Newton step; the shortest one where the Jacobian is singular to rounding; None where there is none.
+
+    A rod that symmetry lets turn without energy has a singular Jacobian: along that direction nothing moves.
+    """
     if not len(residual):
         return np.zeros(0)
     if isinstance(jacobian, ca.DM):
@@ -62,12 +68,25 @@ def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
         jacobian = dense(jacobian)
     if not (np.all(np.isfinite(jacobian)) and np.all(np.isfinite(residual))):
         return None
-    step: FloatArray
-    try:
-        step = np.asarray(np.linalg.solve(jacobian, -residual), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=1e-12)[0], dtype=np.float64)
+    step: FloatArray | None = _regular_step(jacobian, residual)
+    if step is None:
+        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)[0], dtype=np.float64)
     return step if np.all(np.isfinite(step)) else None
+
+
+def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
+    """The step of a Jacobian that is not singular to rounding, else None.
+
+    The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
+    """
+    probe = np.cos(np.arange(1.0, len(residual) + 1.0) ** 2)
+    try:
+        steps = np.linalg.solve(jacobian, np.column_stack([-residual, probe / np.linalg.norm(probe)]))
+    except np.linalg.LinAlgError:
+        return None
+    with np.errstate(all="ignore"):
+        stretch = float(np.linalg.norm(steps[:, 1]) * np.abs(jacobian).max())
+    return np.asarray(steps[:, 0], dtype=np.float64) if stretch <= 1.0 / SINGULAR else None
 
 
 def dense(jacobian: Jacobian) -> FloatArray:
@@ -81,7 +100,7 @@ def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:
         return None
     _, triangular, *_ = factors = ca.qr_sparse(jacobian)
     diagonal = np.abs(np.array(ca.diag(triangular).full()[:, 0]))
-    if diagonal.min() <= SINGULAR * diagonal.max():
+    if diagonal.min() <= THIN * diagonal.max():
         return None
     step: FloatArray = np.asarray(ca.qr_solve(ca.DM(-residual), *factors).full()[:, 0])
     return step if np.all(np.isfinite(step)) else None

@@ -9,21 +9,21 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.errors import SolveError
+from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.continuation import ContinuationSettings, Path, Progress, follow
-from cosserat_casadi.solver.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
+from cosserat_casadi.solver.continuation import ContinuationSettings, Progress, follow
+from cosserat_casadi.solver.judgement import correct, judge
+from cosserat_casadi.solver.load_path import input_path, load_path
 from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.secant import Jacobian
+from cosserat_casadi.solver.settling import can_settle, settled
 from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.stability import second_variation, variations
+
+CANNOT_SETTLE = " Assemblies and cables of given length cannot be let settle to less energy."
+NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
 
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
-
-NEAR = 0.5
-"""Longest way of the unknowns (2-norm) that a correction may go and still count as the same branch."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,7 @@ def solve(
     *,
     start: Start = None,
     method: str = "continuation",
+    stable: bool = False,
     settings: ContinuationSettings | None = None,
     progress: Progress | None = None,
     raise_on_failure: bool = False,
@@ -56,12 +57,14 @@ def solve(
             shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
         method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
             at the full load and may find another branch, or none.
+        stable: whether a stable equilibrium is wanted: where the method ends at an unstable one, or at none, the rod
+            is let go and settles in a minimum of its energy. For loads that have one.
         settings: limits of the continuation.
         progress: told the share of the path that is done.
         raise_on_failure: raise instead of returning what did not converge.
 
     Raises:
-        SceneError: a value is refused.
+        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
         ValueError: unknown method, or a start of another model.
     """
@@ -70,86 +73,37 @@ def solve(
         raise ValueError(f"the start has {len(_unknowns(model, start))} unknowns, the model {model.size}")
     if method not in _METHODS:
         raise ValueError(f"method is one of {', '.join(_METHODS)}, got {method!r}")
+    if stable:
+        check_potential(model, inputs)
     limits = settings or ContinuationSettings()
     end = _METHODS[method](model, inputs, start, limits, progress)
     solution = judge(model, inputs, end.x, end.outcome, end.iterations, end.load_factor, limits.newton.tolerance)
+    if stable and not solution.stable:
+        solution = stabilised(solution, limits, progress)
     if raise_on_failure and not solution.converged:
         raise SolveError(solution.message)
     return solution
 
 
-def judge(
-    model: Model,
-    inputs: FloatArray,
-    x: FloatArray,
-    outcome: Outcome,
-    iterations: int,
-    load_factor: float,
-    tolerance: float,
-) -> Solution:
-    """The solution that a method's end amounts to: the residual is computed again, the method's word is not taken."""
-    residual = _column(model.path_residual(x, inputs, 1.0))
-    norm = relative_norm(residual, x)
-    if load_factor == 1.0:
-        outcome = _verdict(outcome, norm, tolerance)
-    message = outcome.value if load_factor == 1.0 else f"{outcome.value} Load factor reached: {load_factor:.6g}."
-    message += "" if outcome is Outcome.CONVERGED else gap_left(model, inputs, x)
-    bare = Solution(model, inputs, x, outcome, message, norm, iterations, load_factor)
-    return _with_stability(bare) if bare.converged else bare
+def check_potential(model: Model, inputs: FloatArray) -> None:
+    """Refuse to look for a stable equilibrium where the sign of an energy does not tell which is.
 
-
-def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
-    """The widest gap between rods and what they are tied to, as a sentence; empty where nothing is tied."""
-    ties = model.frame.couplings.ties
-    if not ties or not np.all(np.isfinite(x)):
-        return ""
-    gaps = _column(model.path_residual(x, inputs, 1.0))
-    own = [gaps[model.frame.tie_slices[tie.where]][: len(tie.joint.position_axes)] for tie in ties]
-    worst = int(np.argmax([length_of(gap) for gap in own]))
-    share, tie = length_of(own[worst]), ties[worst]
-    metres = share * tie.joint.rod.length
-    return f" The assembly is not closed: {tie.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
-
-
-def _verdict(outcome: Outcome, norm: float, tolerance: float) -> Outcome:
-    if not np.isfinite(norm):
-        return Outcome.NOT_FINITE
-    if norm <= tolerance:
-        return Outcome.CONVERGED
-    return Outcome.MAX_ITERATIONS if outcome is Outcome.CONVERGED else outcome
-
-
-def _with_stability(solution: Solution) -> Solution:
-    model = solution.model
-    if not model.has_potential(solution.inputs):
-        return solution
-    jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
-    test = second_variation(jacobian, variations(model))
-    notes = {
-        (True, False): "",
-        (False, False): " It is unstable.",
-        (False, True): " It is neutral: some variation costs no energy.",
-    }
-    return replace(
-        solution,
-        smallest_eigenvalue=test.smallest_eigenvalue,
-        stable=test.stable,
-        message=solution.message + notes[test.stable, test.neutral],
-    )
-
-
-def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: NewtonSettings) -> NewtonResult | None:
-    """Newton from unknowns near an equilibrium; None where it does not stay near, so that it may be another branch.
-
-    Args:
-        model: what to solve.
-        inputs: stacked inputs.
-        start: first iterate, shape (size,).
-        settings: limits.
+    Raises:
+        SceneError: the loads have no potential at these inputs.
     """
-    found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
-    strayed = found.damped or length_of(found.x - start) > NEAR
-    return None if found.outcome is not Outcome.CONVERGED or strayed else found
+    if not model.has_potential(inputs):
+        problem = "the loads have no potential, so no energy tells which equilibrium is stable"
+        raise SceneError(Problem("--stable", problem, "leave it out, or make the loads dead forces"))
+
+
+def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progress | None = None) -> Solution:
+    """A stable equilibrium in place of a solution that is none; without one the solution, and its message says so."""
+    if solution.outcome in (Outcome.NOT_FINITE, Outcome.UNRESOLVED):
+        return solution
+    if not can_settle(solution.model):
+        return replace(solution, message=solution.message + CANNOT_SETTLE)
+    found = settled(solution, limits.newton, progress)
+    return replace(solution, message=solution.message + NONE_STABLE) if found is None else found
 
 
 def _continuation(
@@ -168,43 +122,6 @@ def _continuation(
         path = load_path(model, inputs)
     result = follow(path, limits, progress)
     return _End(result.x, result.outcome, result.iterations, result.reached)
-
-
-def load_path(model: Model, inputs: FloatArray) -> Path:
-    """From the unloaded scene to the scene, all loads growing together."""
-    none = np.zeros(model.inputs.size)
-    return Path(
-        residual=lambda x, t: _column(model.path_residual(x, inputs, t)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, inputs, t)),
-        rate=lambda x, t: _column(model.path_rate(x, inputs, t, none, 1.0)),
-        start=model.unloaded(),
-        tangent=_column(model.path_tangent(inputs)),
-    )
-
-
-def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
-    """From an equilibrium of the scene to other inputs, on the straight line between them."""
-    change = after - before
-
-    def at(t: float) -> FloatArray:
-        # Exact at both ends, however far apart they are.
-        return (1.0 - t) * before + t * after
-
-    return Path(
-        residual=lambda x, t: _column(model.path_residual(x, at(t), 1.0)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
-        rate=lambda x, t: _column(model.path_rate(x, at(t), 1.0, change, 0.0)),
-        start=start,
-    )
-
-
-def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
-    """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
-    return jacobian if model.frame.couplings.ties else np.asarray(jacobian.full())
-
-
-def _column(vector: ca.DM) -> FloatArray:
-    return np.asarray(vector.full()[:, 0]) if vector.shape[0] else np.zeros(0)
 
 
 def _unknowns(model: Model, start: Start) -> FloatArray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import ceil
 
 import numpy as np
 
@@ -38,6 +39,12 @@ AIM = 0.7
 
 FEWEST = 2
 """Chebyshev intervals below which nothing is tried."""
+
+MORE = 1.1
+"""Factor on the intervals that would just resolve the witness: the trimmed rod may turn a little more somewhere."""
+
+UNBOUNDED = 1e9
+"""Excess of a grid that does not resolve the rod at all, so that its tips may be anything, no numbers too."""
 
 
 @dataclass(frozen=True)
@@ -186,10 +193,10 @@ class _GridSearch:
     def _fewest(self, order: str, most: int, first: bool) -> int | None:
         """Fewest intervals, at most ``most``, with which an integrator stays within the bound; None if none do."""
         likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
-        if most < (FEWEST if first else LEAST_LIKELY / LIKELY * likely):
+        if most < (self._fewest_resolving if first else LEAST_LIKELY / LIKELY * likely):
             return None
-        enough, short = most + 1, FEWEST - 1
-        guess = min(most, likely) if first else most
+        enough, short = most + 1, min(most, self._fewest_resolving) - 1
+        guess = min(most, max(likely, short + 1)) if first else most
         for _ in range(LOOKS):
             if self._within(order, guess):
                 enough = guess
@@ -216,14 +223,24 @@ class _GridSearch:
         return max(self._excess(order, nodes), _size(together) / self.trim.bound) <= 1
 
     def _excess(self, order: str, nodes: int) -> float:
-        """Change of the tips by grids alone over the bound; rounding apart."""
-        return max(_size(self._shift(order, nodes)) / self.trim.bound, 1e-9)
+        """Change of the tips by grids alone over the bound; rounding apart, and bounded where nothing is resolved."""
+        excess = _size(self._shift(order, nodes)) / self.trim.bound
+        return max(excess, 1e-9) if excess < UNBOUNDED else UNBOUNDED
 
     def _shift(self, order: str, nodes: int) -> FloatArray:
         if (order, nodes) not in self._seen:
             trial = self.grids | {n: replace(self.grids[n], nodes=nodes, transport=order) for n in self.names}
             self._seen[order, nodes] = self.trim.preview.grid_shift(self._unknowns, self.modes, trial)
         return self._seen[order, nodes]
+
+    @cached_property
+    def _fewest_resolving(self) -> int:
+        """Intervals below which one would turn too far, from the turns of the witness."""
+        witness = self.trim.preview.witness
+        turning = (
+            float(witness.model.coarseness(witness.x, witness.inputs)) * witness.model.discretisation[self.name].nodes
+        )
+        return max(FEWEST, ceil(MORE * turning))
 
     @cached_property
     def _unknowns(self) -> FloatArray:

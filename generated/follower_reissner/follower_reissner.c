@@ -17,9 +17,11 @@ enum { N = FOLLOWER_REISSNER_UNKNOWNS, INPUTS = FOLLOWER_REISSNER_INPUTS, INPUT_
 #ifdef FOLLOWER_REISSNER_SINGLE
 static const real TOLERANCE = (real)1e-5;
 static const real SHORTEST = (real)1e-4;
+static const real SINGULAR = (real)1e-7;
 #else
 static const real TOLERANCE = (real)1e-11;
 static const real SHORTEST = (real)1e-07;
+static const real SINGULAR = (real)1e-12;
 #endif
 enum { ITERATIONS = 60, STEPS = 400, QUICK = 2, SLOW = 4, KEPT_STEPS = 12, HALVINGS = 12 };
 static const real SUFFICIENT_DECREASE = (real)0.0001;
@@ -100,6 +102,14 @@ static void unloaded_tangent(const real *inputs, real *tangent) {
   CALL(follower_reissner_k_tangent);
 }
 
+static real coarseness_of(const real *q, const real *inputs) {
+  real coarseness;
+  KERNEL(follower_reissner_k_coarseness, q, inputs);
+  RESULTS(&coarseness);
+  CALL(follower_reissner_k_coarseness);
+  return coarseness;
+}
+
 static real dot(const real *a, const real *b) {
   real sum = 0;
   int i;
@@ -124,9 +134,13 @@ static int all_finite(const real *a, int count) {
   return 1;
 }
 
-/* Gaussian elimination with partial pivoting, in place, column after column. A column without a pivot keeps its zero. */
+/* Gaussian elimination with partial pivoting, in place, column after column. A pivot at rounding becomes zero: symmetry
+   may let a rod turn without energy. */
 static void factorise(real *a, int *pivots) {
   int i, j, k;
+  real tiny = 0;
+  for (i = 0; i < N * N; i++) tiny = fabs((double)a[i]) > (double)tiny ? (real)fabs((double)a[i]) : tiny;
+  tiny *= SINGULAR;
   for (k = 0; k < N; k++) {
     real *column = a + k * N;
     int best = k;
@@ -141,7 +155,10 @@ static void factorise(real *a, int *pivots) {
         a[j * N + best] = kept;
       }
     }
-    if (column[k] == 0) continue;
+    if (fabs((double)column[k]) <= (double)tiny) {
+      for (i = k; i < N; i++) column[i] = 0;
+      continue;
+    }
     for (i = k + 1; i < N; i++) column[i] /= column[k];
     for (j = k + 1; j < N; j++) {
       real *target = a + j * N;
@@ -361,7 +378,9 @@ static int is_zero(const real *q) {
   return 1;
 }
 
-static outcome finish(const follower_reissner_info *found, follower_reissner_info *info) {
+/* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
+static outcome finish(const real *q, const real *inputs, follower_reissner_info *found, follower_reissner_info *info) {
+  if (found->status == FOLLOWER_REISSNER_CONVERGED && !(coarseness_of(q, inputs) <= 1)) found->status = FOLLOWER_REISSNER_UNRESOLVED;
   if (info) *info = *found;
   return found->status;
 }
@@ -369,9 +388,9 @@ static outcome finish(const follower_reissner_info *found, follower_reissner_inf
 outcome follower_reissner_solve(const real *inputs, real *q, follower_reissner_info *info) {
   follower_reissner_info found = {FOLLOWER_REISSNER_NOT_FINITE, 0, 0, 0, 0};
   const int warm = all_finite(q, N) && !is_zero(q);
-  if (!all_finite(inputs, INPUTS)) return finish(&found, info);
+  if (!all_finite(inputs, INPUTS)) return finish(q, inputs, &found, info);
   if (!warm || !solve_near(inputs, q, &found)) solve_cold(inputs, q, &found);
-  return finish(&found, info);
+  return finish(q, inputs, &found, info);
 }
 
 outcome follower_reissner_follow(const real *from, const real *inputs, real *q, follower_reissner_info *info) {
@@ -380,7 +399,7 @@ outcome follower_reissner_follow(const real *from, const real *inputs, real *q, 
   real trial[N], tangent[N];
   correction end;
   point at;
-  if (!all_finite(from, INPUTS) || !all_finite(inputs, INPUTS) || !all_finite(q, N)) return finish(&found, info);
+  if (!all_finite(from, INPUTS) || !all_finite(inputs, INPUTS) || !all_finite(q, N)) return finish(q, inputs, &found, info);
   memcpy(trial, q, sizeof trial);
   point_on(&way, 0, &at);
   end = newton(&at, trial);
@@ -388,12 +407,12 @@ outcome follower_reissner_follow(const real *from, const real *inputs, real *q, 
   found.iterations = end.iterations;
   found.jacobians = end.jacobians;
   found.residual_norm = end.norm;
-  if (end.status != FOLLOWER_REISSNER_CONVERGED) return finish(&found, info);
+  if (end.status != FOLLOWER_REISSNER_CONVERGED) return finish(q, inputs, &found, info);
   memcpy(q, trial, sizeof trial);
   tangent_at(&way, 0, q, tangent);
   found.jacobians++;
   follow(&way, q, tangent, &found);
-  return finish(&found, info);
+  return finish(q, inputs, &found, info);
 }
 
 /* Cases first to last, one after the other. */
@@ -526,6 +545,8 @@ const char *follower_reissner_status_text(outcome status) {
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case FOLLOWER_REISSNER_LOAD_STALLED:
       return "No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load.";
+    case FOLLOWER_REISSNER_UNRESOLVED:
+      return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
     case FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM:
       return "The unknowns are no equilibrium for these inputs: solve first.";
   }

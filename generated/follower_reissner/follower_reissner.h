@@ -43,7 +43,8 @@ typedef enum {
   FOLLOWER_REISSNER_NOT_FINITE = 2,         /* No equilibrium found: the equations gave a value that is not a finite number. */
   FOLLOWER_REISSNER_SINGULAR = 3,           /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
   FOLLOWER_REISSNER_LOAD_STALLED = 4,       /* No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load. */
-  FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM = 5  /* The unknowns are no equilibrium for these inputs: solve first. */
+  FOLLOWER_REISSNER_UNRESOLVED = 5,         /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
+  FOLLOWER_REISSNER_NOT_IN_EQUILIBRIUM = 6  /* The unknowns are no equilibrium for these inputs: solve first. */
 } follower_reissner_status;
 
 typedef struct {
@@ -59,8 +60,8 @@ const char *follower_reissner_status_text(follower_reissner_status status);
 
 /* Equilibrium for these inputs. q: in, a start; out, the solution. From all zeros the load is grown from the unloaded
    rod. From anything else Newton is tried at the full load, and the unloaded rod where that strays or fails.
-   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load. info may be
-   null. */
+   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
+   is one of the discrete equations at the full load, not one of the rod. info may be null. */
 follower_reissner_status follower_reissner_solve(const follower_reissner_real *inputs, follower_reissner_real *q, follower_reissner_info *info);
 
 /* As follower_reissner_solve, but along the straight line from the inputs for which q is an equilibrium: it stays on the branch

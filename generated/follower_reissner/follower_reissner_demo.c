@@ -14,7 +14,7 @@ typedef follower_reissner_real real;
 
 static const real DEFAULTS[ROOM] = {0.06, 0.04, -0.05, 0, 0, 0.002};
 static const char *const WORDS[] = {"converged", "max_iterations", "not_finite", "singular", "load_stalled",
-                                    "not_in_equilibrium"};
+                                    "unresolved", "not_in_equilibrium"};
 
 static double now_us(void) {
   struct timespec t;

@@ -36,6 +36,7 @@ extern "C" {
 #define casadi_f1 CASADI_PREFIX(f1)
 #define casadi_f10 CASADI_PREFIX(f10)
 #define casadi_f11 CASADI_PREFIX(f11)
+#define casadi_f12 CASADI_PREFIX(f12)
 #define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_f3 CASADI_PREFIX(f3)
 #define casadi_f4 CASADI_PREFIX(f4)
@@ -44,6 +45,7 @@ extern "C" {
 #define casadi_f7 CASADI_PREFIX(f7)
 #define casadi_f8 CASADI_PREFIX(f8)
 #define casadi_f9 CASADI_PREFIX(f9)
+#define casadi_fmax CASADI_PREFIX(fmax)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
@@ -70,6 +72,15 @@ extern "C" {
 #endif
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
+
+static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>y ? x : y;
+#else
+  return fmax(x, y);
+#endif
+}
 
 /* Configuration this file was compiled with */
 CASADI_SYMBOL_EXPORT void follower_reissner_kernels_casadi_version(int* major, int* minor, int* patch) {
@@ -10528,8 +10539,246 @@ CASADI_SYMBOL_EXPORT int follower_reissner_k_tangent_work_bytes(casadi_int *sz_a
   return 0;
 }
 
-/* follower_reissner_k_igm:(q[12],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[12],base_force[3],base_moment[3]) */
+/* follower_reissner_k_coarseness:(x[12],inputs[6])->(coarseness) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
+  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32;
+  a00=0.;
+  a01=7.8229687242355239e-02;
+  a02=arg[0]? arg[0][0] : 0;
+  a03=(a01*a02);
+  a04=5.7245570738071225e-02;
+  a05=arg[0]? arg[0][2] : 0;
+  a06=(a04*a05);
+  a03=(a03+a06);
+  a06=-7.0759416843028833e-02;
+  a07=arg[0]? arg[0][1] : 0;
+  a08=(a06*a07);
+  a09=-4.0200945263983823e-02;
+  a10=arg[0]? arg[0][3] : 0;
+  a09=(a09*a10);
+  a08=(a08+a09);
+  a09=(a03+a08);
+  a09=casadi_sq(a09);
+  a11=arg[0]? arg[0][4] : 0;
+  a01=(a01*a11);
+  a12=arg[0]? arg[0][6] : 0;
+  a04=(a04*a12);
+  a01=(a01+a04);
+  a04=arg[0]? arg[0][5] : 0;
+  a06=(a06*a04);
+  a13=(a01+a06);
+  a13=casadi_sq(a13);
+  a09=(a09+a13);
+  a13=9.5491502812526274e-02;
+  a14=arg[0]? arg[0][7] : 0;
+  a13=(a13*a14);
+  a13=casadi_sq(a13);
+  a09=(a09+a13);
+  a09=sqrt(a09);
+  a15=-4.0541538314872852e-02;
+  a16=(a15*a05);
+  a17=1.4940540798652840e-02;
+  a18=(a17*a07);
+  a19=6.9468959369689220e-02;
+  a19=(a19*a10);
+  a18=(a18+a19);
+  a19=(a16+a18);
+  a19=casadi_sq(a19);
+  a15=(a15*a12);
+  a17=(a17*a04);
+  a20=(a15+a17);
+  a20=casadi_sq(a20);
+  a19=(a19+a20);
+  a19=sqrt(a19);
+  a20=4.;
+  a19=(a19/a20);
+  a09=(a09+a19);
+  a19=2.0480798012976012e-01;
+  a21=(a19*a02);
+  a22=1.7347234759768071e-17;
+  a23=(a22*a05);
+  a21=(a21+a23);
+  a23=-1.1449114147614246e-01;
+  a24=(a23*a07);
+  a25=6.4401267080330116e-02;
+  a25=(a25*a10);
+  a24=(a24+a25);
+  a25=(a21+a24);
+  a25=casadi_sq(a25);
+  a19=(a19*a11);
+  a22=(a22*a12);
+  a19=(a19+a22);
+  a22=(a23*a04);
+  a26=(a19+a22);
+  a26=casadi_sq(a26);
+  a25=(a25+a26);
+  a26=2.5000000000000006e-01;
+  a26=(a26*a14);
+  a26=casadi_sq(a26);
+  a25=(a25+a26);
+  a25=sqrt(a25);
+  a27=-1.7173671221421377e-01;
+  a28=(a27*a05);
+  a29=1.0240399006488010e-01;
+  a30=(a29*a07);
+  a31=9.6003740685825123e-02;
+  a31=(a31*a10);
+  a30=(a30+a31);
+  a31=(a28+a30);
+  a31=casadi_sq(a31);
+  a27=(a27*a12);
+  a29=(a29*a04);
+  a32=(a27+a29);
+  a32=casadi_sq(a32);
+  a31=(a31+a32);
+  a31=sqrt(a31);
+  a31=(a31/a20);
+  a25=(a25+a31);
+  a09=casadi_fmax(a09,a25);
+  a25=2.5315658577480971e-01;
+  a02=(a25*a02);
+  a05=(a23*a05);
+  a02=(a02+a05);
+  a02=casadi_sq(a02);
+  a25=(a25*a11);
+  a23=(a23*a12);
+  a25=(a25+a23);
+  a25=casadi_sq(a25);
+  a02=(a02+a25);
+  a25=3.0901699437494745e-01;
+  a25=(a25*a14);
+  a25=casadi_sq(a25);
+  a02=(a02+a25);
+  a02=sqrt(a02);
+  a25=1.5645937448471062e-01;
+  a07=(a25*a07);
+  a14=-2.1227825052908664e-01;
+  a14=(a14*a10);
+  a07=(a07+a14);
+  a07=casadi_sq(a07);
+  a25=(a25*a04);
+  a25=casadi_sq(a25);
+  a07=(a07+a25);
+  a07=sqrt(a07);
+  a07=(a07/a20);
+  a02=(a02+a07);
+  a09=casadi_fmax(a09,a02);
+  a21=(a21-a24);
+  a21=casadi_sq(a21);
+  a19=(a19-a22);
+  a19=casadi_sq(a19);
+  a21=(a21+a19);
+  a21=(a21+a26);
+  a21=sqrt(a21);
+  a30=(a30-a28);
+  a30=casadi_sq(a30);
+  a29=(a29-a27);
+  a29=casadi_sq(a29);
+  a30=(a30+a29);
+  a30=sqrt(a30);
+  a30=(a30/a20);
+  a21=(a21+a30);
+  a09=casadi_fmax(a09,a21);
+  a03=(a03-a08);
+  a03=casadi_sq(a03);
+  a01=(a01-a06);
+  a01=casadi_sq(a01);
+  a03=(a03+a01);
+  a03=(a03+a13);
+  a03=sqrt(a03);
+  a18=(a18-a16);
+  a18=casadi_sq(a18);
+  a17=(a17-a15);
+  a17=casadi_sq(a17);
+  a18=(a18+a17);
+  a18=sqrt(a18);
+  a18=(a18/a20);
+  a03=(a03+a18);
+  a09=casadi_fmax(a09,a03);
+  a03=2.;
+  a09=(a09/a03);
+  a00=casadi_fmax(a00,a09);
+  if (res[0]!=0) res[0][0]=a00;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int follower_reissner_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f8(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int follower_reissner_k_coarseness_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void follower_reissner_k_coarseness_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void follower_reissner_k_coarseness_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void follower_reissner_k_coarseness_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int follower_reissner_k_coarseness_n_in(void) { return 2;}
+
+CASADI_SYMBOL_EXPORT casadi_int follower_reissner_k_coarseness_n_out(void) { return 1;}
+
+CASADI_SYMBOL_EXPORT casadi_real follower_reissner_k_coarseness_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* follower_reissner_k_coarseness_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "x";
+    case 1: return "inputs";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* follower_reissner_k_coarseness_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "coarseness";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* follower_reissner_k_coarseness_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    case 1: return casadi_s1;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* follower_reissner_k_coarseness_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s2;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int follower_reissner_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int follower_reissner_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* follower_reissner_k_igm:(q[12],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[12],base_force[3],base_moment[3]) */
+static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -11676,7 +11925,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f8(arg, res, iw, w, mem);
+  return casadi_f9(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_igm_checkout(void) {
@@ -11757,7 +12006,7 @@ CASADI_SYMBOL_EXPORT int follower_reissner_k_igm_work_bytes(casadi_int *sz_arg, 
 }
 
 /* follower_reissner_k_tip:(x[12],inputs[6])->(position[3],quaternion[4]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -12317,7 +12566,7 @@ static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f9(arg, res, iw, w, mem);
+  return casadi_f10(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_tip_checkout(void) {
@@ -12392,7 +12641,7 @@ CASADI_SYMBOL_EXPORT int follower_reissner_k_tip_work_bytes(casadi_int *sz_arg, 
 }
 
 /* follower_reissner_k_tip_jacobian:(x[12],inputs[6])->(d_pose_d_x[7x12],d_pose_d_inputs[7x6]) */
-static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -14543,7 +14792,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f10(arg, res, iw, w, mem);
+  return casadi_f11(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_tip_jacobian_checkout(void) {
@@ -14618,7 +14867,7 @@ CASADI_SYMBOL_EXPORT int follower_reissner_k_tip_jacobian_work_bytes(casadi_int 
 }
 
 /* follower_reissner_k_shape:(x[12],inputs[6],X)->(position[3],quaternion[4]) */
-static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f12(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -15490,7 +15739,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f11(arg, res, iw, w, mem);
+  return casadi_f12(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int follower_reissner_k_shape_checkout(void) {

@@ -14,7 +14,7 @@ typedef nitinol_wire_real real;
 
 static const real DEFAULTS[ROOM] = {0, 0, -9.81, -0.1, 0.25, 0.1};
 static const char *const WORDS[] = {"converged", "max_iterations", "not_finite", "singular", "load_stalled",
-                                    "not_in_equilibrium"};
+                                    "unresolved", "not_in_equilibrium"};
 
 static double now_us(void) {
   struct timespec t;

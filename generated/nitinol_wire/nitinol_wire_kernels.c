@@ -36,6 +36,7 @@ extern "C" {
 #define casadi_f1 CASADI_PREFIX(f1)
 #define casadi_f10 CASADI_PREFIX(f10)
 #define casadi_f11 CASADI_PREFIX(f11)
+#define casadi_f12 CASADI_PREFIX(f12)
 #define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_f3 CASADI_PREFIX(f3)
 #define casadi_f4 CASADI_PREFIX(f4)
@@ -44,6 +45,7 @@ extern "C" {
 #define casadi_f7 CASADI_PREFIX(f7)
 #define casadi_f8 CASADI_PREFIX(f8)
 #define casadi_f9 CASADI_PREFIX(f9)
+#define casadi_fmax CASADI_PREFIX(fmax)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
@@ -69,6 +71,15 @@ extern "C" {
 #endif
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
+
+static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>y ? x : y;
+#else
+  return fmax(x, y);
+#endif
+}
 
 /* Configuration this file was compiled with */
 CASADI_SYMBOL_EXPORT void nitinol_wire_kernels_casadi_version(int* major, int* minor, int* patch) {
@@ -8173,8 +8184,257 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_k_tangent_work_bytes(casadi_int *sz_arg, c
   return 0;
 }
 
-/* nitinol_wire_k_igm:(q[7],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[7],base_force[3],base_moment[3]) */
+/* nitinol_wire_k_coarseness:(x[7],inputs[6])->(coarseness) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
+  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33;
+  a00=0.;
+  a01=5.8085354020740831e-02;
+  a02=arg[0]? arg[0][0] : 0;
+  a03=(a01*a02);
+  a04=4.6933703842664876e-02;
+  a05=arg[0]? arg[0][2] : 0;
+  a06=(a04*a05);
+  a03=(a03+a06);
+  a06=-5.4194373095257486e-02;
+  a07=arg[0]? arg[0][1] : 0;
+  a08=(a06*a07);
+  a09=(a03+a08);
+  a09=casadi_sq(a09);
+  a10=arg[0]? arg[0][3] : 0;
+  a01=(a01*a10);
+  a11=arg[0]? arg[0][5] : 0;
+  a04=(a04*a11);
+  a01=(a01+a04);
+  a04=arg[0]? arg[0][4] : 0;
+  a06=(a06*a04);
+  a12=(a01+a06);
+  a12=casadi_sq(a12);
+  a09=(a09+a12);
+  a12=6.6987298107780688e-02;
+  a13=arg[0]? arg[0][6] : 0;
+  a12=(a12*a13);
+  a12=casadi_sq(a12);
+  a09=(a09+a12);
+  a09=sqrt(a09);
+  a14=-2.1782007757777812e-02;
+  a15=(a14*a05);
+  a16=7.7819618509666760e-03;
+  a17=(a16*a07);
+  a18=(a15+a17);
+  a18=casadi_sq(a18);
+  a14=(a14*a11);
+  a16=(a16*a04);
+  a19=(a14+a16);
+  a19=casadi_sq(a19);
+  a18=(a18+a19);
+  a18=sqrt(a18);
+  a19=4.;
+  a18=(a18/a19);
+  a09=(a09+a18);
+  a18=1.5869213836028911e-01;
+  a20=(a18*a02);
+  a21=3.4357855800221326e-02;
+  a22=(a21*a05);
+  a20=(a20+a22);
+  a22=-1.0838874619051497e-01;
+  a23=(a22*a07);
+  a24=(a20+a23);
+  a24=casadi_sq(a24);
+  a18=(a18*a10);
+  a21=(a21*a11);
+  a18=(a18+a21);
+  a22=(a22*a04);
+  a21=(a18+a22);
+  a21=casadi_sq(a21);
+  a24=(a24+a21);
+  a21=1.8301270189221930e-01;
+  a21=(a21*a13);
+  a21=casadi_sq(a21);
+  a24=(a24+a21);
+  a24=sqrt(a24);
+  a25=-1.1901910377021677e-01;
+  a26=(a25*a05);
+  a27=5.8085354020740818e-02;
+  a28=(a27*a07);
+  a29=(a26+a28);
+  a29=casadi_sq(a29);
+  a25=(a25*a11);
+  a27=(a27*a04);
+  a30=(a25+a27);
+  a30=casadi_sq(a30);
+  a29=(a29+a30);
+  a29=sqrt(a29);
+  a29=(a29/a19);
+  a24=(a24+a29);
+  a09=casadi_fmax(a09,a24);
+  a24=2.1677749238103000e-01;
+  a02=(a24*a02);
+  a29=-8.1291559642886244e-02;
+  a30=(a29*a05);
+  a02=(a02+a30);
+  a30=-5.4194373095257500e-02;
+  a31=(a30*a07);
+  a32=(a02+a31);
+  a32=casadi_sq(a32);
+  a24=(a24*a10);
+  a29=(a29*a11);
+  a24=(a24+a29);
+  a30=(a30*a04);
+  a29=(a24+a30);
+  a29=casadi_sq(a29);
+  a32=(a32+a29);
+  a29=2.5000000000000006e-01;
+  a29=(a29*a13);
+  a29=casadi_sq(a29);
+  a32=(a32+a29);
+  a32=sqrt(a32);
+  a13=-8.1291559642886271e-02;
+  a05=(a13*a05);
+  a10=1.0838874619051503e-01;
+  a07=(a10*a07);
+  a33=(a05+a07);
+  a33=casadi_sq(a33);
+  a13=(a13*a11);
+  a10=(a10*a04);
+  a04=(a13+a10);
+  a04=casadi_sq(a04);
+  a33=(a33+a04);
+  a33=sqrt(a33);
+  a33=(a33/a19);
+  a32=(a32+a33);
+  a09=casadi_fmax(a09,a32);
+  a02=(a02-a31);
+  a02=casadi_sq(a02);
+  a24=(a24-a30);
+  a24=casadi_sq(a24);
+  a02=(a02+a24);
+  a02=(a02+a29);
+  a02=sqrt(a02);
+  a07=(a07-a05);
+  a07=casadi_sq(a07);
+  a10=(a10-a13);
+  a10=casadi_sq(a10);
+  a07=(a07+a10);
+  a07=sqrt(a07);
+  a07=(a07/a19);
+  a02=(a02+a07);
+  a09=casadi_fmax(a09,a02);
+  a20=(a20-a23);
+  a20=casadi_sq(a20);
+  a18=(a18-a22);
+  a18=casadi_sq(a18);
+  a20=(a20+a18);
+  a20=(a20+a21);
+  a20=sqrt(a20);
+  a28=(a28-a26);
+  a28=casadi_sq(a28);
+  a27=(a27-a25);
+  a27=casadi_sq(a27);
+  a28=(a28+a27);
+  a28=sqrt(a28);
+  a28=(a28/a19);
+  a20=(a20+a28);
+  a09=casadi_fmax(a09,a20);
+  a03=(a03-a08);
+  a03=casadi_sq(a03);
+  a01=(a01-a06);
+  a01=casadi_sq(a01);
+  a03=(a03+a01);
+  a03=(a03+a12);
+  a03=sqrt(a03);
+  a17=(a17-a15);
+  a17=casadi_sq(a17);
+  a16=(a16-a14);
+  a16=casadi_sq(a16);
+  a17=(a17+a16);
+  a17=sqrt(a17);
+  a17=(a17/a19);
+  a03=(a03+a17);
+  a09=casadi_fmax(a09,a03);
+  a03=2.;
+  a09=(a09/a03);
+  a00=casadi_fmax(a00,a09);
+  if (res[0]!=0) res[0][0]=a00;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int nitinol_wire_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f8(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int nitinol_wire_k_coarseness_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void nitinol_wire_k_coarseness_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void nitinol_wire_k_coarseness_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void nitinol_wire_k_coarseness_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int nitinol_wire_k_coarseness_n_in(void) { return 2;}
+
+CASADI_SYMBOL_EXPORT casadi_int nitinol_wire_k_coarseness_n_out(void) { return 1;}
+
+CASADI_SYMBOL_EXPORT casadi_real nitinol_wire_k_coarseness_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* nitinol_wire_k_coarseness_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "x";
+    case 1: return "inputs";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* nitinol_wire_k_coarseness_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "coarseness";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* nitinol_wire_k_coarseness_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    case 1: return casadi_s1;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* nitinol_wire_k_coarseness_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s2;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int nitinol_wire_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int nitinol_wire_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* nitinol_wire_k_igm:(q[7],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[7],base_force[3],base_moment[3]) */
+static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -9313,7 +9573,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f8(arg, res, iw, w, mem);
+  return casadi_f9(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_igm_checkout(void) {
@@ -9394,7 +9654,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_k_igm_work_bytes(casadi_int *sz_arg, casad
 }
 
 /* nitinol_wire_k_tip:(x[7],inputs[6])->(position[3],quaternion[4]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -9868,7 +10128,7 @@ static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f9(arg, res, iw, w, mem);
+  return casadi_f10(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip_checkout(void) {
@@ -9943,7 +10203,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip_work_bytes(casadi_int *sz_arg, casad
 }
 
 /* nitinol_wire_k_tip_jacobian:(x[7],inputs[6])->(d_pose_d_x[7x7],d_pose_d_inputs[7x6]) */
-static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -12158,7 +12418,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f10(arg, res, iw, w, mem);
+  return casadi_f11(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip_jacobian_checkout(void) {
@@ -12233,7 +12493,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_k_tip_jacobian_work_bytes(casadi_int *sz_a
 }
 
 /* nitinol_wire_k_shape:(x[7],inputs[6],X)->(position[3],quaternion[4]) */
-static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f12(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -13092,7 +13352,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f11(arg, res, iw, w, mem);
+  return casadi_f12(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int nitinol_wire_k_shape_checkout(void) {

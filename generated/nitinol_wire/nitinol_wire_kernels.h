@@ -89,6 +89,24 @@ int nitinol_wire_k_tangent_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, ca
 #define nitinol_wire_k_tangent_SZ_RES 1
 #define nitinol_wire_k_tangent_SZ_IW 0
 #define nitinol_wire_k_tangent_SZ_W 0
+int nitinol_wire_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int nitinol_wire_k_coarseness_checkout(void);
+void nitinol_wire_k_coarseness_release(int mem);
+void nitinol_wire_k_coarseness_incref(void);
+void nitinol_wire_k_coarseness_decref(void);
+casadi_int nitinol_wire_k_coarseness_n_in(void);
+casadi_int nitinol_wire_k_coarseness_n_out(void);
+casadi_real nitinol_wire_k_coarseness_default_in(casadi_int i);
+const char* nitinol_wire_k_coarseness_name_in(casadi_int i);
+const char* nitinol_wire_k_coarseness_name_out(casadi_int i);
+const casadi_int* nitinol_wire_k_coarseness_sparsity_in(casadi_int i);
+const casadi_int* nitinol_wire_k_coarseness_sparsity_out(casadi_int i);
+int nitinol_wire_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int nitinol_wire_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define nitinol_wire_k_coarseness_SZ_ARG 2
+#define nitinol_wire_k_coarseness_SZ_RES 1
+#define nitinol_wire_k_coarseness_SZ_IW 0
+#define nitinol_wire_k_coarseness_SZ_W 0
 int nitinol_wire_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int nitinol_wire_k_igm_checkout(void);
 void nitinol_wire_k_igm_release(int mem);

@@ -38,7 +38,8 @@ typedef enum {
   PLANAR_STRIP_NOT_FINITE = 2,         /* No equilibrium found: the equations gave a value that is not a finite number. */
   PLANAR_STRIP_SINGULAR = 3,           /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
   PLANAR_STRIP_LOAD_STALLED = 4,       /* No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load. */
-  PLANAR_STRIP_NOT_IN_EQUILIBRIUM = 5  /* The unknowns are no equilibrium for these inputs: solve first. */
+  PLANAR_STRIP_UNRESOLVED = 5,         /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
+  PLANAR_STRIP_NOT_IN_EQUILIBRIUM = 6  /* The unknowns are no equilibrium for these inputs: solve first. */
 } planar_strip_status;
 
 typedef struct {
@@ -54,8 +55,8 @@ const char *planar_strip_status_text(planar_strip_status status);
 
 /* Equilibrium for these inputs. q: in, a start; out, the solution. From all zeros the load is grown from the unloaded
    rod. From anything else Newton is tried at the full load, and the unloaded rod where that strays or fails.
-   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load. info may be
-   null. */
+   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
+   is one of the discrete equations at the full load, not one of the rod. info may be null. */
 planar_strip_status planar_strip_solve(const planar_strip_real *inputs, planar_strip_real *q, planar_strip_info *info);
 
 /* As planar_strip_solve, but along the straight line from the inputs for which q is an equilibrium: it stays on the branch

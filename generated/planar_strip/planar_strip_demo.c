@@ -14,7 +14,7 @@ typedef planar_strip_real real;
 
 static const real DEFAULTS[ROOM] = {-0.4, 0, 0.5, 0, -0.05, 0};
 static const char *const WORDS[] = {"converged", "max_iterations", "not_finite", "singular", "load_stalled",
-                                    "not_in_equilibrium"};
+                                    "unresolved", "not_in_equilibrium"};
 
 static double now_us(void) {
   struct timespec t;

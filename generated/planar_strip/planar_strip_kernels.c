@@ -36,6 +36,7 @@ extern "C" {
 #define casadi_f1 CASADI_PREFIX(f1)
 #define casadi_f10 CASADI_PREFIX(f10)
 #define casadi_f11 CASADI_PREFIX(f11)
+#define casadi_f12 CASADI_PREFIX(f12)
 #define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_f3 CASADI_PREFIX(f3)
 #define casadi_f4 CASADI_PREFIX(f4)
@@ -44,6 +45,8 @@ extern "C" {
 #define casadi_f7 CASADI_PREFIX(f7)
 #define casadi_f8 CASADI_PREFIX(f8)
 #define casadi_f9 CASADI_PREFIX(f9)
+#define casadi_fabs CASADI_PREFIX(fabs)
+#define casadi_fmax CASADI_PREFIX(fmax)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
@@ -69,6 +72,24 @@ extern "C" {
 #endif
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
+
+static casadi_real casadi_fabs(casadi_real x) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>0 ? x : -x;
+#else
+  return fabs(x);
+#endif
+}
+
+static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>y ? x : y;
+#else
+  return fmax(x, y);
+#endif
+}
 
 /* Configuration this file was compiled with */
 CASADI_SYMBOL_EXPORT void planar_strip_kernels_casadi_version(int* major, int* minor, int* patch) {
@@ -2375,8 +2396,143 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_tangent_work_bytes(casadi_int *sz_arg, c
   return 0;
 }
 
-/* planar_strip_k_igm:(q[4],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[4],base_force[3],base_moment[3]) */
+/* planar_strip_k_coarseness:(x[4],inputs[6])->(coarseness) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10;
+  a00=0.;
+  a01=6.6987298107780688e-02;
+  a02=arg[0]? arg[0][0] : 0;
+  a01=(a01*a02);
+  a03=5.4126587736527412e-02;
+  a04=arg[0]? arg[0][2] : 0;
+  a03=(a03*a04);
+  a01=(a01+a03);
+  a03=-6.2500000000000000e-02;
+  a05=arg[0]? arg[0][1] : 0;
+  a03=(a03*a05);
+  a06=-4.2968749999999979e-02;
+  a07=arg[0]? arg[0][3] : 0;
+  a06=(a06*a07);
+  a03=(a03+a06);
+  a06=(a01+a03);
+  a06=casadi_fabs(a06);
+  a08=1.8301270189221933e-01;
+  a08=(a08*a02);
+  a09=3.9623412263472567e-02;
+  a09=(a09*a04);
+  a08=(a08+a09);
+  a09=-1.2499999999999999e-01;
+  a09=(a09*a05);
+  a10=3.1250000000000014e-02;
+  a10=(a10*a07);
+  a09=(a09+a10);
+  a10=(a08+a09);
+  a10=casadi_fabs(a10);
+  a06=casadi_fmax(a06,a10);
+  a10=2.5000000000000011e-01;
+  a10=(a10*a02);
+  a02=-9.3750000000000014e-02;
+  a02=(a02*a04);
+  a10=(a10+a02);
+  a02=-6.2500000000000014e-02;
+  a02=(a02*a05);
+  a05=7.4218750000000014e-02;
+  a05=(a05*a07);
+  a02=(a02+a05);
+  a05=(a10+a02);
+  a05=casadi_fabs(a05);
+  a06=casadi_fmax(a06,a05);
+  a10=(a10-a02);
+  a10=casadi_fabs(a10);
+  a06=casadi_fmax(a06,a10);
+  a08=(a08-a09);
+  a08=casadi_fabs(a08);
+  a06=casadi_fmax(a06,a08);
+  a01=(a01-a03);
+  a01=casadi_fabs(a01);
+  a06=casadi_fmax(a06,a01);
+  a01=2.;
+  a06=(a06/a01);
+  a00=casadi_fmax(a00,a06);
+  if (res[0]!=0) res[0][0]=a00;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int planar_strip_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f8(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int planar_strip_k_coarseness_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void planar_strip_k_coarseness_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void planar_strip_k_coarseness_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void planar_strip_k_coarseness_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int planar_strip_k_coarseness_n_in(void) { return 2;}
+
+CASADI_SYMBOL_EXPORT casadi_int planar_strip_k_coarseness_n_out(void) { return 1;}
+
+CASADI_SYMBOL_EXPORT casadi_real planar_strip_k_coarseness_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* planar_strip_k_coarseness_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "x";
+    case 1: return "inputs";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* planar_strip_k_coarseness_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "coarseness";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* planar_strip_k_coarseness_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    case 1: return casadi_s1;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* planar_strip_k_coarseness_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s2;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int planar_strip_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int planar_strip_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* planar_strip_k_igm:(q[4],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[4],base_force[3],base_moment[3]) */
+static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -2928,7 +3084,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f8(arg, res, iw, w, mem);
+  return casadi_f9(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_igm_checkout(void) {
@@ -3009,7 +3165,7 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_igm_work_bytes(casadi_int *sz_arg, casad
 }
 
 /* planar_strip_k_tip:(x[4],inputs[6])->(position[3],quaternion[4]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21;
   a00=3.8095238095238092e-02;
@@ -3215,7 +3371,7 @@ static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f9(arg, res, iw, w, mem);
+  return casadi_f10(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip_checkout(void) {
@@ -3290,7 +3446,7 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_tip_work_bytes(casadi_int *sz_arg, casad
 }
 
 /* planar_strip_k_tip_jacobian:(x[4],inputs[6])->(d_pose_d_x[7x4],d_pose_d_inputs[7x6]) */
-static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -3991,7 +4147,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f10(arg, res, iw, w, mem);
+  return casadi_f11(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip_jacobian_checkout(void) {
@@ -4066,7 +4222,7 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_tip_jacobian_work_bytes(casadi_int *sz_a
 }
 
 /* planar_strip_k_shape:(x[4],inputs[6],X)->(position[3],quaternion[4]) */
-static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f12(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -4564,7 +4720,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f11(arg, res, iw, w, mem);
+  return casadi_f12(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_shape_checkout(void) {

@@ -89,6 +89,24 @@ int planar_strip_k_tangent_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, ca
 #define planar_strip_k_tangent_SZ_RES 1
 #define planar_strip_k_tangent_SZ_IW 0
 #define planar_strip_k_tangent_SZ_W 0
+int planar_strip_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+int planar_strip_k_coarseness_checkout(void);
+void planar_strip_k_coarseness_release(int mem);
+void planar_strip_k_coarseness_incref(void);
+void planar_strip_k_coarseness_decref(void);
+casadi_int planar_strip_k_coarseness_n_in(void);
+casadi_int planar_strip_k_coarseness_n_out(void);
+casadi_real planar_strip_k_coarseness_default_in(casadi_int i);
+const char* planar_strip_k_coarseness_name_in(casadi_int i);
+const char* planar_strip_k_coarseness_name_out(casadi_int i);
+const casadi_int* planar_strip_k_coarseness_sparsity_in(casadi_int i);
+const casadi_int* planar_strip_k_coarseness_sparsity_out(casadi_int i);
+int planar_strip_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+int planar_strip_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
+#define planar_strip_k_coarseness_SZ_ARG 2
+#define planar_strip_k_coarseness_SZ_RES 1
+#define planar_strip_k_coarseness_SZ_IW 0
+#define planar_strip_k_coarseness_SZ_W 0
 int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int planar_strip_k_igm_checkout(void);
 void planar_strip_k_igm_release(int mem);

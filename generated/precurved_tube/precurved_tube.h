@@ -40,7 +40,8 @@ typedef enum {
   PRECURVED_TUBE_NOT_FINITE = 2,         /* No equilibrium found: the equations gave a value that is not a finite number. */
   PRECURVED_TUBE_SINGULAR = 3,           /* No equilibrium found: the Jacobian is singular and no step reduces the residual. */
   PRECURVED_TUBE_LOAD_STALLED = 4,       /* No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load. */
-  PRECURVED_TUBE_NOT_IN_EQUILIBRIUM = 5  /* The unknowns are no equilibrium for these inputs: solve first. */
+  PRECURVED_TUBE_UNRESOLVED = 5,         /* An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance. */
+  PRECURVED_TUBE_NOT_IN_EQUILIBRIUM = 6  /* The unknowns are no equilibrium for these inputs: solve first. */
 } precurved_tube_status;
 
 typedef struct {
@@ -56,8 +57,8 @@ const char *precurved_tube_status_text(precurved_tube_status status);
 
 /* Equilibrium for these inputs. q: in, a start; out, the solution. From all zeros the load is grown from the unloaded
    rod. From anything else Newton is tried at the full load, and the unloaded rod where that strays or fails.
-   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load. info may be
-   null. */
+   On anything but CONVERGED q is the last equilibrium on the way, at info->load_factor of the load; with UNRESOLVED it
+   is one of the discrete equations at the full load, not one of the rod. info may be null. */
 precurved_tube_status precurved_tube_solve(const precurved_tube_real *inputs, precurved_tube_real *q, precurved_tube_info *info);
 
 /* As precurved_tube_solve, but along the straight line from the inputs for which q is an equilibrium: it stays on the branch

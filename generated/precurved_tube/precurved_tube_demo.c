@@ -14,7 +14,7 @@ typedef precurved_tube_real real;
 
 static const real DEFAULTS[ROOM] = {0.6, 0.8, -0.4, 0.01, 0, 0.02};
 static const char *const WORDS[] = {"converged", "max_iterations", "not_finite", "singular", "load_stalled",
-                                    "not_in_equilibrium"};
+                                    "unresolved", "not_in_equilibrium"};
 
 static double now_us(void) {
   struct timespec t;

@@ -36,6 +36,7 @@ extern "C" {
 #define casadi_f1 CASADI_PREFIX(f1)
 #define casadi_f10 CASADI_PREFIX(f10)
 #define casadi_f11 CASADI_PREFIX(f11)
+#define casadi_f12 CASADI_PREFIX(f12)
 #define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_f3 CASADI_PREFIX(f3)
 #define casadi_f4 CASADI_PREFIX(f4)
@@ -44,6 +45,7 @@ extern "C" {
 #define casadi_f7 CASADI_PREFIX(f7)
 #define casadi_f8 CASADI_PREFIX(f8)
 #define casadi_f9 CASADI_PREFIX(f9)
+#define casadi_fmax CASADI_PREFIX(fmax)
 #define casadi_s0 CASADI_PREFIX(s0)
 #define casadi_s1 CASADI_PREFIX(s1)
 #define casadi_s2 CASADI_PREFIX(s2)
@@ -70,6 +72,15 @@ extern "C" {
 #endif
 
 static casadi_real casadi_sq(casadi_real x) { return x*x;}
+
+static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
+/* Pre-c99 compatibility */
+#if __STDC_VERSION__ < 199901L
+  return x>y ? x : y;
+#else
+  return fmax(x, y);
+#endif
+}
 
 /* Configuration this file was compiled with */
 CASADI_SYMBOL_EXPORT void precurved_tube_kernels_casadi_version(int* major, int* minor, int* patch) {
@@ -16218,8 +16229,494 @@ CASADI_SYMBOL_EXPORT int precurved_tube_k_tangent_work_bytes(casadi_int *sz_arg,
   return 0;
 }
 
-/* precurved_tube_k_igm:(q[12],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[12],base_force[3],base_moment[3]) */
+/* precurved_tube_k_coarseness:(x[12],inputs[6])->(coarseness) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
+  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
+  casadi_real a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47;
+  casadi_real a48, a49, a50, a51, a52, a53, a54, a55, a56, a57, a58, a59;
+  casadi_real a60;
+  a00=0.;
+  a01=3.3002408122149954e-02;
+  a02=arg[0]? arg[0][0] : 0;
+  a03=(a01*a02);
+  a04=2.9329783369021343e-02;
+  a05=arg[0]? arg[0][2] : 0;
+  a06=(a04*a05);
+  a03=(a03+a06);
+  a06=-3.1746328754894276e-02;
+  a07=arg[0]? arg[0][1] : 0;
+  a08=(a06*a07);
+  a09=-2.5934900995812374e-02;
+  a10=arg[0]? arg[0][3] : 0;
+  a11=(a09*a10);
+  a11=(a08+a11);
+  a12=(a03+a11);
+  a12=casadi_sq(a12);
+  a13=6.9812143993249476e-02;
+  a14=arg[0]? arg[0][4] : 0;
+  a01=(a01*a14);
+  a15=arg[0]? arg[0][6] : 0;
+  a04=(a04*a15);
+  a01=(a01+a04);
+  a04=arg[0]? arg[0][5] : 0;
+  a06=(a06*a04);
+  a16=arg[0]? arg[0][7] : 0;
+  a09=(a09*a16);
+  a09=(a06+a09);
+  a17=(a01+a09);
+  a13=(a13+a17);
+  a13=casadi_sq(a13);
+  a12=(a12+a13);
+  a13=2.2836140246613970e-02;
+  a17=3.8060233744356631e-02;
+  a18=arg[0]? arg[0][8] : 0;
+  a17=(a17*a18);
+  a19=3.3824756259137320e-02;
+  a20=arg[0]? arg[0][10] : 0;
+  a19=(a19*a20);
+  a17=(a17+a19);
+  a19=-3.6611652351681567e-02;
+  a21=arg[0]? arg[0][9] : 0;
+  a19=(a19*a21);
+  a22=-2.9909586912079622e-02;
+  a23=arg[0]? arg[0][11] : 0;
+  a22=(a22*a23);
+  a22=(a19+a22);
+  a24=(a17+a22);
+  a13=(a13+a24);
+  a13=casadi_sq(a13);
+  a12=(a12+a13);
+  a12=sqrt(a12);
+  a13=-7.2496361576188002e-03;
+  a24=(a13*a05);
+  a25=2.5121587345113654e-03;
+  a26=(a25*a07);
+  a27=1.3671503775076069e-02;
+  a28=(a27*a10);
+  a26=(a26+a28);
+  a28=(a24+a26);
+  a28=casadi_sq(a28);
+  a29=2.6074465068151170e-03;
+  a13=(a13*a15);
+  a25=(a25*a04);
+  a27=(a27*a16);
+  a25=(a25+a27);
+  a27=(a13+a25);
+  a29=(a29+a27);
+  a29=casadi_sq(a29);
+  a28=(a28+a29);
+  a29=-8.3606882776327517e-03;
+  a29=(a29*a20);
+  a27=2.8971627853501269e-03;
+  a27=(a27*a21);
+  a30=1.5766747304934284e-02;
+  a30=(a30*a23);
+  a27=(a27+a30);
+  a30=(a29+a27);
+  a30=casadi_sq(a30);
+  a28=(a28+a30);
+  a28=sqrt(a28);
+  a30=4.;
+  a28=(a28/a30);
+  a12=(a12+a28);
+  a28=9.3982906897427138e-02;
+  a31=(a28*a02);
+  a32=4.7312634066599371e-02;
+  a33=(a32*a05);
+  a31=(a31+a33);
+  a33=-7.6642417435620724e-02;
+  a34=(a33*a07);
+  a35=-1.4710878825630738e-02;
+  a36=(a35*a10);
+  a34=(a34+a36);
+  a36=(a31+a34);
+  a36=casadi_sq(a36);
+  a37=2.1309370140491141e-01;
+  a28=(a28*a14);
+  a32=(a32*a15);
+  a28=(a28+a32);
+  a33=(a33*a04);
+  a35=(a35*a16);
+  a33=(a33+a35);
+  a35=(a28+a33);
+  a37=(a37+a35);
+  a37=casadi_sq(a37);
+  a36=(a36+a37);
+  a37=6.5031825397421777e-02;
+  a35=1.0838637566236964e-01;
+  a35=(a35*a18);
+  a32=5.4563591389181126e-02;
+  a32=(a32*a20);
+  a35=(a35+a32);
+  a32=-8.8388347648318460e-02;
+  a32=(a32*a21);
+  a38=-1.6965413087920368e-02;
+  a38=(a38*a23);
+  a32=(a32+a38);
+  a38=(a35+a32);
+  a38=(a37+a38);
+  a38=casadi_sq(a38);
+  a36=(a36+a38);
+  a36=sqrt(a36);
+  a38=-4.9841963087096069e-02;
+  a39=(a38*a05);
+  a40=2.0372933305652124e-02;
+  a41=(a40*a07);
+  a42=7.1414049398555196e-02;
+  a43=(a42*a10);
+  a41=(a41+a43);
+  a43=(a39+a41);
+  a43=casadi_sq(a43);
+  a44=2.1145691572603820e-02;
+  a38=(a38*a15);
+  a40=(a40*a04);
+  a42=(a42*a16);
+  a40=(a40+a42);
+  a42=(a38+a40);
+  a44=(a44+a42);
+  a44=casadi_sq(a44);
+  a43=(a43+a44);
+  a44=-5.7480555914320705e-02;
+  a44=(a44*a20);
+  a42=2.3495212858448647e-02;
+  a42=(a42*a21);
+  a45=8.2358699482775022e-02;
+  a45=(a45*a23);
+  a42=(a42+a45);
+  a45=(a44+a42);
+  a45=casadi_sq(a45);
+  a43=(a43+a45);
+  a43=sqrt(a43);
+  a43=(a43/a30);
+  a36=(a36+a43);
+  a12=casadi_fmax(a12,a36);
+  a36=1.4065536005474355e-01;
+  a43=(a36*a02);
+  a45=-5.8340566446645412e-03;
+  a46=(a45*a05);
+  a43=(a43+a46);
+  a46=-7.6642417435620711e-02;
+  a47=(a46*a07);
+  a48=5.3032087543441096e-02;
+  a49=(a48*a10);
+  a47=(a47+a49);
+  a49=(a43+a47);
+  a49=casadi_sq(a49);
+  a50=3.5842200802548130e-01;
+  a36=(a36*a14);
+  a45=(a45*a15);
+  a36=(a36+a45);
+  a46=(a46*a04);
+  a48=(a48*a16);
+  a46=(a46+a48);
+  a48=(a36+a46);
+  a50=(a50+a48);
+  a50=casadi_sq(a50);
+  a49=(a49+a50);
+  a50=9.7327004646437315e-02;
+  a48=1.6221167441072884e-01;
+  a48=(a48*a18);
+  a45=-6.7281623435448924e-03;
+  a45=(a45*a20);
+  a48=(a48+a45);
+  a45=-8.8388347648318433e-02;
+  a45=(a45*a21);
+  a51=6.1159586912079594e-02;
+  a51=(a51*a23);
+  a45=(a45+a51);
+  a51=(a48+a45);
+  a50=(a50+a51);
+  a50=casadi_sq(a50);
+  a49=(a49+a50);
+  a49=sqrt(a49);
+  a50=-7.4593769178708469e-02;
+  a51=(a50*a05);
+  a52=4.5631882938647804e-02;
+  a53=(a52*a07);
+  a54=3.4967667239814690e-02;
+  a55=(a54*a10);
+  a53=(a53+a55);
+  a55=(a51+a53);
+  a55=casadi_sq(a55);
+  a56=4.7362729167238160e-02;
+  a50=(a50*a15);
+  a52=(a52*a04);
+  a54=(a54*a16);
+  a52=(a52+a54);
+  a54=(a50+a52);
+  a56=(a56+a54);
+  a56=casadi_sq(a56);
+  a55=(a55+a56);
+  a56=-8.6025731222588081e-02;
+  a56=(a56*a20);
+  a54=5.2625254630264628e-02;
+  a54=(a54*a21);
+  a57=4.0326681123278238e-02;
+  a57=(a57*a23);
+  a54=(a54+a57);
+  a57=(a56+a54);
+  a57=casadi_sq(a57);
+  a55=(a55+a57);
+  a55=sqrt(a55);
+  a55=(a55/a30);
+  a49=(a49+a55);
+  a12=casadi_fmax(a12,a49);
+  a49=1.6591430968773932e-01;
+  a02=(a49*a02);
+  a55=-7.0808360790956176e-02;
+  a57=(a55*a05);
+  a02=(a02+a57);
+  a57=4.1808065373259498e-02;
+  a58=(a57*a10);
+  a08=(a08+a58);
+  a58=(a02+a08);
+  a58=casadi_sq(a58);
+  a59=4.8367214657635793e-01;
+  a49=(a49*a14);
+  a55=(a55*a15);
+  a49=(a49+a55);
+  a57=(a57*a16);
+  a06=(a06+a57);
+  a57=(a49+a06);
+  a59=(a59+a57);
+  a59=casadi_sq(a59);
+  a58=(a58+a59);
+  a59=1.1480502970952694e-01;
+  a57=1.9134171618254495e-01;
+  a57=(a57*a18);
+  a18=-8.1660185304773550e-02;
+  a18=(a18*a20);
+  a57=(a57+a18);
+  a18=4.8215413087920392e-02;
+  a18=(a18*a23);
+  a19=(a19+a18);
+  a18=(a57+a19);
+  a18=(a59+a18);
+  a18=casadi_sq(a18);
+  a58=(a58+a18);
+  a58=sqrt(a58);
+  a18=-3.6446382158740472e-02;
+  a05=(a18*a05);
+  a55=6.3492657509788580e-02;
+  a07=(a55*a07);
+  a14=-7.4317846331988013e-02;
+  a10=(a14*a10);
+  a07=(a07+a10);
+  a10=(a05+a07);
+  a10=casadi_sq(a10);
+  a60=6.5900974233026766e-02;
+  a18=(a18*a15);
+  a55=(a55*a04);
+  a14=(a14*a16);
+  a55=(a55+a14);
+  a14=(a18+a55);
+  a60=(a60+a14);
+  a60=casadi_sq(a60);
+  a10=(a10+a60);
+  a60=-4.2032018359496749e-02;
+  a60=(a60*a20);
+  a20=7.3223304703363176e-02;
+  a20=(a20*a21);
+  a21=-8.5707521472477732e-02;
+  a21=(a21*a23);
+  a20=(a20+a21);
+  a21=(a60+a20);
+  a21=casadi_sq(a21);
+  a10=(a10+a21);
+  a10=sqrt(a10);
+  a10=(a10/a30);
+  a58=(a58+a10);
+  a12=casadi_fmax(a12,a58);
+  a02=(a02-a08);
+  a02=casadi_sq(a02);
+  a08=5.4957312080938470e-01;
+  a49=(a49-a06);
+  a08=(a08+a49);
+  a08=casadi_sq(a08);
+  a02=(a02+a08);
+  a57=(a57-a19);
+  a59=(a59+a57);
+  a59=casadi_sq(a59);
+  a02=(a02+a59);
+  a02=sqrt(a02);
+  a07=(a07-a05);
+  a07=casadi_sq(a07);
+  a05=6.5900974233026877e-02;
+  a55=(a55-a18);
+  a05=(a05+a55);
+  a05=casadi_sq(a05);
+  a07=(a07+a05);
+  a20=(a20-a60);
+  a20=casadi_sq(a20);
+  a07=(a07+a20);
+  a07=sqrt(a07);
+  a07=(a07/a30);
+  a02=(a02+a07);
+  a12=casadi_fmax(a12,a02);
+  a43=(a43-a47);
+  a43=casadi_sq(a43);
+  a47=5.1752103379245451e-01;
+  a36=(a36-a46);
+  a47=(a47+a36);
+  a47=casadi_sq(a47);
+  a43=(a43+a47);
+  a47=9.7327004646437301e-02;
+  a48=(a48-a45);
+  a47=(a47+a48);
+  a47=casadi_sq(a47);
+  a43=(a43+a47);
+  a43=sqrt(a43);
+  a53=(a53-a51);
+  a53=casadi_sq(a53);
+  a51=4.7362729167238049e-02;
+  a52=(a52-a50);
+  a51=(a51+a52);
+  a51=casadi_sq(a51);
+  a53=(a53+a51);
+  a54=(a54-a56);
+  a54=casadi_sq(a54);
+  a53=(a53+a54);
+  a53=sqrt(a53);
+  a53=(a53/a30);
+  a43=(a43+a53);
+  a12=casadi_fmax(a12,a43);
+  a31=(a31-a34);
+  a31=casadi_sq(a31);
+  a34=3.7219272717188467e-01;
+  a28=(a28-a33);
+  a34=(a34+a28);
+  a34=casadi_sq(a34);
+  a31=(a31+a34);
+  a35=(a35-a32);
+  a37=(a37+a35);
+  a37=casadi_sq(a37);
+  a31=(a31+a37);
+  a31=sqrt(a31);
+  a41=(a41-a39);
+  a41=casadi_sq(a41);
+  a39=2.1145691572603875e-02;
+  a40=(a40-a38);
+  a39=(a39+a40);
+  a39=casadi_sq(a39);
+  a41=(a41+a39);
+  a42=(a42-a44);
+  a42=casadi_sq(a42);
+  a41=(a41+a42);
+  a41=sqrt(a41);
+  a41=(a41/a30);
+  a31=(a31+a41);
+  a12=casadi_fmax(a12,a31);
+  a03=(a03-a11);
+  a03=casadi_sq(a03);
+  a11=1.3571311822627632e-01;
+  a01=(a01-a09);
+  a11=(a11+a01);
+  a11=casadi_sq(a11);
+  a03=(a03+a11);
+  a11=2.2836140246613981e-02;
+  a17=(a17-a22);
+  a11=(a11+a17);
+  a11=casadi_sq(a11);
+  a03=(a03+a11);
+  a03=sqrt(a03);
+  a26=(a26-a24);
+  a26=casadi_sq(a26);
+  a24=2.6074465068151309e-03;
+  a25=(a25-a13);
+  a24=(a24+a25);
+  a24=casadi_sq(a24);
+  a26=(a26+a24);
+  a27=(a27-a29);
+  a27=casadi_sq(a27);
+  a26=(a26+a27);
+  a26=sqrt(a26);
+  a26=(a26/a30);
+  a03=(a03+a26);
+  a12=casadi_fmax(a12,a03);
+  a03=2.;
+  a12=(a12/a03);
+  a00=casadi_fmax(a00,a12);
+  if (res[0]!=0) res[0][0]=a00;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int precurved_tube_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
+  return casadi_f8(arg, res, iw, w, mem);
+}
+
+CASADI_SYMBOL_EXPORT int precurved_tube_k_coarseness_checkout(void) {
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT void precurved_tube_k_coarseness_release(int mem) {
+}
+
+CASADI_SYMBOL_EXPORT void precurved_tube_k_coarseness_incref(void) {
+}
+
+CASADI_SYMBOL_EXPORT void precurved_tube_k_coarseness_decref(void) {
+}
+
+CASADI_SYMBOL_EXPORT casadi_int precurved_tube_k_coarseness_n_in(void) { return 2;}
+
+CASADI_SYMBOL_EXPORT casadi_int precurved_tube_k_coarseness_n_out(void) { return 1;}
+
+CASADI_SYMBOL_EXPORT casadi_real precurved_tube_k_coarseness_default_in(casadi_int i) {
+  switch (i) {
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* precurved_tube_k_coarseness_name_in(casadi_int i) {
+  switch (i) {
+    case 0: return "x";
+    case 1: return "inputs";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const char* precurved_tube_k_coarseness_name_out(casadi_int i) {
+  switch (i) {
+    case 0: return "coarseness";
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* precurved_tube_k_coarseness_sparsity_in(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s0;
+    case 1: return casadi_s1;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT const casadi_int* precurved_tube_k_coarseness_sparsity_out(casadi_int i) {
+  switch (i) {
+    case 0: return casadi_s2;
+    default: return 0;
+  }
+}
+
+CASADI_SYMBOL_EXPORT int precurved_tube_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2;
+  if (sz_res) *sz_res = 1;
+  if (sz_iw) *sz_iw = 0;
+  if (sz_w) *sz_w = 0;
+  return 0;
+}
+
+CASADI_SYMBOL_EXPORT int precurved_tube_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w) {
+  if (sz_arg) *sz_arg = 2*sizeof(const casadi_real*);
+  if (sz_res) *sz_res = 1*sizeof(casadi_real*);
+  if (sz_iw) *sz_iw = 0*sizeof(casadi_int);
+  if (sz_w) *sz_w = 0*sizeof(casadi_real);
+  return 0;
+}
+
+/* precurved_tube_k_igm:(q[12],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[12],base_force[3],base_moment[3]) */
+static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -17894,7 +18391,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f8(arg, res, iw, w, mem);
+  return casadi_f9(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_igm_checkout(void) {
@@ -17975,7 +18472,7 @@ CASADI_SYMBOL_EXPORT int precurved_tube_k_igm_work_bytes(casadi_int *sz_arg, cas
 }
 
 /* precurved_tube_k_tip:(x[12],inputs[6])->(position[3],quaternion[4]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -18745,7 +19242,7 @@ static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f9(arg, res, iw, w, mem);
+  return casadi_f10(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_tip_checkout(void) {
@@ -18820,7 +19317,7 @@ CASADI_SYMBOL_EXPORT int precurved_tube_k_tip_work_bytes(casadi_int *sz_arg, cas
 }
 
 /* precurved_tube_k_tip_jacobian:(x[12],inputs[6])->(d_pose_d_x[7x12],d_pose_d_inputs[7x6]) */
-static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -22779,7 +23276,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f10(arg, res, iw, w, mem);
+  return casadi_f11(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_tip_jacobian_checkout(void) {
@@ -22854,7 +23351,7 @@ CASADI_SYMBOL_EXPORT int precurved_tube_k_tip_jacobian_work_bytes(casadi_int *sz
 }
 
 /* precurved_tube_k_shape:(x[12],inputs[6],X)->(position[3],quaternion[4]) */
-static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f12(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -24266,7 +24763,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f11(arg, res, iw, w, mem);
+  return casadi_f12(arg, res, iw, w, mem);
 }
 
 CASADI_SYMBOL_EXPORT int precurved_tube_k_shape_checkout(void) {

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, read_scene, solve_scene
 from tests.conftest import case_files
+from tests.initial_value import integrate
 
 RODS = case_files("rods")
 pytestmark = pytest.mark.skipif(not RODS, reason="the reference cases are not beside this checkout")
@@ -69,3 +70,20 @@ def test_error_vs_tolerance_asked_for(path: Path, tolerance: float) -> None:
     error = np.abs(tip.position[0] - case["expected"]["tip"]["position"]).max() / case["length"]
     assert solution.converged, solution.message
     assert error <= tolerance
+
+
+HELD = case_files("supports")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
+def test_held_rod_from_a_cold_start_is_stable_and_meets_its_pose(path: Path) -> None:
+    """Any stable equilibrium counts: integrated from its base wrench it must end at the prescribed pose."""
+    case, solution = reference(path), solved(path)
+    assert solution.converged, solution.message
+    assert solution.stable is True
+    base = solution.base_wrench()
+    tip = integrate(solution.model.scene, base.force, base.moment)
+    # The integration multiplies the errors of the base wrench by the rod's flexibility.
+    assert_allclose(tip.position, case["expected"]["tip"]["position"], rtol=0, atol=1e-6 * case["length"])
+    assert_allclose(tip.rotation, case["expected"]["tip"]["rotation"], rtol=0, atol=1e-5)

@@ -62,7 +62,7 @@ def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None
     assert_allclose([np.hypot(x, y), z], elastica(ratio), rtol=0, atol=1e-6)
     # The round column may turn about its axis at no cost; the flat one may not.
     assert np.all(path.neutral[path.branch :] == (strain == "kirchhoff"))
-    assert np.all(path.stable[path.branch :] == (strain == "planar"))
+    assert np.all(path.stable[path.branch :])
     for factor, tip in list(zip(path.factor, path.tip().position, strict=True))[path.branch + 1 :: 5]:
         assert_allclose([np.hypot(tip[0], tip[1]), tip[2]], elastica(ratio * factor), rtol=0, atol=1e-6)
 

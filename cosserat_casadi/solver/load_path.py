@@ -1,0 +1,49 @@
+"""Paths that a model offers to a continuation: all loads growing from zero, or inputs changing to others."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solver.continuation import Path
+from cosserat_casadi.solver.secant import Jacobian
+
+
+def load_path(model: Model, inputs: FloatArray) -> Path:
+    """From the unloaded scene to the scene, all loads growing together."""
+    none = np.zeros(model.inputs.size)
+    return Path(
+        residual=lambda x, t: column(model.path_residual(x, inputs, t)),
+        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, inputs, t)),
+        rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
+        start=model.unloaded(),
+        tangent=column(model.path_tangent(inputs)),
+    )
+
+
+def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
+    """From an equilibrium of the scene to other inputs, on the straight line between them."""
+    change = after - before
+
+    def at(t: float) -> FloatArray:
+        # Exact at both ends, however far apart they are.
+        return (1.0 - t) * before + t * after
+
+    return Path(
+        residual=lambda x, t: column(model.path_residual(x, at(t), 1.0)),
+        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
+        rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
+        start=start,
+    )
+
+
+def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
+    """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
+    return jacobian if model.frame.couplings.ties else np.asarray(jacobian.full())
+
+
+def column(vector: ca.DM) -> FloatArray:
+    """A CasADi vector as an array, shape (n,)."""
+    return np.asarray(vector.full()[:, 0]) if vector.shape[0] else np.zeros(0)
