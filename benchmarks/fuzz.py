@@ -73,6 +73,8 @@ def main(
 ) -> None:
     """Judge scenes, print the figures; exit code 1 if one has a fault."""
     found = known(log)
+    if log is not None:
+        log.parent.mkdir(parents=True, exist_ok=True)
     for seed in track(range(first, first + count), "Scenes", disable=not sys.stdout.isatty()):
         if seed in found:
             continue
