@@ -23,6 +23,9 @@ from .rods import Array, RodData
 FEWEST, MOST = 200, 6000
 """Steps of an element."""
 
+KNOWN = 1e-7
+"""Share of a stiffness, beside strains of about one, below whose hundred-millionth a stress is rounding."""
+
 GAUSS = np.array([0.5 - np.sqrt(3) / 6, 0.5 + np.sqrt(3) / 6])
 
 
@@ -93,7 +96,9 @@ def violation(rod: RodData, claim: Claim, bending: float, held: str | None = Non
         start = _beyond(rod, b, (piece.r[-1], piece.R[-1], piece.n[-1], piece.m[-1]))
     stresses = [_stresses(rod, piece) for piece in pieces]
     largest = np.max([np.abs(wrench).max(axis=0) for _, wrench in stresses], axis=0)
-    size = units + np.repeat([largest[:3].max(), largest[3:].max()], 3)
+    # Strains near one are known to rounding alone, which a large stiffness makes a large stress.
+    hooke = np.divide(1.0, rod.compliance(0.0), out=np.zeros(6), where=rod.admitted)
+    size = units + np.repeat([largest[:3].max(), largest[3:].max()], 3) + [0, 0, 0, *(KNOWN * hooke[3:])]
     worst = 0.0
     for piece, (elastic, wrench) in zip(pieces, stresses, strict=True):
         local = 2 * (piece.X - piece.X[0]) / (piece.X[-1] - piece.X[0]) - 1
