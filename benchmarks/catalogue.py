@@ -102,7 +102,7 @@ def bending() -> tuple[Any, list[Row]]:
 def helix() -> tuple[Any, list[Row]]:
     full = solved(cases.helical_form(1.0), 1e-9)
     model, (ends, wound) = full.model, panels(2, 4.6)[1]
-    shares, found, lifted = np.linspace(0, 1, 121), None, [0.0]
+    shares, found, lifted = np.linspace(0, 1, 201) ** 1.3, None, [0.0]
     for share in shares[1:]:
         values = {"tip.force": [0, 50 * share, 0], "tip.moment": [0, 200 * np.pi * share, 0]}
         found = solve(model, values, start=found)
@@ -176,7 +176,7 @@ def held() -> tuple[Any, list[Row]]:
     rows.append(("(g) writhing rod, twist 6", "initial-value problem, DOP853", error))
     named(axes[1], "twisted rods, ends at 0.85 L", "y / L")
     for panel in axes:
-        panel.legend(fontsize=7)
+        panel.legend(fontsize=7, loc="lower left")
     return figure, rows
 
 

@@ -38,6 +38,8 @@ class Resolution:
     def ratio(self) -> float:
         """Share of the error that two modes more leave."""
         two, four = self._without(2), self._without(4)
+        if not np.isfinite(two + four):
+            return SLOWEST
         return float(np.clip(two / four, FASTEST, SLOWEST)) if four > 0 else FASTEST
 
     @cached_property
@@ -55,6 +57,8 @@ class Resolution:
     def modes_lacking(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
         error = self.modes_error
+        if not np.isfinite(error):
+            return 1
         return 2 * ceil(log(bound / error) / log(self.ratio)) if error > bound else 0
 
     @property
@@ -67,4 +71,5 @@ class Resolution:
 
 
 def _size(shift: FloatArray) -> float:
-    return float(np.abs(shift).max())
+    """Largest change; infinite where a coarser model was so far off that it could not be foreseen."""
+    return float(np.abs(shift).max()) if np.all(np.isfinite(shift)) else float("inf")

@@ -57,6 +57,14 @@ def test_extreme_scenes_end_truly(first: int) -> None:
 
 
 @pytest.mark.slow
+def test_witness_whose_coarser_models_overflow_is_refined() -> None:
+    """Dropping two of its five modes leads nowhere: that is no small error, and there is a finer rung."""
+    found = verdict(extreme_scene(73))
+    assert found.faults == ()
+    assert found.outcome == "converged"
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 30, 10))
 def test_extreme_scenes_to_a_tolerance_end_truly(first: int) -> None:
     found = {seed: verdict(extreme_scene(seed)) for seed in range(first, first + 10)}
