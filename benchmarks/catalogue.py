@@ -176,7 +176,9 @@ def held() -> tuple[Any, list[Row]]:
     rows.append(("(g) writhing rod, twist 6", "initial-value problem, DOP853", error))
     named(axes[1], "twisted rods, ends at 0.85 L", "y / L")
     for panel in axes:
-        panel.legend(fontsize=7, loc="lower left")
+        panel.set(aspect="equal", xlim=(-0.55, 0.65), ylim=(-0.05, 1.05))
+        panel.set_adjustable("box")
+        panel.legend(fontsize=7, loc="upper left")
     return figure, rows
 
 
