@@ -6,12 +6,13 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow bench lint format schema generated clean
+.PHONY: help demo test test-slow fuzz bench lint format schema generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
+	@echo "make fuzz       10^4 random scenes at the ends of what is legal; writes figures to docs/hard-cases.md (hours)"
 	@echo "make bench      race the exported C against shooting solvers; writes the table of the README"
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
@@ -35,6 +36,9 @@ test: $(STAMP) lint
 
 test-slow: $(STAMP)
 	$(BIN)/python -m pytest -n 2 -m slow
+
+fuzz: $(STAMP)
+	$(BIN)/python benchmarks/fuzz.py --write --log out/fuzz.jsonl
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/race.py --write

@@ -107,15 +107,20 @@ def path(
     name: Annotated[str, typer.Option("--input", metavar="LOAD.FIELD", help="The input to follow: push.force.")],
     to: Annotated[str, typer.Option("--to", metavar="VALUE", help="Its value at factor 1, such as [0,0,-5].")],
     branch: Annotated[bool, typer.Option("--branch", help="Leave along the branch of the first bifurcation.")] = False,
+    bifurcation: Annotated[
+        int, typer.Option("--bifurcation", help="With --branch: leave at this one; below zero the branch's other half.")
+    ] = 1,
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the path (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw load against displacement here: .png, .pdf or .svg.")] = None,
     table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
 ) -> None:
     """Follow equilibria while an input grows from zero, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
-    read, value = _check_path(scene, tuple(settings or ()), name, to, {"--output": output, "--csv": table}, plot)
+    files = {"--output": output, "--csv": table}
+    read, value = _check_path(scene, tuple(settings or ()), name, to, bifurcation, files, plot)
     with _told("Following the path") as (told, said):
-        found = follow_scene_path(read, name, value, branch=branch, progress=told, report=said)
+        leave = bifurcation if branch else 0
+        found = follow_scene_path(read, name, value, branch=leave, progress=told, report=said)
     if output is not None:
         write_atomically(output, path_text(found).encode())
     if table is not None:
@@ -271,7 +276,13 @@ def _check_outputs(output: Path | None, plot: Path | None) -> None:
 
 
 def _check_path(
-    scene: Path, settings: tuple[str, ...], name: str, to: str, outputs: dict[str, Path | None], plot: Path | None
+    scene: Path,
+    settings: tuple[str, ...],
+    name: str,
+    to: str,
+    bifurcation: int,
+    outputs: dict[str, Path | None],
+    plot: Path | None,
 ) -> tuple[Scene, FloatArray]:
     """The scene and the value of the followed input.
 
@@ -287,6 +298,8 @@ def _check_path(
             problems.extend(error.problems)
             return None
 
+    if bifurcation == 0:
+        problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
     for option, file in outputs.items():
         if file is not None:
             tried(lambda option=option, file=file: check_writable(file, option))  # type: ignore[misc]

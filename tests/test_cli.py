@@ -202,14 +202,15 @@ def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: 
     assert done.returncode == 3, done.stdout + done.stderr
     path = json.loads((tmp_path / "p.json").read_text())
     assert path["outcome"] == "no_bifurcation"
-    assert "without a bifurcation" in done.stdout
+    assert "before the bifurcation to leave at" in done.stdout
 
 
 def test_every_fault_of_a_path_comes_at_once(wire: Path) -> None:
-    options = ["--input", "shove.force", "--to", "up", "--output", "no/p.json", "--plot", "f.doc"]
+    options = ["--input", "shove.force", "--to", "up", "--output", "no/p.json", "--plot", "f.doc", "--bifurcation", "0"]
     done = cosserat("path", "wire.toml", *options, cwd=wire)
     assert done.returncode == 2
-    assert "4 problems" in done.stderr
+    assert "5 problems" in done.stderr
+    assert "--bifurcation" in done.stderr
 
 
 def test_not_finite_numbers_become_null(wire: Path) -> None:

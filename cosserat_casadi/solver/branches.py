@@ -19,18 +19,19 @@ TIE = 1e-6
 """Relative difference below which two entries of the null space are equally large."""
 
 
-def switch(curve: Curve, at: ArcPoint, multiplicity: int) -> ArcPoint | None:
+def switch(curve: Curve, at: ArcPoint, multiplicity: int, side: int = 1) -> ArcPoint | None:
     """First point of the branch that crosses at a bifurcation, with its tangent away from it.
 
-    Of the two halves of the branch the one on which the largest strain coordinate of the null vector grows is
-    taken. Where symmetry makes a whole circle of branches, the one nearest to the first such coordinate.
+    Of the two halves of the branch side 1 is the one on which the largest strain coordinate of the null vector grows,
+    side −1 the other. Where symmetry makes a whole circle of branches, the one nearest to the first such coordinate.
 
     Args:
         curve: the curve.
         at: the bifurcation.
         multiplicity: branches that cross, the dimension of the null space across the curve.
+        side: which half, 1 or −1.
     """
-    direction = crossing_direction(curve.derivative(at.y), at.tangent, multiplicity)
+    direction = side * crossing_direction(curve.derivative(at.y), at.tangent, multiplicity)
     for distance in DISTANCES:
         guess = at.y + distance * direction
         found = curve.correct(guess, Plane(direction, float(direction @ guess)))

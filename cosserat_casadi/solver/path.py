@@ -218,7 +218,7 @@ def follow_path(
     value: npt.ArrayLike,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
-    branch: bool = False,
+    branch: int = 0,
     settings: ArcSettings | None = None,
     progress: Progress | None = None,
 ) -> EquilibriumPath:
@@ -232,7 +232,8 @@ def follow_path(
         name: the input, such as "push.force".
         value: its value at factor 1, shaped as the input, SI units.
         values: other inputs by name; those not named keep the scene's values.
-        branch: whether to leave at the first bifurcation along the branch that crosses there.
+        branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
+            for the other half of that branch, 0 goes straight on.
         settings: limits.
         progress: told the largest factor reached.
 

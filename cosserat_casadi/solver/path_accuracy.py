@@ -34,7 +34,7 @@ def follow_scene_path(
     value: npt.ArrayLike,
     values: Mapping[str, npt.ArrayLike] | None = None,
     *,
-    branch: bool = False,
+    branch: int = 0,
     settings: ArcSettings | None = None,
     progress: Progress | None = None,
     report: Report | None = None,
@@ -50,7 +50,7 @@ def follow_scene_path(
         name: as in :func:`follow_path`, like all that follow but the last.
         value: its value at factor 1.
         values: other inputs.
-        branch: whether to leave at the first bifurcation.
+        branch: number of the bifurcation to leave at.
         settings: limits.
         progress: told the largest factor reached.
         report: told the discretisation.

@@ -44,7 +44,7 @@ class Resolution:
     def ratio(self) -> float:
         """Share of the error that two modes more leave."""
         two, four = self._without(2), self._without(4)
-        if not np.isfinite(four):
+        if not np.isfinite(two + four):
             return SLOWEST
         return float(np.clip(two / four, FASTEST, SLOWEST)) if four > 0 else FASTEST
 
@@ -78,4 +78,5 @@ class Resolution:
 
 
 def _size(shift: FloatArray) -> float:
-    return float(np.abs(shift).max())
+    """Largest change; infinite where a coarser model was so far off that it could not be foreseen."""
+    return float(np.abs(shift).max()) if np.all(np.isfinite(shift)) else float("inf")

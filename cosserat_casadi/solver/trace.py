@@ -31,7 +31,7 @@ class PathOutcome(Enum):
     MAX_STEPS = "The path was not followed further: the steps ran out before factor 1."
     TURNED_BACK = "The path led back: its factor fell below -1."
     CLOSED = "The path is closed: it came back to its start without reaching factor 1."
-    NO_BIFURCATION = "No branch: the path reached factor 1 without a bifurcation."
+    NO_BIFURCATION = "No branch: the path reached factor 1 before the bifurcation to leave at."
     NO_BRANCH = "No branch: none was found at the bifurcation."
     UNRESOLVED = (
         "The path of the discrete model reached its end, but the rod is not resolved to the tolerance asked for: "
@@ -61,12 +61,13 @@ class Trace:
     branch: int | None = None
 
 
-def trace(curve: Curve, *, branch: bool = False, progress: Progress | None = None) -> Trace:
+def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) -> Trace:
     """Follow a curve from the start of its path, at factor 0, until the factor first reaches 1.
 
     Args:
         curve: the curve.
-        branch: whether to leave at the first bifurcation along the branch that crosses there.
+        branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
+            for the other half of that branch, 0 goes straight on.
         progress: told the largest factor reached, in [0, 1].
     """
     y = np.append(curve.path.start, 0.0)
@@ -75,7 +76,7 @@ def trace(curve: Curve, *, branch: bool = False, progress: Progress | None = Non
         return Trace([], outcome=PathOutcome.NO_START)
     found, step, best = Trace([first]), curve.settings.first, 0.0
     for _ in range(curve.settings.steps):
-        step = _next(curve, found, step, leave=branch and found.branch is None)
+        step = _next(curve, found, step, leave=branch if found.branch is None else 0)
         best = max(best, min(found.points[-1].factor, 1.0))
         if progress is not None:
             progress(best)
@@ -85,7 +86,7 @@ def trace(curve: Curve, *, branch: bool = False, progress: Progress | None = Non
     return found
 
 
-def _next(curve: Curve, found: Trace, step: float, *, leave: bool) -> float:
+def _next(curve: Curve, found: Trace, step: float, *, leave: int) -> float:
     """Try one step and add what it finds; the step to try next."""
     here = found.points[-1]
     step = curve.bounded(here, step)
@@ -97,12 +98,13 @@ def _next(curve: Curve, found: Trace, step: float, *, leave: bool) -> float:
         return step / 2
     end = _end(Arc(curve, here, advanced[0]))
     passed = [event for event in events or [] if event.point.length <= end.length]
-    if leave and any(event.kind == "bifurcation" for event in passed):
-        _leave(curve, found, passed)
+    position = _place_to_leave(found, passed, abs(leave))
+    if position is not None:
+        _leave(curve, found, passed[: position + 1], 1 if leave > 0 else -1)
         return curve.settings.first
     found.points.append(end)
     found.events += passed
-    found.outcome = _outcome(found, step, missing=leave)
+    found.outcome = _outcome(found, step, missing=leave != 0)
     return step * (GROWTH if advanced[1] <= curve.settings.quick else 1.0)
 
 
@@ -119,13 +121,21 @@ def _end(arc: Arc) -> ArcPoint:
     return point or near
 
 
-def _leave(curve: Curve, found: Trace, passed: list[Event]) -> None:
-    """From the first bifurcation of a step onto the branch that crosses there."""
-    position = next(i for i, event in enumerate(passed) if event.kind == "bifurcation")
-    found.events += passed[: position + 1]
-    event = passed[position]
+def _place_to_leave(found: Trace, passed: list[Event], number: int) -> int | None:
+    """Which event of a step is the bifurcation of that number along the curve; None where it does not lie there."""
+    if not number:
+        return None
+    before = sum(event.kind == "bifurcation" for event in found.events)
+    places = [i for i, event in enumerate(passed) if event.kind == "bifurcation"]
+    return places[number - before - 1] if before < number <= before + len(places) else None
+
+
+def _leave(curve: Curve, found: Trace, passed: list[Event], side: int) -> None:
+    """From the last of these events onto one half of the branch that crosses there."""
+    event = passed[-1]
+    found.events += passed
     found.points.append(event.point)
-    first = switch(curve, event.point, event.multiplicity)
+    first = switch(curve, event.point, event.multiplicity, side)
     if first is None:
         found.outcome = PathOutcome.NO_BRANCH
         return

@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.solver.accuracy import pose_distance
 from cosserat_casadi.solver.cost import foreseen_operations
 from cosserat_casadi.solver.preview import Preview
@@ -130,3 +131,19 @@ def test_choice_is_cheaper_than_its_neighbours() -> None:
     coarser = replace(chosen, nodes=chosen.nodes - 2)
     for changed in (fewer, coarser):
         assert pose_distance(solve(build(wanted, {"rod": changed})), truth) > 0.5e-7
+
+
+class _Blind:
+    """A preview that cannot foresee fewer modes."""
+
+    discretisation = {"rod": Discretisation((5,), 12)}
+    model = property(lambda self: self)
+
+    def mode_shift(self, modes: object) -> np.ndarray:
+        return np.full(12, np.nan)
+
+
+def test_what_cannot_be_foreseen_is_an_infinite_error() -> None:
+    resolution = Resolution(_Blind())  # type: ignore[arg-type]
+    assert resolution.modes_error == np.inf
+    assert resolution.modes_lacking(1e-3) > 0

@@ -67,6 +67,25 @@ def test_buckled_column_vs_elliptic_integrals(strain: str, ratio: float) -> None
         assert_allclose([np.hypot(tip[0], tip[1]), tip[2]], elastica(ratio * factor), rtol=0, atol=1e-6)
 
 
+def test_both_halves_of_both_branches_of_the_column() -> None:
+    """The second branch is the elastica of a third of the length, three times: it leaves at 9 P_c and is unstable."""
+    model = column()
+    halves = {k: follow_path(model, "push.force", [0, 0, -9.1 * CRITICAL], branch=k) for k in (1, -1, 2, -2)}
+    ends = {k: path.tip().position[-1] for k, path in halves.items()}
+    for k in (1, 2):
+        assert halves[k].converged
+        assert halves[-k].converged
+        assert_allclose(ends[-k], ends[k] * [-1, 1, 1], rtol=0, atol=1e-9)
+        assert_allclose(9.1 * halves[k].events[-1].factor, (2 * k - 1) ** 2, rtol=1e-9, atol=0)
+    x, z = elastica(9.1 / 9)
+    # Three quarter waves of the same elastica: two of them cancel sideways.
+    assert_allclose([abs(ends[2][0]), ends[2][2]], [x / 3, z], rtol=0, atol=1e-8)
+    assert halves[1].stable is not None
+    assert halves[2].stable is not None
+    assert halves[1].stable[-1]
+    assert not halves[2].stable[-1]
+
+
 def test_round_column_loses_two_stiffnesses_at_once() -> None:
     path = follow_path(column("kirchhoff"), "push.force", [0, 0, -2 * CRITICAL])
     assert path.converged

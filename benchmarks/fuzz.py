@@ -1,0 +1,95 @@
+"""Random legal scenes at the ends of what is legal: does each end in a true outcome?
+
+Counts outcomes, the longest solve and the worst violation of an independent weak form. `--write` puts the figures
+into docs/hard-cases.md. `--log FILE` keeps one line a scene, and goes on from there.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import track
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))
+
+from tests.fuzz.verdict import Verdict, verdict  # noqa: E402
+from tests.reference.extreme_scenes import extreme_scene  # noqa: E402
+
+DOCS = ROOT / "docs" / "hard-cases.md"
+BEGIN, END = "<!-- fuzz: written by benchmarks/fuzz.py -->", "<!-- end of fuzz -->"
+WORDS = {
+    "converged": "equilibrium found, checked",
+    "unresolved": "an equilibrium of the discrete model, said to be unresolved",
+    "load_stalled": "the load stalled, said so",
+    "max_iterations": "iterations ran out, said so",
+    "singular": "singular Jacobian, said so",
+    "not_finite": "a value was not finite, said so",
+    "refused": "refused: the support lies outside what the rod can move in",
+}
+
+
+def known(log: Path | None) -> dict[int, Verdict]:
+    """Scenes judged before."""
+    if log is None or not log.exists():
+        return {}
+    lines = (json.loads(line) for line in log.read_text().splitlines())
+    return {line.pop("seed"): Verdict(**{**line, "faults": tuple(line["faults"])}) for line in lines}
+
+
+def summary(found: dict[int, Verdict]) -> str:
+    """Table of the outcomes and a line of figures."""
+    counts = Counter(v.outcome for v in found.values())
+    rows = [f"| `{outcome}` | {WORDS.get(outcome, outcome)} | {count:,} |" for outcome, count in counts.most_common()]
+    longest = max(v.seconds for v in found.values())
+    checked = [v for v in found.values() if v.outcome == "converged"]
+    weak = sorted(v.weak for v in checked) or [0.0]
+    faulty = [seed for seed, v in sorted(found.items()) if v.faults]
+    figures = (
+        f"{len(found):,} scenes; {len(faulty)} with a fault; longest {longest:.0f} s. Violation of the weak form by "
+        f"what converged: median {weak[len(weak) // 2]:.0e}, 95 % {weak[int(0.95 * (len(weak) - 1))]:.0e}, "
+        f"worst {weak[-1]:.0e}, where the user fixed a discretisation too coarse and the estimate says so."
+    )
+    return "\n".join(["| outcome | | scenes |", "|---|---|---|", *rows, "", figures])
+
+
+def write(text: str) -> None:
+    """Put the figures between their marks."""
+    before, rest = DOCS.read_text().split(BEGIN)
+    DOCS.write_text(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
+
+
+def main(
+    count: Annotated[int, typer.Option(help="Scenes.")] = 10_000,
+    first: Annotated[int, typer.Option(help="Seed of the first.")] = 0,
+    log: Annotated[Path | None, typer.Option(help="One line a scene; a second run goes on from it.")] = None,
+    into_docs: Annotated[bool, typer.Option("--write", help="Put the figures into docs/hard-cases.md.")] = False,
+) -> None:
+    """Judge scenes, print the figures; exit code 1 if one has a fault."""
+    found = known(log)
+    if log is not None:
+        log.parent.mkdir(parents=True, exist_ok=True)
+    for seed in track(range(first, first + count), "Scenes", disable=not sys.stdout.isatty()):
+        if seed in found:
+            continue
+        found[seed] = verdict(extreme_scene(seed))
+        for fault in found[seed].faults:
+            print(f"seed {seed}: {found[seed].outcome}: {fault}", flush=True)
+        if log is not None:
+            with log.open("a") as file:
+                file.write(json.dumps({"seed": seed, **asdict(found[seed])}) + "\n")
+    text = summary({seed: found[seed] for seed in range(first, first + count)})
+    print(text)
+    if into_docs:
+        write(text)
+    raise typer.Exit(int(any(v.faults for v in found.values())))
+
+
+if __name__ == "__main__":
+    typer.run(main)

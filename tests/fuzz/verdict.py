@@ -1,0 +1,111 @@
+"""One scene of the fuzz: solved, and what is claimed checked by other means."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi import SceneError, Solution, result, scene_from_dict, solve_scene
+from tests.reference.rods import rod_of
+from tests.reference.weak_form import Claim, Violation, violation
+
+UNIT = 1e-9
+"""Largest deviation of a quaternion's length from one, beside what the estimate allows."""
+
+ROUNDING = 1e-8
+"""Violation of the weak form that is not asked about: rounding of long stiff rods, and of the check itself."""
+
+SLACK, SLACK_STRAIN = 10.0, 1000.0
+"""Factors on the estimated error of the shape: for poses, and for stresses, which follow derivatives of the shape.
+
+The tip's own estimate is no measure here: the tip is superconvergent, the strain between the nodes is not.
+"""
+
+SMALL = 0.1
+"""Error estimate above which a solution says of itself that it is not to be built on; nothing more is asked then."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a scene.
+
+    Attributes:
+        outcome: the word of the result file, or "refused".
+        seconds: how long it took.
+        weak: violation of the weak form where it converged, else zero.
+        gap: distance of the tip to the one integrated from the claimed strain, over length; else zero.
+        faults: what is wrong, in words; empty for a true outcome.
+    """
+
+    outcome: str
+    seconds: float
+    weak: float = 0.0
+    gap: float = 0.0
+    faults: tuple[str, ...] = ()
+
+
+def verdict(tables: dict[str, Any]) -> Verdict:
+    """Solve a scene and judge the answer. What the package raises, but for a refusal, is a fault."""
+    start = time.perf_counter()
+    try:
+        solution = solve_scene(scene_from_dict(tables))
+        written = result(solution)
+    except SceneError:
+        return Verdict("refused", time.perf_counter() - start)
+    except Exception as error:
+        said = f"{type(error).__name__}: {error}"
+        return Verdict("raised", time.perf_counter() - start, faults=(said,))
+    seconds = time.perf_counter() - start
+    if not solution.converged:
+        said = () if solution.message and written["converged"] is False else ("a failure without a sentence",)
+        return Verdict(solution.outcome.label, seconds, faults=said)
+    return _judged(tables, solution, written, seconds)
+
+
+def _judged(tables: dict[str, Any], solution: Solution, written: Any, seconds: float) -> Verdict:
+    found, length = evaluate(tables, solution), tables["rods"][0]["length"]
+    gap = float(np.abs(found.position - solution.tip().position[0]).max() / length)
+    shape = _estimate(solution)
+    faults = []
+    if not _finite(written):
+        faults.append("a number is not finite")
+    if shape <= SMALL:
+        lengths = np.linalg.norm(solution.model.fields["rod"](solution.x, solution.inputs)[1].full(), axis=0)
+        checks = {
+            "quaternions off unit length": (np.abs(lengths - 1).max(), SLACK * shape + UNIT),
+            "gap at the tip": (gap, SLACK * shape + ROUNDING),
+            "weak form": (found.weak, SLACK_STRAIN * shape + ROUNDING),
+            "wrench left at the tip": (found.tip, SLACK_STRAIN * shape + ROUNDING),
+        }
+        faults += [
+            f"{name}: {value:.2g} > {bound:.2g}" for name, (value, bound) in checks.items() if not value <= bound
+        ]
+    return Verdict("converged", seconds, found.weak, gap, tuple(faults))
+
+
+def evaluate(tables: dict[str, Any], solution: Solution) -> Violation:
+    """The weak form on what a solution claims."""
+    discretisation, base = solution.model.discretisation["rod"], solution.base_wrench()
+    claim = Claim(solution.strain, base.force, base.moment, discretisation.breaks, discretisation.modes)
+    held = next((support["kind"] for support in tables.get("supports", [])), None)
+    bending = solution.model.frame.bases["rod"].rod.bending_stiffness
+    return violation(rod_of(tables), claim, bending, held)
+
+
+def _estimate(solution: Solution) -> float:
+    """Estimated error of the shape; infinite where there is none."""
+    estimates = (solution.error_estimate, solution.shape_error_estimate)
+    known = [estimate for estimate in estimates if estimate is not None]
+    return max(known) if known else np.inf
+
+
+def _finite(written: Any) -> bool:
+    """Whether every number of a result file is finite."""
+    if isinstance(written, dict):
+        return all(map(_finite, written.values()))
+    if isinstance(written, list | tuple):
+        return all(map(_finite, written))
+    return not isinstance(written, float) or bool(np.isfinite(written))
