@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.cost import foreseen_time, spread_on
 from cosserat_casadi.solver.preview import Modes, Preview
 
 MODES_SHARE = 0.6
@@ -218,7 +218,9 @@ class _GridSearch:
         return most
 
     def _cost(self, order: str, nodes: int) -> float:
-        return foreseen_operations(self.trim.preview.model.frame.bases[self.name].rod, self._grid(order, nodes))
+        model = self.trim.preview.model
+        rod = model.frame.bases[self.name].rod
+        return foreseen_time(rod, self._grid(order, nodes), spread_on(model.scene, self.name))
 
     def _grid(self, order: str, nodes: int) -> Discretisation:
         return replace(self.grids[self.name], nodes=nodes, transport=order)

@@ -1,0 +1,2 @@
+def print_report(*a): pass
+def write_report(*a): pass
