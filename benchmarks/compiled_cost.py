@@ -1,13 +1,12 @@
 """What discretisations of random scenes cost once compiled, beside what the solver foresees without building them.
 
-Rows go to build/dial/compiled.csv one by one: the same command goes on where it was stopped. The factor between
-foreseen cost and microseconds, and how far single rows are from it, are printed.
+Rows go to build/dial/compiled.csv one by one: the same command goes on where it was stopped. How far the law is from
+them is printed; its factors in solver/cost.py were fitted to these rows.
 """
 
 from __future__ import annotations
 
-import csv
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -15,14 +14,15 @@ import numpy as np
 import typer
 from random_rods import ROD, scene_at
 from rich.progress import Progress
+from rows import append, read
 
 from cosserat_casadi import build, solve_scene
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.compiled import find_compiler
-from cosserat_casadi.codegen.kernels import STRAIGHT, scalar
+from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.cost import STRAIGHT, foreseen_time, spread_on
 
 FILE = Path(__file__).parents[1] / "build" / "dial" / "compiled.csv"
 FIRST = 3000
@@ -66,7 +66,8 @@ def compiled(model: Model, seed: int, tolerance: float) -> Compiled | None:
         return None
     return Compiled(
         seed, tolerance, len(rod.turning_axes), " ".join(map(str, d.modes)), d.elements, d.nodes, d.transport,
-        foreseen_operations(rod, d), model.operations(model.jacobian), instructions, instructions <= STRAIGHT,
+        foreseen_time(rod, d, spread_on(model.scene, ROD)), model.operations(model.jacobian),
+        instructions, instructions <= STRAIGHT,
         times.jacobian, times.igm, times.warm, times.cold,
     )  # fmt: skip
 
@@ -87,44 +88,25 @@ def varied(picked: Discretisation, seed: int) -> Discretisation:
     return replace(picked, nodes=nodes, transport=transport or picked.transport)
 
 
-def read(file: Path = FILE) -> list[dict[str, str]]:
-    if not file.exists():
-        return []
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
-
-
-def append(file: Path, row: object) -> None:
-    """One row more; the head first where the file is new."""
-    new = not file.exists()
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("a", newline="") as lines:
-        writer = csv.DictWriter(lines, [f.name for f in fields(row)])  # type: ignore[arg-type]
-        if new:
-            writer.writeheader()
-        writer.writerow(asdict(row))  # type: ignore[call-overload]
-
-
 def main(samples: Annotated[int, typer.Option(help="Discretisations.")] = 40) -> None:
     """Compile what is missing; print the law's factor and its scatter."""
-    done = {int(row["seed"]) for row in read()}
+    done = {int(row["seed"]) for row in read(FILE)}
     with Progress(transient=True) as bar:
         for seed in bar.track(range(FIRST, FIRST + samples), description="compiling"):
             row = None if seed in done else sample(seed)
             if row is not None:
-                append(FILE, row)
-    report(read())
+                append(FILE, [row])
+    report(read(FILE))
 
 
 def report(rows: list[dict[str, str]]) -> None:
-    for kind in ("True", "False"):
-        chosen = [row for row in rows if row["straight"] == kind]
-        if len(chosen) < 2:
-            continue
-        ratio = np.array([float(row["residual_jacobian"]) / float(row["foreseen"]) for row in chosen])
-        spread = np.exp(np.std(np.log(ratio)))
-        words = "straight code" if kind == "True" else "loops"
-        print(f"{words}: {len(ratio)} rows, {1e3 * np.exp(np.log(ratio).mean()):.3f} ns an operation, × or / {spread:.2f}")
+    """Compiled over foreseen time, for straight-line code and for loops."""
+    for straight, name in (("True", "straight code"), ("False", "loops")):
+        chosen = [row for row in rows if row["straight"] == straight]
+        if chosen:
+            ratio = np.log([float(row["residual_jacobian"]) / float(row["foreseen"]) for row in chosen])
+            middle, spread = np.exp(np.mean(ratio)), np.exp(np.std(ratio))
+            print(f"{name}: {len(chosen)} rows, compiled / foreseen {middle:.2f}, × or / {spread:.2f}")
 
 
 if __name__ == "__main__":

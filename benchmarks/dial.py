@@ -20,7 +20,7 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from dial_report import print_report, write_report
+from dial_report import Results, write_results
 from random_rods import ROD, scene_at, tables
 from rich.progress import Progress
 from rows import append, read
@@ -31,7 +31,7 @@ from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.accuracy import largest_turn
+from cosserat_casadi.solver.accuracy import largest_turn, prolong
 from cosserat_casadi.solver.cost import foreseen_time, spread_on
 from cosserat_casadi.solver.preview import Preview
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
@@ -58,12 +58,9 @@ class Row:
         estimate: error that the solution states.
         error: distance of the tip pose to the truth.
         reference: "shooting", or "finer" where that fails.
-        apart: distance of shooting and the finer discretisation, which bounds the error of both.
         cold: distance to shooting that followed the loads from nothing by itself.
         cost: foreseen time of the pick, µs.
-        cheapest: foreseen time of the cheapest found that meets the tolerance, the pick included, µs.
         chosen: the pick.
-        best: the cheapest.
     """
 
     seed: int
@@ -73,12 +70,30 @@ class Row:
     estimate: float = np.nan
     error: float = np.nan
     reference: str = ""
-    apart: float = np.nan
     cold: float = np.nan
     cost: float = np.nan
-    cheapest: float = np.nan
     chosen: str = ""
-    best: str = ""
+
+
+@dataclass(frozen=True)
+class Cheapest:
+    """The cheapest discretisation of a scene that truly meets a tolerance, the pick included.
+
+    Attributes:
+        seed: of the scene.
+        tolerance: asked for.
+        cost: foreseen time of the pick, µs.
+        cheapest: that of the cheapest; not a number where none was found.
+        chosen: the pick.
+        best: the cheapest.
+    """
+
+    seed: int
+    tolerance: float
+    cost: float
+    cheapest: float
+    chosen: str
+    best: str
 
 
 @dataclass(frozen=True)
@@ -95,20 +110,11 @@ class Timed:
     cold_best: float
 
 
-@dataclass(frozen=True)
-class Truth:
-    """What picks are judged by: the tip of shooting, and a far finer solution for previews."""
-
-    tip: np.ndarray
-    reference: str
-    apart: float
-    finer: Solution
+# True errors
 
 
-# One scene
-
-
-def run_scene(seed: int, cold: bool, brute: bool) -> list[Row]:
+def run_scene(seed: int, cold: bool) -> list[Row]:
+    """Four tolerances."""
     rows, solutions = [], []
     for tolerance in TOLERANCES:
         begin = time.perf_counter()
@@ -117,56 +123,53 @@ def run_scene(seed: int, cold: bool, brute: bool) -> list[Row]:
         estimate = np.nan if solution.error_estimate is None else solution.error_estimate
         rows.append(Row(seed, tolerance, solution.outcome.label, seconds, estimate))
         solutions.append(solution)
-    truth = truth_of(seed, solutions)
-    if truth is None:
+    found = [solution for solution in solutions if solution.converged]
+    if not found:
         return rows
+    truth, reference = true_tip(found[-1])
     followed = cold_tip(seed) if cold else None
     return [
-        judged(row, solution, truth, followed, brute) if solution.converged else row
+        judged(row, solution, truth, followed, reference) if solution.converged else row
         for row, solution in zip(rows, solutions, strict=True)
     ]
 
 
-def judged(row: Row, solution: Solution, truth: Truth, followed: np.ndarray | None, brute: bool) -> Row:
+def judged(row: Row, solution: Solution, truth: np.ndarray, followed: np.ndarray | None, reference: str) -> Row:
     pick = solution.model.discretisation[ROD]
-    row = replace(
+    return replace(
         row,
-        error=distance(tip(solution), truth.tip),
-        reference=truth.reference,
-        apart=truth.apart,
+        error=distance(tip(solution), truth),
+        reference=reference,
         cold=np.nan if followed is None else distance(tip(solution), followed),
         cost=cost_of(solution, pick),
         chosen=words(pick),
     )
-    if not brute:
-        return row
-    cheapest, best = search(truth, solution, row)
-    return replace(row, cheapest=cheapest, best=best)
 
 
-def truth_of(seed: int, solutions: list[Solution]) -> Truth | None:
-    """None where no tolerance gave an equilibrium."""
-    found = [solution for solution in solutions if solution.converged]
-    finer = far_finer(seed, found[-1]) if found else None
-    if finer is None:
-        return None
-    basis, base = finer.model.frame.bases[ROD], finer.base_wrench(ROD)
-    values = load_values(finer.model.scene, finer.model.inputs, finer.inputs)
+def true_tip(near: Solution) -> tuple[np.ndarray, str]:
+    """Tip of shooting that starts at the clamp's wrench of a solution; that of a far finer solution where it fails."""
+    basis, base = near.model.frame.bases[ROD], near.base_wrench(ROD)
+    values = load_values(near.model.scene, near.model.inputs, near.inputs)
     try:
-        state = shoot(finer.model.scene, basis.rod, values, [1.0], np.concatenate([base.force, base.moment]))
+        state = shoot(near.model.scene, basis.rod, values, [1.0], np.concatenate([base.force, base.moment]))
     except ShootingError:
-        return Truth(tip(finer), "finer", np.nan, finer)
-    shot = np.concatenate([state.position[0] / state.length, state.rotation[0].ravel()])
-    return Truth(shot, "shooting", distance(shot, tip(finer)), finer)
+        return tip(far_finer(near)), "finer"
+    return np.concatenate([state.position[0] / state.length, state.rotation[0].ravel()]), "shooting"
 
 
-def far_finer(seed: int, solution: Solution) -> Solution | None:
-    """Far finer than the witness of the tightest tolerance, from a cold start."""
-    scene = scene_at(seed, TOLERANCES[-1])
-    modes = max(solution.model.discretisation[ROD].modes) + 8
-    nodes = 2 * modes + 16 + ceil(largest_turn(solution))
-    finer = solve(build(scene, discretise(scene, modes, nodes, "magnus8")))
-    return finer if finer.converged else None
+def far_finer(near: Solution) -> Solution:
+    """Far finer than the witness of the tightest tolerance.
+
+    Raises:
+        RuntimeError: it does not converge.
+    """
+    modes = max(near.model.discretisation[ROD].modes) + 8
+    nodes = 2 * modes + 16 + ceil(largest_turn(near))
+    model = build(near.model.scene, discretise(near.model.scene, modes, nodes, "magnus8"))
+    finer = solve(model, start=prolong(near, model))
+    if not finer.converged:
+        raise RuntimeError(finer.message)
+    return finer
 
 
 def tip(solution: Solution) -> np.ndarray:
@@ -204,17 +207,30 @@ def from_words(solution: Solution, text: str) -> Discretisation:
 # The cheapest discretisation by brute force
 
 
-def search(truth: Truth, solution: Solution, row: Row) -> tuple[float, str]:
-    """The cheapest that truly meets the tolerance, and its foreseen time; the pick where nothing cheaper does."""
-    meets = row.error <= row.tolerance
-    limit = row.cost if meets else np.inf
-    candidates = Brute(Preview(truth.finer), row.tolerance, solution.model.discretisation[ROD]).ranked()
-    cheaper = [candidate for candidate in candidates if cost_of(solution, candidate) < limit]
+def run_search(rows: list[dict[str, str]]) -> list[Cheapest]:
+    """All tolerances of one scene."""
+    judged_rows = [row for row in rows if row["chosen"]]
+    if not judged_rows:
+        return [Cheapest(int(row["seed"]), float(row["tolerance"]), np.nan, np.nan, "", "") for row in rows]
+    seed = int(rows[0]["seed"])
+    finer = far_finer(solve_scene(scene_at(seed, float(judged_rows[-1]["tolerance"]))))
+    truth, _ = true_tip(finer)
+    return [search(finer, truth, row) for row in judged_rows]
+
+
+def search(finer: Solution, truth: np.ndarray, row: dict[str, str]) -> Cheapest:
+    """The cheapest that truly meets the tolerance; the pick where nothing cheaper does."""
+    tolerance, cost = float(row["tolerance"]), float(row["cost"])
+    meets = float(row["error"]) <= tolerance
+    candidates = Brute(Preview(finer), tolerance, from_words(finer, row["chosen"])).ranked()
+    cheaper = [candidate for candidate in candidates if cost_of(finer, candidate) < (cost if meets else np.inf)]
+    best = (cost, row["chosen"]) if meets else (np.nan, "")
     for candidate in cheaper[:TRIED]:
-        found = solve(build(truth.finer.model.scene, {ROD: candidate}))
-        if found.converged and distance(tip(found), truth.tip) <= row.tolerance:
-            return cost_of(solution, candidate), words(candidate)
-    return (row.cost, row.chosen) if meets else (np.nan, "")
+        found = solve(build(finer.model.scene, {ROD: candidate}))
+        if found.converged and distance(tip(found), truth) <= tolerance:
+            best = cost_of(finer, candidate), words(candidate)
+            break
+    return Cheapest(int(row["seed"]), tolerance, cost, best[0], row["chosen"], best[1])
 
 
 @dataclass
@@ -322,33 +338,43 @@ def compile_sample(rows: list[dict[str, str]], count: int, file: Path) -> None:
 # The whole run
 
 
-def run_scenes(seeds: range, cold: int, brute: int, file: Path) -> None:
+def run_scenes(seeds: range, cold: int, file: Path) -> None:
     done = {int(row["seed"]) for row in read(file)}
     with Progress(transient=True) as bar:
-        for k, seed in enumerate(bar.track(seeds, description="scenes")):
+        for k, seed in enumerate(bar.track(seeds, description="true errors")):
             if seed not in done:
-                append(file, run_scene(seed, k < cold, k < brute))
+                append(file, run_scene(seed, k < cold))
+
+
+def run_searches(seeds: range, scenes: list[dict[str, str]], file: Path) -> None:
+    done = {int(row["seed"]) for row in read(file)}
+    with Progress(transient=True) as bar:
+        for seed in bar.track(seeds, description="cheapest"):
+            if seed not in done:
+                append(file, run_search([row for row in scenes if int(row["seed"]) == seed]))
 
 
 def main(
     scenes: Annotated[int, typer.Option(help="Number of random scenes.")] = 200,
     seed: Annotated[int, typer.Option(help="Seed of the first.")] = 1000,
-    brute: Annotated[int, typer.Option(help="Scenes whose cheapest discretisation is searched.")] = 200,
+    searched: Annotated[int, typer.Option(help="Scenes whose cheapest discretisation is searched.")] = 200,
     cold: Annotated[int, typer.Option(help="Scenes that shooting follows from the unloaded rod too.")] = 20,
     compiled: Annotated[int, typer.Option(help="Picks that are compiled beside the cheapest.")] = 20,
     folder: Annotated[Path, typer.Option(help="Where the rows are kept.")] = FOLDER,
-    write: Annotated[bool, typer.Option("--write", help="Put figures and table into docs/accuracy.md.")] = False,
+    write: Annotated[bool, typer.Option("--write", help="Put figures and table into docs.")] = False,
 ) -> None:
     """Judge the dial; what is measured already is not measured again."""
-    seeds, chosen, sample = range(seed, seed + scenes), folder / "scenes.csv", folder / "timed.csv"
+    judged_rows, cheapest, sample = (folder / name for name in ("scenes.csv", "cheapest.csv", "timed.csv"))
     try:
-        run_scenes(seeds, cold, brute, chosen)
-        compile_sample(read(chosen), compiled, sample)
+        run_scenes(range(seed, seed + scenes), cold, judged_rows)
+        run_searches(range(seed, seed + min(scenes, searched)), read(judged_rows), cheapest)
+        compile_sample(read(cheapest), compiled, sample)
     except KeyboardInterrupt:
         print("stopped; the same command goes on from here")
-    print_report(read(chosen), read(sample), read(folder / "compiled.csv"))
+    results = Results(read(judged_rows), read(cheapest), read(sample), read(folder / "compiled.csv"))
+    print(results.text)
     if write:
-        write_report(read(chosen), read(sample), read(folder / "compiled.csv"))
+        write_results(results)
 
 
 if __name__ == "__main__":
