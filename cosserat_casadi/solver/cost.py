@@ -86,7 +86,7 @@ def spread_on(scene: scenes.Scene, rod: str) -> Spread:
     )
 
 
-def foreseen_operations(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> Operations:  # noqa: B008
+def foreseen_operations(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> Operations:
     """Scalar operations of one rod's residual and Jacobian, approximately.
 
     Args:
@@ -103,12 +103,10 @@ def foreseen_operations(rod: RodProperties, chosen: Discretisation, spread: Spre
     structure += 32 * once * stretching + 0.6 * once**2 * turning * stretching
     follower = turning * (6 * once * nodes**2 + 9 * nodes + 6 * once * nodes * (turning + stretching))
     couple = 3 * twice * nodes * turning**2 + 9 * nodes * turning if len(rod.turning_axes) > 1 else 0.0
-    return Operations(
-        intervals * function, intervals * structure, spread.follower * follower, spread.couple * couple
-    )
+    return Operations(intervals * function, intervals * structure, spread.follower * follower, spread.couple * couple)
 
 
-def foreseen_time(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> float:  # noqa: B008
+def foreseen_time(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> float:
     """Time of one rod's residual and Jacobian compiled with ``gcc -O2``, µs on the machine that the law was fitted on.
 
     Args:
