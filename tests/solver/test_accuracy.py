@@ -121,6 +121,23 @@ def test_foreseen_operations_vs_counted(strain: str) -> None:
     assert_allclose(foreseen, counted, rtol=0.5)
 
 
+@pytest.mark.parametrize("seed", [301, 303, 306])
+def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
+    """Of the tip alone the same tolerance leaves other sections wrong by far more."""
+    wanted = [
+        scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": 1e-7, "shape": shape}})
+        for shape in (False, True)
+    ]
+    of_tip, of_shape = (solve_scene(one) for one in wanted)
+    chosen = of_shape.model.discretisation["rod"]
+    truth, X = fine(wanted[1], max(chosen.modes) + 7, 2 * chosen.nodes + 14), np.linspace(0, 1, 101)
+    assert of_shape.converged
+    assert of_shape.shape_error_estimate is not None
+    assert pose_distance(of_shape, truth, X) <= 1e-7
+    assert pose_distance(of_shape, truth, X) <= 1.1 * of_shape.shape_error_estimate
+    assert pose_distance(of_tip, truth, X) > 2e-7
+
+
 WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "body"}
 
 
