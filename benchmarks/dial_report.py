@@ -100,7 +100,8 @@ def write_results(results: Results) -> None:
     """Table and figure into the docs."""
     page = DOCS / "accuracy.md"
     before, rest = page.read_text().split(BEGIN)
-    page.write_text(f"{before}{BEGIN}\n{results.text}\n{END}{rest.split(END)[1]}")
+    picture = f"![True errors and costs of what tolerances pick]({FIGURE})"
+    page.write_text(f"{before}{BEGIN}\n{results.text}\n\n{picture}\n{END}{rest.split(END)[1]}")
     (DOCS / FIGURE).parent.mkdir(exist_ok=True)
     write_figure(_figure(results), DOCS / FIGURE, dpi=110)
 
@@ -110,7 +111,7 @@ def _law_sentence(rows: list[RowDict]) -> str:
     off = np.exp(np.abs(ratio - np.median(ratio)))
     return (
         f"Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by the law of `solver/cost.py`. "
-        f"Against {len(rows)} compiled discretisations it is off by a factor {np.median(off):.2f} in the median, "
+        f"From the {len(rows)} compiled discretisations that it was fitted to it is off by a factor {np.median(off):.2f} in the median, "
         f"{off.max():.2f} at worst, over times from {_numbers(rows, 'residual_jacobian').min():.2g} to "
         f"{_numbers(rows, 'residual_jacobian').max():.3g} µs."
     )
