@@ -107,13 +107,13 @@ def write_results(results: Results) -> None:
 
 
 def _law_sentence(rows: list[RowDict]) -> str:
-    ratio = np.log(_numbers(rows, "residual_jacobian") / _numbers(rows, "foreseen"))
+    times = _numbers(rows, "residual_jacobian")
+    ratio = np.log(times / _numbers(rows, "foreseen"))
     off = np.exp(np.abs(ratio - np.median(ratio)))
     return (
-        f"Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by the law of `solver/cost.py`. "
-        f"From the {len(rows)} compiled discretisations that it was fitted to it is off by a factor {np.median(off):.2f} in the median, "
-        f"{off.max():.2f} at worst, over times from {_numbers(rows, 'residual_jacobian').min():.2g} to "
-        f"{_numbers(rows, 'residual_jacobian').max():.3g} µs."
+        "Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by the law of `solver/cost.py`. "
+        f"From the {len(rows)} compiled discretisations it was fitted to, {times.min():.2g} to {times.max():.3g} µs, "
+        f"it is off by a factor {np.median(off):.2f} in the median, {off.max():.2f} at worst."
     )
 
 

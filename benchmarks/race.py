@@ -208,7 +208,8 @@ def readme_text(rows: Sequence[Raced]) -> str:
             literal_line(CASES["B1 Kirchhoff"]),
             f"![Error against time: exported C, shooting by hand, packages from PyPI](docs/{FIGURE})",
             "The last rod is where packages from PyPI come in: PyElastica, and SciPy's `solve_bvp`. "
-            "[docs/accuracy.md](docs/accuracy.md#beside-other-packages) has their figures and says what each could not do.",
+            "[docs/accuracy.md](docs/accuracy.md#beside-other-packages) has their figures and says what "
+            "each could not do.",
         ]
     )
 
