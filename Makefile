@@ -6,14 +6,15 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow fuzz bench lint format schema generated clean
+.PHONY: help demo test test-slow fuzz bench dial lint format schema generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make fuzz       10^4 random scenes at the ends of what is legal; writes figures to docs/hard-cases.md (hours)"
-	@echo "make bench      race the exported C against shooting solvers; writes the table of the README"
+	@echo "make bench      race the exported C against shooting solvers and packages; writes tables and figure"
+	@echo "make dial       judge what tolerances pick on 200 random scenes, resumable; writes tables and figure"
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema of the scene format anew"
@@ -41,7 +42,12 @@ fuzz: $(STAMP)
 	$(BIN)/python benchmarks/fuzz.py --write --log out/fuzz.jsonl
 
 bench: $(STAMP)
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python benchmarks/race.py --write
+
+dial: $(STAMP)
+	$(BIN)/python benchmarks/compiled_cost.py
+	$(BIN)/python benchmarks/dial.py --write
 
 format: $(STAMP)
 	$(BIN)/ruff check --fix .

@@ -1,50 +1,67 @@
-"""Does the tolerance pick a discretisation that meets it, and a cheap one? Random scenes, four tolerances.
+"""Does the tolerance pick a discretisation that meets it, and a cheap one? 200 random scenes, four tolerances.
 
-The true error of a solution is its distance to a far finer one, for some scenes also to an independent shooting
-method. The cheapest discretisation is searched by brute force: all intervals and integrators of a wide window, and
-for each the per-component modes by several greedy descents. Candidates are ranked by previews below the fine solution;
-the best ones are built, solved, judged by their true error, and their operations are counted. Cost is the number of
-scalar operations of residual and Jacobian.
+The true error of a pick is its distance to shooting (the strong form, DOP853 at 1e-13), which starts from a far finer
+discretisation; where shooting does not get there, that one stands in. The cheapest discretisation is searched by brute
+force: all intervals and integrators of a wide window, and for each the modes of every component by several greedy
+descents. Candidates cheaper than the pick, by the time that solver/cost.py foresees, are built, solved and judged by
+their true error, cheapest first. For a sample of picks, pick and cheapest are compiled with gcc -O2 and timed.
+
+Rows go to build/dial/*.csv one by one: Ctrl-C keeps them, and the same command goes on where it was stopped.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 import time
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field, replace
 from math import ceil
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import numpy as np
-from rich.console import Console
-from rich.progress import Progress, TimeRemainingColumn
-from rich.table import Table
+import typer
+from dial_report import Results, write_results
+from random_rods import ROD, scene_at, tables
+from rich.progress import Progress
+from rows import append, read
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from cosserat_casadi import Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
+from cosserat_casadi import Solution, build, discretise, solve, solve_scene
+from cosserat_casadi.bench.program import Program, Times
+from cosserat_casadi.bench.shooting import ShootingError, shoot
+from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.accuracy import largest_turn
-from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.accuracy import largest_turn, prolong
+from cosserat_casadi.solver.cost import foreseen_time, spread_on
 from cosserat_casadi.solver.preview import Preview
-from tests.reference.random_scenes import random_scene
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
-ROD = "rod"
+FOLDER = Path(__file__).parents[1] / "build" / "dial"
 DESCENTS = 3
 """Random descents in the modes for each grid, beside the greedy one."""
-COUNTED = 3
-"""Candidates of the brute force that are solved and whose operations are counted."""
+TRIED = 6
+"""Most candidates of the brute force that are solved."""
+GRIDS = 4
+"""Numbers of intervals looked at for each integrator, from the fewest that do."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Row:
-    """One scene at one tolerance; numbers that were not found are not numbers."""
+    """One scene at one tolerance; what was not found is not a number.
+
+    Attributes:
+        seed: of the scene.
+        tolerance: asked for.
+        outcome: label of the solution's outcome.
+        seconds: that the pick and its solution took.
+        estimate: error that the solution states.
+        error: distance of the tip pose to the truth.
+        reference: "shooting", or "finer" where that fails.
+        cold: distance to shooting that followed the loads from nothing by itself.
+        cost: foreseen time of the pick, µs.
+        chosen: the pick.
+    """
 
     seed: int
     tolerance: float
@@ -52,30 +69,52 @@ class Row:
     seconds: float
     estimate: float = np.nan
     error: float = np.nan
-    oracle_error: float = np.nan
-    operations: float = np.nan
-    cheapest: float = np.nan
+    reference: str = ""
+    cold: float = np.nan
+    cost: float = np.nan
     chosen: str = ""
-    best: str = ""
 
 
-# One scene
+@dataclass(frozen=True)
+class Cheapest:
+    """The cheapest discretisation of a scene that truly meets a tolerance, the pick included.
+
+    Attributes:
+        seed: of the scene.
+        tolerance: asked for.
+        cost: foreseen time of the pick, µs.
+        cheapest: that of the cheapest; not a number where none was found.
+        chosen: the pick.
+        best: the cheapest.
+    """
+
+    seed: int
+    tolerance: float
+    cost: float
+    cheapest: float
+    chosen: str
+    best: str
 
 
-def tables(seed: int) -> dict[str, Any]:
-    """A random scene; every second one with twice the tip force, up to 20 EI/L²."""
-    scene = random_scene(seed)
-    for load in scene["loads"]:
-        if seed % 2 and load["kind"] == "tip_wrench":
-            load["force"] = [2 * v for v in load["force"]]
-    return scene
+@dataclass(frozen=True)
+class Timed:
+    """Compiled times of a pick and of the cheapest, µs."""
+
+    seed: int
+    tolerance: float
+    foreseen_chosen: float
+    foreseen_best: float
+    jacobian_chosen: float
+    jacobian_best: float
+    cold_chosen: float
+    cold_best: float
 
 
-def scene_at(seed: int, tolerance: float) -> Scene:
-    return scene_from_dict({**tables(seed), "accuracy": {"tolerance": tolerance}})
+# True errors
 
 
-def run_scene(seed: int, shooting: bool, brute: bool) -> list[Row]:
+def run_scene(seed: int, cold: bool) -> list[Row]:
+    """Four tolerances."""
     rows, solutions = [], []
     for tolerance in TOLERANCES:
         begin = time.perf_counter()
@@ -84,29 +123,53 @@ def run_scene(seed: int, shooting: bool, brute: bool) -> list[Row]:
         estimate = np.nan if solution.error_estimate is None else solution.error_estimate
         rows.append(Row(seed, tolerance, solution.outcome.label, seconds, estimate))
         solutions.append(solution)
-    truth = finer(seed, solutions[-1]) if solutions[-1].converged else None
-    if truth is None:
+    found = [solution for solution in solutions if solution.converged]
+    if not found:
         return rows
-    oracle = oracle_tip(seed) if shooting else None
-    for row, solution in zip(rows, solutions, strict=True):
-        if not solution.converged:
-            continue
-        row.error = distance(tip(solution), tip(truth))
-        row.oracle_error = np.nan if oracle is None else distance(tip(solution), oracle)
-        if brute:
-            row.chosen = words(solution.model.discretisation[ROD])
-            row.operations = float(solution.model.operations(solution.model.jacobian))
-            row.cheapest, row.best = cheapest(truth, solution, row.tolerance, row.operations)
-    return rows
+    truth, reference = true_tip(found[-1])
+    followed = cold_tip(seed) if cold else None
+    return [
+        judged(row, solution, truth, followed, reference) if solution.converged else row
+        for row, solution in zip(rows, solutions, strict=True)
+    ]
 
 
-def finer(seed: int, solution: Solution) -> Solution | None:
-    """Far finer than the witness of the tightest tolerance, from a cold start."""
-    scene = scene_at(seed, TOLERANCES[-1])
-    modes = max(solution.model.discretisation[ROD].modes) + 8
-    nodes = 2 * modes + 16 + ceil(largest_turn(solution))
-    truth = solve(build(scene, discretise(scene, modes, nodes, "magnus8")))
-    return truth if truth.converged else None
+def judged(row: Row, solution: Solution, truth: np.ndarray, followed: np.ndarray | None, reference: str) -> Row:
+    pick = solution.model.discretisation[ROD]
+    return replace(
+        row,
+        error=distance(tip(solution), truth),
+        reference=reference,
+        cold=np.nan if followed is None else distance(tip(solution), followed),
+        cost=cost_of(solution, pick),
+        chosen=words(pick),
+    )
+
+
+def true_tip(near: Solution) -> tuple[np.ndarray, str]:
+    """Tip of shooting that starts at the clamp's wrench of a solution; that of a far finer solution where it fails."""
+    basis, base = near.model.frame.bases[ROD], near.base_wrench(ROD)
+    values = load_values(near.model.scene, near.model.inputs, near.inputs)
+    try:
+        state = shoot(near.model.scene, basis.rod, values, [1.0], np.concatenate([base.force, base.moment]))
+    except ShootingError:
+        return tip(far_finer(near)), "finer"
+    return np.concatenate([state.position[0] / state.length, state.rotation[0].ravel()]), "shooting"
+
+
+def far_finer(near: Solution) -> Solution:
+    """Far finer than the witness of the tightest tolerance.
+
+    Raises:
+        RuntimeError: it does not converge.
+    """
+    modes = max(near.model.discretisation[ROD].modes) + 8
+    nodes = 2 * modes + 16 + ceil(largest_turn(near))
+    model = build(near.model.scene, discretise(near.model.scene, modes, nodes, "magnus8"))
+    finer = solve(model, start=prolong(near, model))
+    if not finer.converged:
+        raise RuntimeError(finer.message)
+    return finer
 
 
 def tip(solution: Solution) -> np.ndarray:
@@ -114,9 +177,9 @@ def tip(solution: Solution) -> np.ndarray:
     return np.concatenate([pose.position[0] / length, pose.rotation[0].ravel()])
 
 
-def oracle_tip(seed: int) -> np.ndarray | None:
+def cold_tip(seed: int) -> np.ndarray | None:
     try:
-        found = solve_by_shooting(tables(seed))
+        found = solve_by_shooting(tables(seed), samples=2)
     except NoEquilibriumError:
         return None
     return np.concatenate([found.tip_position / tables(seed)["rods"][0]["length"], found.tip_rotation.ravel()])
@@ -126,28 +189,48 @@ def distance(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max())
 
 
+def cost_of(solution: Solution, candidate: Discretisation) -> float:
+    model = solution.model
+    return foreseen_time(model.frame.bases[ROD].rod, candidate, spread_on(model.scene, ROD))
+
+
 def words(d: Discretisation) -> str:
-    return f"{','.join(map(str, d.modes))} N{d.nodes} {d.transport}"
+    return f"{' '.join(map(str, d.modes))} | {d.nodes} | {d.transport}"
+
+
+def from_words(solution: Solution, text: str) -> Discretisation:
+    modes, nodes, transport = text.split(" | ")
+    near = solution.model.discretisation[ROD]
+    return replace(near, modes=tuple(map(int, modes.split())), nodes=int(nodes), transport=transport)
 
 
 # The cheapest discretisation by brute force
 
 
-def cheapest(truth: Solution, solution: Solution, tolerance: float, operations: float) -> tuple[float, str]:
-    """Operations of the cheapest discretisation found that truly meets the tolerance, the chosen one included."""
-    best, name = (operations, "chosen") if distance(tip(solution), tip(truth)) <= tolerance else (np.inf, "")
-    counted = 0
-    for candidate in Brute(Preview(truth), tolerance, solution.model.discretisation[ROD]).ranked():
-        model = build(truth.model.scene, {ROD: candidate})
-        found = solve(model)
-        if not found.converged or distance(tip(found), tip(truth)) > tolerance:
-            continue
-        counted += 1
-        count = float(model.operations(model.jacobian))
-        best, name = min((best, name), (count, words(candidate)))
-        if counted == COUNTED:
+def run_search(rows: list[dict[str, str]]) -> list[Cheapest]:
+    """All tolerances of one scene."""
+    judged_rows = [row for row in rows if row["chosen"]]
+    if not judged_rows:
+        return [Cheapest(int(row["seed"]), float(row["tolerance"]), np.nan, np.nan, "", "") for row in rows]
+    seed = int(rows[0]["seed"])
+    finer = far_finer(solve_scene(scene_at(seed, float(judged_rows[-1]["tolerance"]))))
+    truth, _ = true_tip(finer)
+    return [search(finer, truth, row) for row in judged_rows]
+
+
+def search(finer: Solution, truth: np.ndarray, row: dict[str, str]) -> Cheapest:
+    """The cheapest that truly meets the tolerance; the pick where nothing cheaper does."""
+    tolerance, cost = float(row["tolerance"]), float(row["cost"])
+    meets = float(row["error"]) <= tolerance
+    candidates = Brute(Preview(finer), tolerance, from_words(finer, row["chosen"])).ranked()
+    cheaper = [candidate for candidate in candidates if cost_of(finer, candidate) < (cost if meets else np.inf)]
+    best = (cost, row["chosen"]) if meets else (np.nan, "")
+    for candidate in cheaper[:TRIED]:
+        found = solve(build(finer.model.scene, {ROD: candidate}))
+        if found.converged and distance(tip(found), truth) <= tolerance:
+            best = cost_of(finer, candidate), words(candidate)
             break
-    return best, name
+    return Cheapest(int(row["seed"]), tolerance, cost, best[0], row["chosen"], best[1])
 
 
 @dataclass
@@ -160,7 +243,7 @@ class Brute:
     _shifts: dict[tuple[int, ...], np.ndarray] = field(default_factory=dict)
 
     def ranked(self) -> list[Discretisation]:
-        """Candidates that should meet the tolerance, by their foreseen operations."""
+        """Candidates that should meet the tolerance, by their foreseen time."""
         rng, found = np.random.default_rng(0), set()
         for transport, nodes, shift in self.grids():
             start = self.fewest_uniform(shift)
@@ -169,8 +252,7 @@ class Brute:
             for order in [None, *[rng.permutation(len(start)) for _ in range(DESCENTS)]]:
                 modes = self.greedy(start, shift) if order is None else self.in_turn(start, shift, order)
                 found.add(replace(self.near, modes=modes, nodes=nodes, transport=transport))
-        rod = self.preview.model.frame.bases[ROD].rod
-        return sorted(found, key=lambda d: foreseen_operations(rod, d))
+        return sorted(found, key=lambda d: cost_of(self.preview.witness, d))
 
     def grids(self) -> Iterator[tuple[str, int, np.ndarray]]:
         """Integrator, intervals and change of the tip that they make."""
@@ -186,7 +268,7 @@ class Brute:
                 if np.abs(shift).max() <= 2 * self.tolerance:
                     yield transport, nodes, shift
                     met += 1
-                if met == 4:
+                if met == GRIDS:
                     break
 
     def meets(self, modes: tuple[int, ...], shift: np.ndarray) -> bool:
@@ -217,72 +299,83 @@ def less(modes: tuple[int, ...], c: int) -> tuple[int, ...]:
     return (*modes[:c], modes[c] - 1, *modes[c + 1 :])
 
 
-# The table
+# Compiled times of a sample
 
 
-def summary(rows: list[Row]) -> Table:
-    table = Table(title=f"{len({row.seed for row in rows})} random scenes")
-    table.add_column("tolerance")
-    headings = ("scenes", "no equilibrium", "unresolved", "within, %", "worst error/tol", "error > estimate, %")
-    for heading in (*headings, "worst vs shooting", "cost ratio, median", "95 %", "most", "time, s"):
-        table.add_column(heading, justify="right")
-    for tolerance in (*TOLERANCES, None):
-        chosen = [row for row in rows if tolerance is None or row.tolerance == tolerance]
-        table.add_row("all" if tolerance is None else f"{tolerance:g}", *figures(chosen))
-    return table
+def timed(row: dict[str, str]) -> Timed | None:
+    """Pick and cheapest of a row compiled and run; None where a program fails."""
+    seed, tolerance = int(row["seed"]), float(row["tolerance"])
+    scene = scene_at(seed, tolerance)
+    any_model = solve(build(scene, discretise(scene, 2, 4)))
+    programs = [
+        Program(build(scene, {ROD: from_words(any_model, row[which])}), find_compiler()) for which in ("chosen", "best")
+    ]
+    for program in programs:
+        program.wait()
+    times = [program.times() for program in programs]
+    for program in programs:
+        program.close()
+    pick, best = times
+    if not (isinstance(pick, Times) and isinstance(best, Times)):
+        return None
+    foreseen = float(row["cost"]), float(row["cheapest"])
+    return Timed(seed, tolerance, *foreseen, pick.jacobian, best.jacobian, pick.cold, best.cold)
 
 
-def figures(rows: list[Row]) -> list[str]:
-    unresolved = sum(row.outcome == "unresolved" for row in rows)
-    judged = [row for row in rows if np.isfinite(row.error)]
-    excess = np.array([row.error / row.tolerance for row in judged])
-    beyond = np.array([row.error > row.estimate for row in judged])
-    oracle = np.array([row.oracle_error / row.tolerance for row in judged if np.isfinite(row.oracle_error)])
-    ratio = np.array([row.operations / row.cheapest for row in judged if np.isfinite(row.cheapest)])
-    failed = sum(row.outcome not in ("converged", "unresolved") for row in rows)
-    found = [str(len(rows)), str(failed), str(unresolved)]
-    found += (
-        [f"{100 * np.mean(excess <= 1):.1f}", f"{excess.max():.2f}", f"{100 * beyond.mean():.1f}"]
-        if len(excess)
-        else ["–"] * 3
-    )
-    found.append(f"{oracle.max():.2f} ({len(oracle)})" if len(oracle) else "–")
-    found += (
-        [f"{np.median(ratio):.2f}", f"{np.percentile(ratio, 95):.2f}", f"{ratio.max():.2f}"]
-        if len(ratio)
-        else ["–"] * 3
-    )
-    return [*found, f"{np.median([row.seconds for row in rows]):.2f}"]
+def compile_sample(rows: list[dict[str, str]], count: int, file: Path) -> None:
+    """Rows drawn from those whose cheapest is not the pick."""
+    differing = [row for row in rows if row["best"] and row["best"] != row["chosen"]]
+    drawn = np.random.default_rng(0).permutation(len(differing))[:count]
+    done = {(row["seed"], row["tolerance"]) for row in read(file)}
+    with Progress(transient=True) as bar:
+        for k in bar.track(drawn, description="compiling"):
+            row = differing[k]
+            found = None if (row["seed"], row["tolerance"]) in done else timed(row)
+            if found is not None:
+                append(file, [found])
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", type=int, default=20, help="number of random scenes")
-    parser.add_argument("--seed", type=int, default=1000, help="seed of the first")
-    parser.add_argument("--shooting", type=int, default=5, help="scenes that are solved by shooting too")
-    parser.add_argument("--no-brute", action="store_true", help="errors only, no search for the cheapest")
-    parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument("--verbose", action="store_true", help="one line for each scene and tolerance")
-    args = parser.parse_args()
-    console, rows = Console(width=160), []
-    with Progress(*Progress.get_default_columns()[:-1], TimeRemainingColumn(), console=console) as progress:
-        task = progress.add_task("scenes", total=args.scenes)
-        with ProcessPoolExecutor(args.jobs) as pool:
-            jobs = [
-                pool.submit(run_scene, args.seed + k, k < args.shooting, not args.no_brute) for k in range(args.scenes)
-            ]
-            for job in as_completed(jobs):
-                rows += job.result()
-                progress.advance(task)
-                for row in job.result() if args.verbose else []:
-                    console.print(
-                        f"{row.seed} {row.tolerance:g} {row.outcome} error/tol {row.error / row.tolerance:.2g} "
-                        f"{row.operations:.0f} / {row.cheapest:.0f} [{row.chosen}] [{row.best}] {row.seconds:.2f} s",
-                        markup=False,
-                        highlight=False,
-                    )
-    console.print(summary(rows))
+# The whole run
+
+
+def run_scenes(seeds: range, cold: int, file: Path) -> None:
+    done = {int(row["seed"]) for row in read(file)}
+    with Progress(transient=True) as bar:
+        for k, seed in enumerate(bar.track(seeds, description="true errors")):
+            if seed not in done:
+                append(file, run_scene(seed, k < cold))
+
+
+def run_searches(seeds: range, scenes: list[dict[str, str]], file: Path) -> None:
+    done = {int(row["seed"]) for row in read(file)}
+    with Progress(transient=True) as bar:
+        for seed in bar.track(seeds, description="cheapest"):
+            if seed not in done:
+                append(file, run_search([row for row in scenes if int(row["seed"]) == seed]))
+
+
+def main(
+    scenes: Annotated[int, typer.Option(help="Number of random scenes.")] = 200,
+    seed: Annotated[int, typer.Option(help="Seed of the first.")] = 1000,
+    searched: Annotated[int, typer.Option(help="Scenes whose cheapest discretisation is searched.")] = 200,
+    cold: Annotated[int, typer.Option(help="Scenes that shooting follows from the unloaded rod too.")] = 20,
+    compiled: Annotated[int, typer.Option(help="Picks that are compiled beside the cheapest.")] = 20,
+    folder: Annotated[Path, typer.Option(help="Where the rows are kept.")] = FOLDER,
+    write: Annotated[bool, typer.Option("--write", help="Put figures and table into docs.")] = False,
+) -> None:
+    """Judge the dial; what is measured already is not measured again."""
+    judged_rows, cheapest, sample = (folder / name for name in ("scenes.csv", "cheapest.csv", "timed.csv"))
+    try:
+        run_scenes(range(seed, seed + scenes), cold, judged_rows)
+        run_searches(range(seed, seed + min(scenes, searched)), read(judged_rows), cheapest)
+        compile_sample(read(cheapest), compiled, sample)
+    except KeyboardInterrupt:
+        print("stopped; the same command goes on from here")
+    results = Results(read(judged_rows), read(cheapest), read(sample), read(folder / "compiled.csv"))
+    print(results.text)
+    if write:
+        write_results(results)
 
 
 if __name__ == "__main__":
-    main()
+    typer.run(main)

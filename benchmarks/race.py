@@ -1,27 +1,39 @@
 """The exported C raced against shooting solvers written by hand, at equal tip error, in one run.
 
-For every steel rod and error: the scene is exported at that tolerance, compiled with the flags that the hand-written
-programs get, and solved from cold. `--write` puts the table into the README.
+For every rod and error: the scene is exported at that tolerance, compiled with the flags that the hand-written
+programs get, and solved from cold. On a stout rod packages from PyPI come in. `--write` puts the tables into the README
+and docs/accuracy.md, and draws docs/figures/race.png.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
+from peers import LIMITS, Peer, peers, shortest, stout
+from race_figure import race_figure
 from rich.progress import Progress
-from shooting_reference import CASES, Case, race, steps_for
+from shooting_reference import CASES, PROGRAMS, Case, race, steps_for
 
-from cosserat_casadi import Model, build, export, scene_from_dict, solve_scene
+from cosserat_casadi import Model, build, export, scene_from_dict, solve, solve_scene
+from cosserat_casadi.plot import write_figure
 
 README = Path(__file__).parents[1] / "README.md"
 BEGIN, END = "<!-- race: written by benchmarks/race.py -->", "<!-- end of race -->"
+DOCS = Path(__file__).parents[1] / "docs"
+PEERS_BEGIN, PEERS_END = "<!-- peers: written by benchmarks/race.py -->", "<!-- end of peers -->"
+FIGURE = "figures/race.png"
+STOUT = "stout"
+"""Name of the case on which peers come in."""
 ERRORS = (1e-5, 1e-8, 1e-11)
 FLAGS = ("-O2", "-std=c99")
 
@@ -43,23 +55,9 @@ class Exported:
     times: dict[str, float]
 
 
-def scene_of(case: Case, tolerance: float) -> dict[str, Any]:
-    """The case as the tables of a scene file."""
-    stiffness = {
-        "bending_x": case.bending,
-        "bending_y": case.bending,
-        "torsion": case.torsion,
-    }
-    if case.kind == "reissner":
-        stiffness |= {"shear_x": case.shear, "shear_y": case.shear, "extension": case.extension}
-    rod = {"name": "rod", "length": case.length, "strain": case.kind, "stiffness": stiffness}
-    load = {"name": "tip", "kind": "tip_wrench", "rod": "rod", "force": list(case.force), "moment": list(case.moment)}
-    return {"schema": 1, "accuracy": {"tolerance": tolerance}, "rods": [rod], "loads": [load]}
-
-
 def model_of(case: Case, error: float) -> Model:
     """The cheapest model within the error, as the dial finds it."""
-    solution = solve_scene(scene_from_dict(scene_of(case, error)))
+    solution = solve_scene(scene_from_dict(case.scene(error)))
     if not solution.converged:
         raise RuntimeError(solution.message)
     return solution.model
@@ -86,22 +84,43 @@ def literal(model: Model) -> Model:
     return build(model.scene, chosen)
 
 
-def row_of(name: str, case: Case, error: float) -> list[str]:
+@dataclass(frozen=True)
+class Raced:
+    """A case at one error: what we need for it and what shooting by hand needs.
+
+    Attributes:
+        name: of the case.
+        wanted: error.
+        unknowns: of the exported model.
+        ours: the exported C.
+        shooting: error reached and time of a cold solve, µs, by program.
+    """
+
+    name: str
+    wanted: float
+    unknowns: int
+    ours: Exported
+    shooting: dict[str, tuple[float, float]]
+
+    @property
+    def cells(self) -> list[str]:
+        """A row of the table."""
+        ours = self.ours
+        cells = [self.name, f"{self.wanted:.0e}", str(self.unknowns), f"{ours.error:.0e}", f"{ours.kilobytes:.0f}"]
+        cells += [f"{ours.compile_s:.1f}"]
+        cells += [f"{ours.times[key]:.1f}" for key in ("igm_us", "jacobian_us", "warm_us", "cold_us")]
+        theirs = [time for _, time in self.shooting.values()]
+        return cells + [f"{time:.0f} ({time / ours.times['cold_us']:.1f} ×)" for time in theirs]
+
+
+def raced(name: str, case: Case, error: float) -> Raced:
     model = model_of(case, error)
     ours = measured(model, case)
-    cells = [
-        name,
-        f"{error:.0e}",
-        str(model.size),
-        f"{ours.error:.0e}",
-        f"{ours.kilobytes:.0f}",
-        f"{ours.compile_s:.1f}",
-    ]
-    cells += [f"{ours.times[key]:.1f}" for key in ("igm_us", "jacobian_us", "warm_us", "cold_us")]
-    for program in ("plain", "tuned"):
-        theirs = race(case, steps_for(case, error, program), repeat=2000, program=program)["cold_us"]
-        cells.append(f"{theirs:.0f} ({theirs / ours.times['cold_us']:.1f} ×)")
-    return cells
+    shooting = {}
+    for program in PROGRAMS:
+        found = race(case, steps_for(case, error, program), repeat=2000, program=program)
+        shooting[program] = (case.tip_error(found["tip"]), float(found["cold_us"]))
+    return Raced(name, error, model.size, ours, shooting)
 
 
 HEADINGS = (
@@ -110,8 +129,8 @@ HEADINGS = (
 )  # fmt: skip
 
 
-def markdown(rows: list[list[str]]) -> str:
-    lines = [HEADINGS, ("---",) * len(HEADINGS), *rows]
+def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [headings, ("---",) * len(headings), *rows]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
@@ -126,23 +145,95 @@ def literal_line(case: Case) -> str:
     )
 
 
+# Peers
+
+
+def in_python(case: Case) -> Iterator[Peer]:
+    """Our own solver in Python: everything from the scene on, and once more with what is built."""
+    for tolerance in ERRORS:
+        scene = scene_from_dict(case.scene(tolerance))
+        solution, took = shortest(lambda scene=scene: solve_scene(scene), 1)
+        x, y, z = solution.tip().position[0]
+        error = case.tip_error((x, y, z))
+        yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, choosing and building included", error, took)
+        _, again = shortest(lambda model=solution.model: solve(model), 20)
+        yield Peer("cosserat, Python", f"tolerance {tolerance:.0e}, built", error, again)
+
+
+def in_c(rows: Sequence[Raced]) -> Iterator[Peer]:
+    """The exported C and shooting by hand, as peers."""
+    for row in rows:
+        yield Peer("cosserat, exported C", f"tolerance {row.wanted:.0e}", row.ours.error, row.ours.times["cold_us"])
+        for program, (error, took) in row.shooting.items():
+            yield Peer(f"{program} shooting, C", f"for {row.wanted:.0e}", error, took)
+
+
+def peer_table(rows: Sequence[Peer]) -> str:
+    cells = []
+    for row in sorted(rows, key=lambda row: row.package):
+        known = math.isfinite(row.error)
+        error, took = (f"{row.error:.0e}", duration(row.microseconds)) if known else ("–", "–")
+        cells.append([row.package, row.setting, error, took])
+    return markdown(("package", "", "tip error / L", "time"), cells)
+
+
+def duration(microseconds: float) -> str:
+    """In µs, ms or s."""
+    for unit, size in (("s", 1e6), ("ms", 1e3)):
+        if microseconds >= size:
+            value = microseconds / size
+            return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
+    return f"{microseconds:.0f} µs"
+
+
+# All of it
+
+
+def put(page: Path, begin: str, end: str, text: str) -> None:
+    """A text between its marks in a page."""
+    before, rest = page.read_text().split(begin)
+    page.write_text(f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
+
+
+def limits() -> str:
+    return "\n".join(f"* {package}: {words}" for package, words in LIMITS.items())
+
+
+def readme_text(rows: Sequence[Raced]) -> str:
+    return "\n\n".join(
+        [
+            markdown(HEADINGS, [row.cells for row in rows]),
+            literal_line(CASES["B1 Kirchhoff"]),
+            f"![Error against time: exported C, shooting by hand, packages from PyPI](docs/{FIGURE})",
+            "The last rod is where packages from PyPI come in: PyElastica, and SciPy's `solve_bvp`. "
+            "[docs/accuracy.md](docs/accuracy.md#beside-other-packages) has their figures and says what "
+            "each could not do.",
+        ]
+    )
+
+
 def main(
-    write: Annotated[bool, typer.Option("--write", help="Put the table into README.md.")] = False,
-    only: Annotated[str, typer.Option(help="Rods whose name begins so.")] = "",
+    write: Annotated[bool, typer.Option("--write", help="Put tables and figure into README.md and docs.")] = False,
+    only: Annotated[str, typer.Option(help="Rods whose name begins so; README and figure take all.")] = "",
 ) -> None:
-    """Print the table of the race."""
+    """Print the tables of the race."""
     cases = {name: case for name, case in CASES.items() if name.startswith(only)}
-    jobs = [(name, case, error) for name, case in cases.items() for error in ERRORS]
-    rows = []
+    if STOUT.startswith(only):
+        cases[STOUT] = stout()
+    rows, met = [], []
     with Progress(transient=True) as bar:
-        for name, case, error in bar.track(jobs, description="racing"):
-            rows.append(row_of(name, case, error))
-    text = markdown(rows) + "\n\n" + literal_line(CASES["B1 Kirchhoff"])
-    print(text)
-    if write:
-        readme = README.read_text()
-        before, rest = readme.split(BEGIN)
-        README.write_text(before + BEGIN + "\n" + text + "\n" + END + rest.split(END)[1])
+        for name, case, error in bar.track([(n, c, e) for n, c in cases.items() for e in ERRORS], description="racing"):
+            rows.append(raced(name, case, error))
+        if STOUT in cases:
+            known = (in_c([row for row in rows if row.name == STOUT]), in_python(cases[STOUT]), peers(cases[STOUT]))
+            met = list(bar.track(chain(*known), total=21, description="peers"))
+    print(markdown(HEADINGS, [row.cells for row in rows]), peer_table(met), sep="\n\n")
+    if write and met:
+        put(DOCS / "accuracy.md", PEERS_BEGIN, PEERS_END, f"{peer_table(met)}\n\n{limits()}")
+    if write and not only:
+        put(README, BEGIN, END, readme_text(rows))
+        (DOCS / FIGURE).parent.mkdir(exist_ok=True)
+        write_figure(race_figure(rows, met, STOUT), DOCS / FIGURE, dpi=110)
 
 
 if __name__ == "__main__":

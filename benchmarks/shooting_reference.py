@@ -68,6 +68,16 @@ class Case:
             raise ValueError("the case has no tip to compare with")
         return math.dist(tip, self.tip) / self.length
 
+    def scene(self, tolerance: float) -> dict[str, Any]:
+        """The case as the tables of a scene file."""
+        stiffness = {"bending_x": self.bending, "bending_y": self.bending, "torsion": self.torsion}
+        if self.kind == "reissner":
+            stiffness |= {"shear_x": self.shear, "shear_y": self.shear, "extension": self.extension}
+        rod = {"name": "rod", "length": self.length, "strain": self.kind, "stiffness": stiffness}
+        tip = {"name": "tip", "kind": "tip_wrench", "rod": "rod", "frame": "world"}
+        tip |= {"force": list(self.force), "moment": list(self.moment)}
+        return {"schema": 1, "accuracy": {"tolerance": tolerance}, "rods": [rod], "loads": [tip]}
+
 
 def steel(kind: str, force: Triple, moment: Triple, tip: Triple) -> Case:
     """A steel wire, half a metre long and 2 mm thick."""

@@ -209,7 +209,7 @@ def _too_large(model: Model) -> str:
     if _is_literal(model):
         return f"not compiled: literal system of {intervals} intervals" if intervals > LARGEST_LITERAL else ""
     bases = model.frame.bases.values()
-    operations = sum(foreseen_operations(basis.rod, basis.discretisation) for basis in bases)
+    operations = sum(foreseen_operations(basis.rod, basis.discretisation).all for basis in bases)
     return f"not compiled: about {operations:,.0f} operations" if operations > LARGEST else ""
 
 

@@ -149,4 +149,5 @@ def _words(finest: Solution) -> str:
 
 def with_tolerance(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
     """The scene with modes and nodes left to the dial."""
-    return scene.model_copy(update={"accuracy": scenes.Accuracy(tolerance=tolerance)})
+    accuracy = scenes.Accuracy(tolerance=tolerance, shape=scene.accuracy.shape)
+    return scene.model_copy(update={"accuracy": accuracy})

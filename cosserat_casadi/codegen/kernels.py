@@ -10,11 +10,9 @@ import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.solver.cost import STRAIGHT
 
 GENERATOR = {"with_header": True, "static_aux": True}
-
-STRAIGHT = 25_000
-"""Instructions up to which a kernel is straight-line code: thrice as fast as loops, but compilers choke on more."""
 
 
 def kernels(model: Model, names: Names) -> list[ca.Function]:

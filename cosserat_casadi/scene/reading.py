@@ -323,6 +323,7 @@ _WANTED = {
     "finite_number": "finite",
     "float_type": "a number",
     "int_type": "a whole number",
+    "bool_type": "true or false",
     "string_type": "text",
     "string_unicode": "text",
     "tuple_type": "a list",

@@ -23,6 +23,7 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ModelWrapValidatorHandler,
+    StrictBool,
     Tag,
     ValidationError,
     model_validator,
@@ -274,6 +275,7 @@ class Accuracy(Record):
     tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] = Field(
         1e-6, description="wanted pose error relative to the rod length, without unit"
     )
+    shape: StrictBool = Field(False, description="whether the tolerance binds all sections, not the tip alone")
     modes: ModesChoice | None = Field(
         None, description="polynomial modes per strain component, a whole number or a list of one per admitted strain"
     )

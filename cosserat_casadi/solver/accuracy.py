@@ -29,7 +29,7 @@ from cosserat_casadi.solver.continuation import ContinuationSettings, Progress
 from cosserat_casadi.solver.judgement import correct, judge
 from cosserat_casadi.solver.node_residual import modes_to_see
 from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.preview import Preview, watched
+from cosserat_casadi.solver.preview import SAMPLES, Preview, watched
 from cosserat_casadi.solver.resolution import Resolution
 from cosserat_casadi.solver.settling import PATH_OF_ENERGY
 from cosserat_casadi.solver.solution import Pose, Solution
@@ -71,9 +71,6 @@ MOST_NODES = 400
 
 GIVE_UP = 2
 """Rungs beyond the first failure after which no equilibrium is sought any more."""
-
-SAMPLES = (1 - np.cos(np.pi * np.arange(33) / 32)) / 2
-"""Abscissae at which whole shapes are compared."""
 
 Report = Callable[[str], None]
 """Told what is being tried."""
@@ -287,7 +284,7 @@ def pose_distance(one: Solution, other: Solution, X: FloatArray | None = None) -
     Args:
         one: a solution.
         other: another of the same scene.
-        X: abscissae to compare, shape (k,); by default the tips, and sections between where a rod is held.
+        X: abscissae to compare, shape (k,); by default those that the tolerance binds.
     """
     distances = [0.0]
     for name, basis in one.model.frame.bases.items():

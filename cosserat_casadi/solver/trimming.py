@@ -8,6 +8,7 @@ All of it is read off previews, exact to a per cent or so; no model is built.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil
@@ -16,7 +17,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.cost import foreseen_time, spread_on
 from cosserat_casadi.solver.preview import Modes, Preview
 
 MODES_SHARE = 0.6
@@ -76,7 +77,8 @@ class Trim:
         """The cheapest discretisation found."""
         modes = self._fewer(self._uniform(), np.zeros_like(self.preview.tips), MODES_SHARE * self.bound)
         grids, shift = self._grids(modes)
-        modes = self._fewer(modes, shift, self.bound)
+        trials = [self._fewer(start, shift, self.bound) for start in self._starts(modes, shift)]
+        modes = min(trials, key=lambda trial: self._time(grids, trial))
         chosen = {name: replace(grids[name], modes=modes[name]) for name in grids}
         return Trimmed(chosen, self.preview.with_modes(modes)[self.preview.kept(modes)])
 
@@ -95,6 +97,29 @@ class Trim:
                 break
             best = trial
         return best
+
+    def _starts(self, modes: Modes, shift: FloatArray) -> list[Modes]:
+        """Modes to drop more from: those given, and all that are left below lower ceilings within the bound.
+
+        Changes of the components may make up for each other: fewer modes everywhere may do where one less does not.
+        """
+        starts: list[Modes] = [modes]
+        for ceiling in range(max(map(max, modes.values())) - 1, 0, -1):
+            trial = {name: tuple(min(m, ceiling) for m in counts) for name, counts in modes.items()}
+            change = self.preview.mode_shift(trial)
+            if max(_size(change), _size(change + shift)) > self.bound:
+                break
+            starts.append(trial)
+        return starts
+
+    def _time(self, grids: Mapping[str, Discretisation], modes: Modes) -> float:
+        """Foreseen time of all rods together, µs."""
+        return sum(self.time(name, replace(grid, modes=modes[name])) for name, grid in grids.items())
+
+    def time(self, name: str, discretisation: Discretisation) -> float:
+        """Foreseen time of one rod, µs."""
+        model = self.preview.model
+        return foreseen_time(model.frame.bases[name].rod, discretisation, spread_on(model.scene, name))
 
     def _fewer(self, modes: Modes, shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
         """Modes dropped one by one, each time where most cost goes for the least change of the tips.
@@ -253,7 +278,7 @@ class _GridSearch:
         return most
 
     def _cost(self, order: str, nodes: int) -> float:
-        return foreseen_operations(self.trim.preview.model.frame.bases[self.name].rod, self._grid(order, nodes))
+        return self.trim.time(self.name, self._grid(order, nodes))
 
     def _grid(self, order: str, nodes: int) -> Discretisation:
         return replace(self.grids[self.name], nodes=nodes, transport=order)

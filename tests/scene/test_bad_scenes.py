@@ -89,6 +89,7 @@ BAD = [
     ("modes_count", scene("[accuracy]\nmodes = [6, 6]"), "accuracy.modes", "got 2 where rods[0] admits 3"),
     ("modes_empty", scene("[accuracy]\nmodes = []"), "accuracy.modes", "at least one"),
     ("nodes_one", scene("[accuracy]\nnodes = 1"), "accuracy.nodes", "must be >= 2"),
+    ("shape_one", scene("[accuracy]\nshape = 1"), "accuracy.shape", "must be true or false, got 1"),
     ("nodes_true", scene("[accuracy]\nnodes = true"), "accuracy.nodes", "must be a whole number, got true"),
     ("nodes_huge", scene(f"[accuracy]\nnodes = 0x{'f' * 6000}"), "accuracy.nodes", "must be <= 1000"),
     ("accuracy_number", scene(before="accuracy = 1e-6"), "accuracy", "must be a table, got 1e-06"),

@@ -9,9 +9,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.solver.accuracy import pose_distance
-from cosserat_casadi.solver.cost import foreseen_operations
+from cosserat_casadi.solver.cost import STRAIGHT, foreseen_operations, foreseen_time, spread_on
 from cosserat_casadi.solver.preview import Preview
 from cosserat_casadi.solver.resolution import Resolution
 from cosserat_casadi.solver.trimming import Trim
@@ -116,9 +117,71 @@ def test_foreseen_operations_vs_counted(strain: str) -> None:
     for modes, nodes in ((3, 5), (5, 8)):
         model = build(wanted, discretise(wanted, modes, nodes))
         counted.append(model.operations(model.jacobian))
-        foreseen.append(foreseen_operations(model.frame.bases["rod"].rod, model.discretisation["rod"]))
+        foreseen.append(foreseen_operations(model.frame.bases["rod"].rod, model.discretisation["rod"]).all)
     assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.35)
     assert_allclose(foreseen, counted, rtol=0.5)
+
+
+@pytest.mark.parametrize("seed", [301, 303, 306])
+def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
+    """Of the tip alone the same tolerance leaves other sections wrong by far more."""
+    wanted = [
+        scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": 1e-7, "shape": shape}})
+        for shape in (False, True)
+    ]
+    of_tip, of_shape = (solve_scene(one) for one in wanted)
+    chosen = of_shape.model.discretisation["rod"]
+    truth, X = fine(wanted[1], max(chosen.modes) + 7, 2 * chosen.nodes + 14), np.linspace(0, 1, 101)
+    assert of_shape.converged
+    assert of_shape.shape_error_estimate is not None
+    assert pose_distance(of_shape, truth, X) <= 1e-7
+    assert pose_distance(of_shape, truth, X) <= 1.1 * of_shape.shape_error_estimate
+    assert pose_distance(of_tip, truth, X) > 2e-7
+
+
+WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "body"}
+
+
+@pytest.mark.parametrize(
+    "magnitude", [{"force": [0.5, 0.0, 0.1]}, {"moment": [0.0, 0.1, 0.05]}], ids=["force", "moment"]
+)
+def test_foreseen_operations_of_spread_loads(magnitude: dict[str, list[float]]) -> None:
+    """What a spread load adds is a good part of the whole, and seen."""
+    counted, foreseen = [], []
+    for loads in ((push(),), (push(), {**WIND, **magnitude})):
+        wanted = scene(*loads)
+        model = build(wanted, discretise(wanted, 7, 14, "magnus4"))
+        rod, chosen = model.frame.bases["rod"].rod, model.discretisation["rod"]
+        counted.append(model.operations(model.jacobian))
+        foreseen.append(foreseen_operations(rod, chosen, spread_on(wanted, "rod")).all)
+    assert counted[1] > 1.4 * counted[0]
+    assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.1, atol=0)
+
+
+@pytest.mark.parametrize("nodes", [6, 18])
+def test_loops_are_foreseen(nodes: int) -> None:
+    """Beyond the limit of straight-line code an interval takes several times as long."""
+    wanted = scene(push(), WEIGHT)
+    model = build(wanted, discretise(wanted, 6, nodes, "magnus6"))
+    rod, chosen = model.frame.bases["rod"].rod, model.discretisation["rod"]
+    straight = scalar(model.path_jacobian, "jacobian").n_instructions() <= STRAIGHT
+    assert straight == (nodes == 6)
+    assert (foreseen_operations(rod, chosen).instructions <= STRAIGHT) == straight
+    assert (foreseen_time(rod, chosen) < 2.0 * nodes) == straight
+
+
+def test_components_give_up_modes_together() -> None:
+    """One mode less of one component is too many, one less of all does: their changes make up for each other."""
+    tables = random_scene(1005)
+    for load in tables["loads"]:
+        if load["kind"] == "tip_wrench":
+            load["force"] = [2 * v for v in load["force"]]
+    wanted = scene_from_dict({**tables, "accuracy": {"tolerance": 1e-5}})
+    solution, truth = solve_scene(wanted), fine(wanted)
+    chosen = solution.model.discretisation["rod"]
+    assert chosen.modes == (5, 5, 5)
+    assert pose_distance(solution, truth) <= 1e-5
+    assert pose_distance(solve(build(wanted, {"rod": replace(chosen, modes=(5, 6, 6))})), truth) > 1e-5
 
 
 def test_choice_is_cheaper_than_its_neighbours() -> None:
