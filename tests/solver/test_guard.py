@@ -113,6 +113,7 @@ def test_spring_of_ten_turns_vs_shooting(force: float) -> None:
     assert_allclose(solution.tip().position[0], shot(wanted, base.force, base.moment), rtol=0, atol=1e-6 * length)
 
 
+@pytest.mark.slow
 def test_wave_that_few_modes_cannot_see_shows_at_the_nodes() -> None:
     """Ten turns with seven modes: the equations hold, the balance of stress at the nodes does not."""
     wanted = helical(1.0)

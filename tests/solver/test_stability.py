@@ -61,7 +61,7 @@ def assert_integrates(solution: Solution, atol: float) -> None:
 # What a solution says of itself
 
 
-@pytest.mark.parametrize("ratio", [1.02, 2.0])
+@pytest.mark.parametrize("ratio", [1.02, pytest.param(2.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
 def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_wanted(
     strain: str, ratio: float
@@ -94,7 +94,7 @@ def test_standing_column_beyond_its_weight_settles() -> None:
     assert_integrates(solution, 1e-5)
 
 
-@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+@pytest.mark.parametrize("kind", [pytest.param("clamped", marks=pytest.mark.slow), "pinned"])
 def test_straight_round_rod_pushed_together_from_a_cold_start(kind: str) -> None:
     solution = solve_scene(held(kind))
     assert (solution.converged, solution.stable) == (True, True), solution.message
