@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically
@@ -95,7 +96,7 @@ def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
     Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick,
-    unloaded dashed, section frames (x red, y green, z blue), bodies filled, joints, loads as arrows. Right, along X: the strains that are
+    unloaded dashed, section frames (x red, y green, z blue), bodies, loads as arrows. Right, along X: the strains that are
     admitted, the internal moment and the internal force in the sections' frames.
 
     Returns:
@@ -245,11 +246,11 @@ def _in_world(pose: Pose, points: FloatArray) -> FloatArray:
     return np.asarray(pose.position[0] + points @ pose.rotation[0].T)
 
 
-def _around(points: FloatArray) -> FloatArray:
+def _around(points: FloatArray) -> npt.NDArray[np.int64]:
     """Order of points round their middle, seen along the direction in which they spread least."""
     arms = points - points.mean(axis=0)
     across, up, _ = np.linalg.svd(arms, full_matrices=len(points) < 3)[2][:3]
-    return np.argsort(np.arctan2(arms @ up, arms @ across), kind="stable")
+    return np.argsort(np.arctan2(arms @ up, arms @ across), kind="stable").astype(np.int64)
 
 
 def _fill(axes: Any, corners: FloatArray, plane: tuple[int, int] | None) -> None:

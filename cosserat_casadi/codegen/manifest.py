@@ -70,7 +70,7 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
 
 
 def unknown_entries(model: Model) -> list[dict[str, Any]]:
-    """Unknowns in the order of their vector: strain coordinates of every rod, then multipliers of supports."""
+    """Unknowns in the order of their vector: strain coordinates of every rod, then multipliers, then frames."""
     entries: list[dict[str, Any]] = []
     for rod, basis in model.frame.bases.items():
         first = model.frame.rod_slices[rod].start
@@ -82,6 +82,13 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     for support, hold in model.frame.holds:
         entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
         first += hold.size
+    for tie in model.frame.couplings.ties:
+        place = model.frame.tie_slices[tie.where]
+        entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
+    for carrier, place in model.frame.moving_slices.items():
+        entries.append(
+            {"frame": f"{carrier.kind} {carrier.name}", "first": place.start, "count": place.stop - place.start}
+        )
     return entries
 
 
