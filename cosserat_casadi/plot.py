@@ -96,7 +96,7 @@ def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
     Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick,
-    unloaded dashed, section frames (x red, y green, z blue), bodies, loads as arrows. Right, along X: the strains that are
+    unloaded dashed, section frames (x red, y green, z blue), bodies, loads. Right, along X: the strains that are
     admitted, the internal moment and the internal force in the sections' frames.
 
     Returns:
