@@ -86,9 +86,9 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         place = model.frame.tie_slices[tie.where]
         entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
     for carrier, place in model.frame.moving_slices.items():
-        entries.append(
-            {"frame": f"{carrier.kind} {carrier.name}", "first": place.start, "count": place.stop - place.start}
-        )
+        holders = [joint.rod for joint in model.scene.joints if carrier == ("body", joint.body)]
+        rod, frame = (holders or [carrier.name])[0], f"{carrier.kind} {carrier.name}"
+        entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
     return entries
 
 
