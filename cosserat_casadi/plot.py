@@ -280,7 +280,7 @@ def _around(points: FloatArray) -> Indices:
     """Order of points round their middle, seen along the direction in which they spread least."""
     arms = points - points.mean(axis=0)
     across, up, _ = np.linalg.svd(arms, full_matrices=len(points) < 3)[2][:3]
-    return np.argsort(np.arctan2(arms @ up, arms @ across), kind="stable")
+    return np.argsort(np.arctan2(arms @ up, arms @ across), kind="stable").astype(np.int64)
 
 
 def _fill(axes: Any, corners: FloatArray, plane: tuple[int, int] | None) -> None:

@@ -136,14 +136,20 @@ def _unknown_words(model: Model) -> dict[str, str]:
     lines, rows = [], ["| entries | what |", "|---|---|"]
     for entry in unknown_entries(model):
         last = entry["first"] + entry["count"] - 1
-        what = (
-            f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
-            if "strain" in entry
-            else f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
-        )
+        what = _unknown_word(entry)
         lines.append(f"   {entry['first']} .. {last}: {what}")
         rows.append(f"| {entry['first']} … {last} | {what} |")
     return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
+
+
+def _unknown_word(entry: dict[str, Any]) -> str:
+    if "strain" in entry:
+        return f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
+    if "support" in entry:
+        return f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
+    if "tie" in entry:
+        return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
+    return f"how far the {entry['frame']} has moved and its quaternion changed"
 
 
 def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:

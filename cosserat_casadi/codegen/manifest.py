@@ -79,7 +79,7 @@ def _axes(cause: Any, default: FloatArray) -> str:
 
 
 def unknown_entries(model: Model) -> list[dict[str, Any]]:
-    """Unknowns in the order of their vector: strain coordinates, multipliers of supports, unknown tensions."""
+    """Unknowns in the order of their vector: strain coordinates, multipliers, moving frames, unknown tensions."""
     entries: list[dict[str, Any]] = []
     for rod, basis in model.frame.bases.items():
         first = model.frame.rod_slices[rod].start
@@ -91,6 +91,13 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     for support, hold in model.frame.holds:
         entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
         first += hold.size
+    for tie in model.frame.couplings.ties:
+        place = model.frame.tie_slices[tie.where]
+        entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
+    for carrier, place in model.frame.moving_slices.items():
+        holders = [joint.rod for joint in model.scene.joints if carrier == ("body", joint.body)]
+        rod, frame = (holders or [carrier.name])[0], f"{carrier.kind} {carrier.name}"
+        entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
     for tendon, _ in model.frame.cables:
         unit = model.frame.tension_unit(tendon.rod)
         place = model.frame.tension_place(tendon.name)
