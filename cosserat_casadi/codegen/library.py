@@ -147,6 +147,8 @@ def _unknown_word(entry: dict[str, Any]) -> str:
         return f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
     if "support" in entry:
         return f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
+    if "tendon" in entry:
+        return f"tension of the tendon {entry['tendon']}, in units of {entry['unit_N']:.6g} N"
     if "tie" in entry:
         return f"multipliers of the tie {entry['tie']} on rod {entry['rod']}"
     return f"how far the {entry['frame']} has moved and its quaternion changed"

@@ -100,8 +100,8 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
     for tendon, _ in model.frame.cables:
         unit = model.frame.tension_unit(tendon.rod)
-        place = model.frame.tension_place(tendon.name)
-        entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": place, "count": 1, "unit_N": unit})
+        first = model.frame.tension_place(tendon.name)
+        entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
     return entries
 
 
