@@ -71,7 +71,7 @@ def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
     values, ways = admissible_spectrum(jacobian, variations(model))
     unstable = ways[:, : max(1, int(np.sum(values < 0.0)))]
     random = np.random.default_rng(0)
-    for k in range(RANDOM_TRIES):
+    for k in range(RANDOM_TRIES if unstable.size else 0):
         direction = unstable @ random.standard_normal(unstable.shape[1])
         yield q + OFF * direction / np.linalg.norm(direction), SIDES[k % 2]
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
-from cosserat_casadi.solver.stability import admissible_eigenvalues
+from cosserat_casadi.solver.stability import admissible_eigenvalues, variations
 from tests.catalogue.cases import Table, twisted_column, twisted_ring
 from tests.initial_value import integrate
 
@@ -60,7 +60,7 @@ def fine_model(tables: Table, modes: int, nodes: int) -> Model:
 def eigenvalues(model: Model, x: Any) -> Any:
     """Eigenvalues of the second variation at x, ascending."""
     jacobian = model.path_jacobian(x, model.pack(), 1.0).full()
-    return admissible_eigenvalues(jacobian, model.frame.strain_size)
+    return admissible_eigenvalues(jacobian, variations(model))
 
 
 def column_eigenvalue(twist: float, stretch: float, torsion: float) -> float:

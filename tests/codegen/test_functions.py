@@ -18,7 +18,7 @@ Library = Callable[[str], Exported]
 
 EACH = pytest.mark.parametrize("name", ["planar", "spatial", "thick", "pinned", "pair", "fixed", "loops"])
 
-CONVERGED, NOT_FINITE, NOT_IN_EQUILIBRIUM = 0, 2, 5
+CONVERGED, NOT_FINITE, NOT_IN_EQUILIBRIUM = 0, 2, 6
 
 
 def call(made: Exported, symbol: str, *arguments: FloatArray | float | None) -> Any:
@@ -132,7 +132,7 @@ def test_every_status_has_its_own_sentence(library: Library) -> None:
     made = library("planar")
     text = made.handle.planar_status_text
     text.restype = ctypes.c_char_p
-    sentences = [text(status).decode() for status in range(6)]
-    assert len(set(sentences)) == 6
+    sentences = [text(status).decode() for status in range(7)]
+    assert len(set(sentences)) == 7
     assert sentences[0].startswith("Equilibrium found")
-    assert text(6) == text(-1) == b"No such status."
+    assert text(7) == text(-1) == b"No such status."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -200,7 +201,8 @@ class _Blind:
     """A preview that cannot foresee fewer modes."""
 
     discretisation = {"rod": Discretisation((5,), 12)}
-    model = property(lambda self: self)
+    couplings = SimpleNamespace(ties=())
+    model = frame = property(lambda self: self)
 
     def mode_shift(self, modes: object) -> np.ndarray:
         return np.full(12, np.nan)
