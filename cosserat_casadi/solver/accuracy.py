@@ -42,6 +42,9 @@ LADDER = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
 FIRST = ((1e-4, 1), (0.0, 2))
 """Rung to begin with for tolerances down to a bound; lower ones cannot tell how fast they converge."""
 
+NO_SHAPE = 0.1
+"""Error relative to the length from which on a rod on modes and nodes of the user's own is not that of the scene."""
+
 SAFETY = 2.0
 """Factor on the distance to a finer solution whose own error is not known."""
 
@@ -211,7 +214,11 @@ class _Climb:
         seeing = modes_to_see(coarse, turn, self.scene.accuracy.tolerance)
         finer = max(modes + 4, seeing) if isinstance(modes, int) else tuple(max(m + 4, seeing) for m in modes)
         witness = self.solve(finer, max(nodes + 10, self._nodes(max(most + 4, seeing), turn)), coarse)
-        return with_estimate(coarse, witness) if witness.converged else _unresolved(coarse)
+        if not witness.converged:
+            return _unresolved(coarse)
+        found = with_estimate(coarse, witness)
+        wrong = found.shape_error_estimate is None or not found.shape_error_estimate <= NO_SHAPE
+        return _unresolved(found) if wrong else found
 
     def _nodes(self, modes: int, turn: float) -> int:
         unloaded = max(_unloaded_turn(scene_rod) for scene_rod in self._bases())

@@ -24,9 +24,6 @@ SLACK, SLACK_STRAIN = 10.0, 1000.0
 The tip's own estimate is no measure here: the tip is superconvergent, the strain between the nodes is not.
 """
 
-SMALL = 0.1
-"""Error estimate above which a solution says of itself that it is not to be built on; nothing more is asked then."""
-
 
 @dataclass(frozen=True)
 class Verdict:
@@ -72,17 +69,14 @@ def _judged(tables: dict[str, Any], solution: Solution, written: Any, seconds: f
     faults = []
     if not _finite(written):
         faults.append("a number is not finite")
-    if shape <= SMALL:
-        lengths = np.linalg.norm(solution.model.fields["rod"](solution.x, solution.inputs)[1].full(), axis=0)
-        checks = {
-            "quaternions off unit length": (np.abs(lengths - 1).max(), SLACK * shape + UNIT),
-            "gap at the tip": (gap, SLACK * shape + ROUNDING),
-            "weak form": (found.weak, SLACK_STRAIN * shape + ROUNDING),
-            "wrench left at the tip": (found.tip, SLACK_STRAIN * shape + ROUNDING),
-        }
-        faults += [
-            f"{name}: {value:.2g} > {bound:.2g}" for name, (value, bound) in checks.items() if not value <= bound
-        ]
+    lengths = np.linalg.norm(solution.model.fields["rod"](solution.x, solution.inputs)[1].full(), axis=0)
+    checks = {
+        "quaternions off unit length": (np.abs(lengths - 1).max(), SLACK * shape + UNIT),
+        "gap at the tip": (gap, SLACK * shape + ROUNDING),
+        "weak form": (found.weak, SLACK_STRAIN * shape + ROUNDING),
+        "wrench left at the tip": (found.tip, SLACK_STRAIN * shape + ROUNDING),
+    }
+    faults += [f"{name}: {value:.2g} > {bound:.2g}" for name, (value, bound) in checks.items() if not value <= bound]
     return Verdict("converged", seconds, found.weak, gap, tuple(faults))
 
 
