@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -16,7 +15,7 @@ from tests.catalogue.cases import torsion_ratio
 from tests.catalogue.checks import solved
 from tests.conftest import ROOT
 from tests.fuzz.verdict import evaluate, verdict
-from tests.reference.extreme_scenes import extreme_scene
+from tests.reference.extreme_scenes import extreme_scene, quick_scene
 
 TEXT = (ROOT / "examples" / "planar_strip.toml").read_text()
 WORDS = sorted({word for word in TEXT.replace("=", " ").replace(",", " ").split() if not word.startswith("#")})
@@ -37,16 +36,6 @@ SPOILT = [
     "\n",
     "é",
 ]
-
-
-def quick_scene(seed: int) -> dict[str, Any]:
-    """An extreme scene on a coarse discretisation, so that some dozen take seconds."""
-    tables = extreme_scene(seed)
-    rng = np.random.default_rng(seed)
-    accuracy = {"modes": int(rng.integers(1, 4)), "nodes": int(rng.integers(2, 13))}
-    if len(tables["loads"]) > 1:
-        tables["loads"] = tables["loads"][:1]
-    return {**tables, "accuracy": accuracy}
 
 
 @pytest.mark.parametrize("first", range(0, 40, 10))

@@ -129,3 +129,18 @@ def _quaternion(rng: np.random.Generator) -> list[float]:
 def _directed_unit(rng: np.random.Generator, size: int) -> list[float]:
     vector = rng.normal(size=size)
     return [float(v) for v in vector / np.linalg.norm(vector)]
+
+
+def quick_scene(seed: int) -> dict[str, Any]:
+    """An extreme scene on a coarse discretisation, so that some dozen take seconds."""
+    tables = extreme_scene(seed)
+    rng = np.random.default_rng(seed)
+    accuracy = {"modes": int(rng.integers(1, 4)), "nodes": int(rng.integers(2, 13))}
+    if len(tables["loads"]) > 1:
+        tables["loads"] = tables["loads"][:1]
+    return {**tables, "accuracy": accuracy}
+
+
+def fuzz_scene(seed: int) -> dict[str, Any]:
+    """One in ten extreme scenes to a tolerance, the others on a coarse discretisation: the former take seconds."""
+    return quick_scene(seed) if seed % 10 else extreme_scene(seed)
