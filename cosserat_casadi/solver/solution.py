@@ -118,7 +118,7 @@ class Solution:
         return strain
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
-        """Internal wrench Λ = [M; N] in the sections' frames at abscissae X, shape (k, 6), N m and N."""
+        """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
         name = self.model.rod_name(rod)
         wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
         return wrench
