@@ -110,7 +110,7 @@ class InverseGeometricModel:
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
         basis = self.shape.basis
-        parts: list[Matrix] = [ca.DM.zeros(basis.size, 1)[: basis.size - self._linear_size()]]
+        parts: list[Matrix] = [ca.DM.zeros(basis.size - self._linear_size(), 1)]
         for c in basis.rod.admitted:
             if c < 3:
                 continue

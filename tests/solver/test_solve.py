@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, solve, solve_scene
+from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve, solve_scene
 from cosserat_casadi.solver.continuation import ContinuationSettings, Path, follow
 from cosserat_casadi.solver.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.solver.secant import Secant
@@ -322,3 +322,27 @@ def test_fixed_discretisation_is_used_and_its_error_estimated() -> None:
 def _fine_push() -> tuple[object, object]:
     loaded = scene(push())
     return loaded, discretise(loaded, 14, 30, "magnus8")
+
+
+@pytest.mark.parametrize("modes", [1, 3])
+def test_bar_that_only_stretches_vs_hookes_law(modes: int) -> None:
+    """One unknown is enough: F L/EA, under a force along the bar and one across that it does not feel."""
+    text = f"""
+        schema = 1
+        [accuracy]
+        modes = {modes}
+        nodes = 6
+        [[rods]]
+        name = "bar"
+        length = 2.0
+        strain = ["extension"]
+        stiffness = {{ extension = 500.0 }}
+        [[loads]]
+        name = "pull"
+        kind = "tip_wrench"
+        rod = "bar"
+        force = [7.0, 0.0, 25.0]
+    """
+    solution = solve(build(parse_scene(text)))
+    assert solution.converged
+    assert_allclose(solution.tip().position[0], [0.0, 0.0, 2.0 * (1 + 25.0 / 500.0)], rtol=0, atol=1e-14)
