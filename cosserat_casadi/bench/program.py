@@ -12,7 +12,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
-from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.model.build import Model
 
 NAME = "timed"
@@ -53,7 +53,7 @@ class Program:
         self._told = ""
         self._folder = tempfile.TemporaryDirectory()
         folder = Path(self._folder.name)
-        names = library_names(NAME, tuple(model.frame.bases))
+        names = scene_names(NAME, model.scene)
         for file, text in _sources(model, names).items():
             (folder / file).write_text(text, encoding="utf-8")
         # What the demo does not time is half of the work for the compiler: it is not optimised.

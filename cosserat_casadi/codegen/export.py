@@ -12,7 +12,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -72,7 +72,7 @@ def check_export(directory: Path, name: str) -> set[str]:
 
 def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
-    names = library_names(name, tuple(model.frame.bases), model.inputs.names)
+    names = scene_names(name, model.scene)
     functions = kernels(model, names)
     generated = sources(functions, f"{name}_kernels", "int")
     # casadi.external expects the integers that CasADi itself was built with.

@@ -29,6 +29,11 @@ def kernels(model: Model, names: Names) -> list[ca.Function]:
         wanted[names.kernel("tip", rod)] = tip(model, rod)
         wanted[names.kernel("tip_jacobian", rod)] = model.tip_jacobian[rod]
         wanted[names.kernel("shape", rod)] = model.shape[rod]
+    for actuator in names.actuators:
+        wanted[names.kernel("actuator", actuator)] = model.actuator[actuator]
+    for body in names.bodies:
+        wanted[names.kernel("body", body)] = body_pose(model, body)
+        wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
     return [kernel(model, function, name) for name, function in wanted.items()]
 
 
@@ -47,9 +52,19 @@ def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
 
 def tip(model: Model, rod: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion) of the tip, world frame."""
-    x, inputs = model.tip[rod].mx_in()
-    position, quaternion, _ = model.tip[rod](x, inputs)
-    return ca.Function("tip", [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
+    return _pose("tip", model.tip[rod])
+
+
+def body_pose(model: Model, body: str) -> ca.Function:
+    """(x, inputs) ↦ (position, quaternion) of a rigid body, world frame."""
+    return _pose("body", model.body[body])
+
+
+def _pose(word: str, function: ca.Function) -> ca.Function:
+    """A pose without the rotation matrix that it is also given as."""
+    x, inputs = function.mx_in()
+    position, quaternion, _ = function(x, inputs)
+    return ca.Function(word, [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:
