@@ -10,6 +10,7 @@ from pathlib import Path
 
 import casadi as ca
 
+from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.names import Names, scene_names
@@ -89,10 +90,11 @@ class Program:
 
 
 def _sources(model: Model, names: Names) -> dict[str, str]:
-    every = kernels(model, names)
+    parts = assembled(model, names)
+    every = kernels(model, names, parts)
     untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
     files = {
-        **library_sources(model, names, None),
+        **library_sources(model, names, parts, None),
         **sources([f for f in every if f.name() not in untimed], "timed_kernels", "int"),
         "untimed.c": _only_c([f for f in every if f.name() in untimed], "untimed"),
     }

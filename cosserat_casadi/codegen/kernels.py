@@ -8,6 +8,7 @@ from pathlib import Path
 
 import casadi as ca
 
+from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.cost import STRAIGHT
@@ -15,11 +16,11 @@ from cosserat_casadi.solver.cost import STRAIGHT
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
-def kernels(model: Model, names: Names) -> list[ca.Function]:
-    """What the solver in C is made of, with dense outputs."""
+def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
+    """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
+    whole = {names.kernel("residual"): model.path_residual, names.kernel("jacobian"): model.path_jacobian}
     wanted = {
-        names.kernel("residual"): model.path_residual,
-        names.kernel("jacobian"): model.path_jacobian,
+        **(whole if parts is None else {}),
         names.kernel("rate"): model.path_rate,
         names.kernel("tangent"): model.path_tangent,
         names.kernel("coarseness"): model.coarseness,
@@ -34,7 +35,8 @@ def kernels(model: Model, names: Names) -> list[ca.Function]:
     for body in names.bodies:
         wanted[names.kernel("body", body)] = body_pose(model, body)
         wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
-    return [kernel(model, function, name) for name, function in wanted.items()]
+    found = [kernel(model, function, name) for name, function in wanted.items()]
+    return found if parts is None else [*parts.kernels, *found]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:

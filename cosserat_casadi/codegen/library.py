@@ -10,6 +10,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.codegen.assembled import Assembled
+from cosserat_casadi.codegen.block_sources import block_words, dense_words
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
@@ -34,9 +36,11 @@ ROLES = {
 }
 
 
-def library_sources(model: Model, names: Names, error_estimate: float | None) -> dict[str, str]:
+def library_sources(
+    model: Model, names: Names, parts: Assembled | None, error_estimate: float | None
+) -> dict[str, str]:
     """Hand-readable files of a folder by name."""
-    words = _words(model, names, error_estimate)
+    words = _words(model, names, parts, error_estimate)
     name = names.name
     return {
         f"{name}.h": _render("library.h.in", words),
@@ -52,7 +56,8 @@ def _render(template: str, words: dict[str, Any]) -> str:
     return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
 
-def _words(model: Model, names: Names, error_estimate: float | None) -> dict[str, Any]:
+def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: float | None) -> dict[str, Any]:
+    basics = {"name": names.name, "MACRO": names.macro}
     rods = [_rod_words(model, names, rod) for rod in names.rods]
     actuators = [_actuator_words(model, names, i) for i in range(len(names.actuators))]
     bodies = [_body_words(names, body) for body in names.bodies]
@@ -64,6 +69,7 @@ def _words(model: Model, names: Names, error_estimate: float | None) -> dict[str
         **_unknown_words(model),
         **rods[0],
         **_pose_words(names),
+        **(dense_words(_render, basics) if parts is None else block_words(_render, basics, parts)),
         "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
         "functions": _rendered({"rod.c.in": rods, "actuator.c.in": actuators, "body.c.in": bodies}),
         "pose_jacobians": ", ".join(
@@ -197,7 +203,7 @@ def _pose_words(names: Names) -> dict[str, Any]:
         }
     return {
         "body_macro": f"\n#define {names.macro}_BODIES {len(names.bodies)}",
-        "poses": f"POSES = {names.macro}_RODS + {names.macro}_BODIES",
+        "poses": f"RODS = {names.macro}_RODS, POSES = RODS + {names.macro}_BODIES",
         "pose_count": "POSES",
         "pose_owners": "each rod,\n   then each body: position, then quaternion",
     }

@@ -38,6 +38,7 @@ GENERATED = {
     "nitinol_wire": ("nitinol_wire.toml", COARSE),
     "follower_reissner": ("follower_reissner.toml", COARSE),
     "precurved_tube": ("precurved_tube.toml", COARSE),
+    "tendon_robot": ("two_section_robot.toml", COARSE),
 }
 """Scene file and overrides of each folder."""
 
