@@ -1,6 +1,6 @@
 """What the six-rod platform costs in C: cold and warm solves, sensitivities, compile time, size.
 
-    python benchmarks/platform.py
+    python benchmarks/six_rods.py
 
 The scene of examples/six_rod_platform.toml with lengths of legs and the hand's wrench as inputs, compiled by gcc -O2.
 Best of many runs on one core; warm is a solve from an equilibrium of inputs 1 % away, sensitivities are those of all
@@ -32,7 +32,8 @@ static double now_us(void) {
   clock_gettime(CLOCK_MONOTONIC, &t);
   return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
 }
-static double d_q[PLATFORM_UNKNOWNS * PLATFORM_INPUTS], d_poses[(PLATFORM_RODS + PLATFORM_BODIES) * 7 * PLATFORM_INPUTS];
+static double d_q[PLATFORM_UNKNOWNS * PLATFORM_INPUTS];
+static double d_poses[(PLATFORM_RODS + PLATFORM_BODIES) * 7 * PLATFORM_INPUTS];
 int main(void) {
   double inputs[PLATFORM_INPUTS] = {@}, q[PLATFORM_UNKNOWNS] = {0}, best = 1e30;
   int k, status = platform_solve(inputs, q, 0);
