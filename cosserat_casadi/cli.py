@@ -31,7 +31,7 @@ from cosserat_casadi.bench.table import print_effects
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.effects.effect import coefficients
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
@@ -162,7 +162,7 @@ def export(
     chosen = re.sub(r"\W", "_", scene.stem) if name is None else name
     check_export(output, chosen)
     read = read_scene(scene, tuple(settings or ()))
-    library_names(chosen, tuple(rod.name for rod in read.rods), read.input_names())
+    scene_names(chosen, read)
     solution = _solve_with_progress(read)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import casadi as ca
 
+from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
-from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.model.build import Model
 
 NAME = "timed"
@@ -53,7 +54,7 @@ class Program:
         self._told = ""
         self._folder = tempfile.TemporaryDirectory()
         folder = Path(self._folder.name)
-        names = library_names(NAME, tuple(model.frame.bases))
+        names = scene_names(NAME, model.scene)
         for file, text in _sources(model, names).items():
             (folder / file).write_text(text, encoding="utf-8")
         # What the demo does not time is half of the work for the compiler: it is not optimised.
@@ -89,10 +90,11 @@ class Program:
 
 
 def _sources(model: Model, names: Names) -> dict[str, str]:
-    every = kernels(model, names)
+    parts = assembled(model, names)
+    every = kernels(model, names, parts)
     untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
     files = {
-        **library_sources(model, names, None),
+        **library_sources(model, names, parts, None),
         **sources([f for f in every if f.name() not in untimed], "timed_kernels", "int"),
         "untimed.c": _only_c([f for f in every if f.name() in untimed], "untimed"),
     }

@@ -96,6 +96,16 @@ class Compiled:
         """For each rod (x, inputs, X) ↦ (position, quaternion), with exact derivatives."""
         return {rod: self._external("shape", rod) for rod in self._names.rods}
 
+    @cached_property
+    def actuator(self) -> dict[str, ca.Function]:
+        """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
+        return {name: self._external("actuator", name) for name in self._names.actuators}
+
+    @cached_property
+    def body(self) -> dict[str, ca.Function]:
+        """For each rigid body (x, inputs) ↦ (position, quaternion), with exact derivatives."""
+        return {name: self._external("body", name) for name in self._names.bodies}
+
     @property
     def size(self) -> int:
         """Number of unknowns."""
@@ -153,15 +163,31 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
+        found = self._sensitivity(inputs, q)
+        if found is None:
+            return None
+        d_q, d_poses = found
+        return d_q, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
+
+    def body_sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> dict[str, FloatArray] | None:
+        """The d(position, quaternion)/dinputs of each rigid body; None where q is no regular equilibrium.
+
+        Raises:
+            ValueError: an argument is of the wrong size.
+        """
+        found = self._sensitivity(inputs, q)
+        return None if found is None else dict(zip(self._names.bodies, found[1][len(self._names.rods) :], strict=True))
+
+    def _sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
+        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
         given = _vector(inputs, len(self.defaults), "inputs")
         unknowns = _vector(q, self.size, "q")
-        d_q, d_tip = np.zeros((len(given), self.size)), np.zeros((len(self._names.rods), len(given), 7))
+        count = len(self._names.rods) + len(self._names.bodies)
+        d_q, d_poses = np.zeros((len(given), self.size)), np.zeros((count, len(given), 7))
         status = self._function("solve_sensitivity")(
-            _pointer(given), _pointer(unknowns), _pointer(d_q), _pointer(d_tip)
+            _pointer(given), _pointer(unknowns), _pointer(d_q), _pointer(d_poses)
         )
-        if status != 0:
-            return None
-        return d_q.T, {rod: tip.T for rod, tip in zip(self._names.rods, d_tip, strict=True)}
+        return None if status != 0 else (d_q.T, [pose.T for pose in d_poses])
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:
@@ -170,8 +196,8 @@ class Compiled:
     def _function(self, word: str) -> Any:
         return getattr(self._handle, self._names.function(word))
 
-    def _external(self, word: str, rod: str | None = None) -> ca.Function:
-        return ca.external(self._names.differentiable(word, rod), str(self.library))
+    def _external(self, word: str, owner: str | None = None) -> ca.Function:
+        return ca.external(self._names.differentiable(word, owner), str(self.library))
 
 
 def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
@@ -190,7 +216,8 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     folder = Path(directory)
     described = _manifest(folder)
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
-    names = Names(described["name"], tuple(rods))
+    actuators = tuple(entry["name"] for entry in described.get("actuators", []))
+    names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
     return Compiled(_shared_object(folder, names, find_compiler(compiler)), described, names)
 
 

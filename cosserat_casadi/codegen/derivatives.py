@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.codegen.kernels import kernel, tip
+from cosserat_casadi.codegen.kernels import body_pose, kernel, tip
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 
 
 def external_functions(model: Model, names: Names) -> dict[str, ca.Function]:
-    """Functions that a loaded library offers, by symbol: residual, tips and shapes."""
+    """Functions that a loaded library offers, by symbol: residual, tips and shapes, actuators and bodies."""
     found = {names.differentiable("residual"): model.residual}
     for rod in names.rods:
         found[names.differentiable("tip", rod)] = tip(model, rod)
         found[names.differentiable("shape", rod)] = model.shape[rod]
+    for actuator in names.actuators:
+        found[names.differentiable("actuator", actuator)] = model.actuator[actuator]
+    for body in names.bodies:
+        found[names.differentiable("body", body)] = body_pose(model, body)
     return found
 
 

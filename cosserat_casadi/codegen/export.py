@@ -7,12 +7,13 @@ import os
 import re
 from pathlib import Path
 
+from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
-from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -72,14 +73,15 @@ def check_export(directory: Path, name: str) -> set[str]:
 
 def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
-    names = library_names(name, tuple(model.frame.bases), model.inputs.names)
-    functions = kernels(model, names)
+    names = scene_names(name, model.scene)
+    parts = assembled(model, names)
+    functions = kernels(model, names, parts)
     generated = sources(functions, f"{name}_kernels", "int")
     # casadi.external expects the integers that CasADi itself was built with.
     derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
     generated[f"{name}_kernels.c"] = _prologue(names.macro) + generated[f"{name}_kernels.c"]
     files = {
-        **library_sources(model, names, error_estimate),
+        **library_sources(model, names, parts, error_estimate),
         **generated,
         f"{name}_derivatives.c": derivatives[f"{name}_derivatives.c"],
         "scene.toml": scene_text(model.scene),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import casadi as ca
 
+from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.cost import STRAIGHT
@@ -15,11 +16,11 @@ from cosserat_casadi.solver.cost import STRAIGHT
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
-def kernels(model: Model, names: Names) -> list[ca.Function]:
-    """What the solver in C is made of, with dense outputs."""
+def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
+    """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
+    whole = {names.kernel("residual"): model.path_residual, names.kernel("jacobian"): model.path_jacobian}
     wanted = {
-        names.kernel("residual"): model.path_residual,
-        names.kernel("jacobian"): model.path_jacobian,
+        **(whole if parts is None else {}),
         names.kernel("rate"): model.path_rate,
         names.kernel("tangent"): model.path_tangent,
         names.kernel("coarseness"): model.coarseness,
@@ -29,7 +30,13 @@ def kernels(model: Model, names: Names) -> list[ca.Function]:
         wanted[names.kernel("tip", rod)] = tip(model, rod)
         wanted[names.kernel("tip_jacobian", rod)] = model.tip_jacobian[rod]
         wanted[names.kernel("shape", rod)] = model.shape[rod]
-    return [kernel(model, function, name) for name, function in wanted.items()]
+    for actuator in names.actuators:
+        wanted[names.kernel("actuator", actuator)] = model.actuator[actuator]
+    for body in names.bodies:
+        wanted[names.kernel("body", body)] = body_pose(model, body)
+        wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
+    found = [kernel(model, function, name) for name, function in wanted.items()]
+    return found if parts is None else [*parts.kernels, *found]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
@@ -47,9 +54,19 @@ def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
 
 def tip(model: Model, rod: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion) of the tip, world frame."""
-    x, inputs = model.tip[rod].mx_in()
-    position, quaternion, _ = model.tip[rod](x, inputs)
-    return ca.Function("tip", [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
+    return _pose("tip", model.tip[rod])
+
+
+def body_pose(model: Model, body: str) -> ca.Function:
+    """(x, inputs) ↦ (position, quaternion) of a rigid body, world frame."""
+    return _pose("body", model.body[body])
+
+
+def _pose(word: str, function: ca.Function) -> ca.Function:
+    """A pose without the rotation matrix that it is also given as."""
+    x, inputs = function.mx_in()
+    position, quaternion, _ = function(x, inputs)
+    return ca.Function(word, [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:

@@ -10,8 +10,10 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
-from cosserat_casadi.codegen.names import FUNCTIONS, Names
+from cosserat_casadi.codegen.assembled import Assembled
+from cosserat_casadi.codegen.block_sources import block_words, dense_words
+from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
+from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver import newton
@@ -34,9 +36,11 @@ ROLES = {
 }
 
 
-def library_sources(model: Model, names: Names, error_estimate: float | None) -> dict[str, str]:
+def library_sources(
+    model: Model, names: Names, parts: Assembled | None, error_estimate: float | None
+) -> dict[str, str]:
     """Hand-readable files of a folder by name."""
-    words = _words(model, names, error_estimate)
+    words = _words(model, names, parts, error_estimate)
     name = names.name
     return {
         f"{name}.h": _render("library.h.in", words),
@@ -52,8 +56,11 @@ def _render(template: str, words: dict[str, Any]) -> str:
     return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
 
-def _words(model: Model, names: Names, error_estimate: float | None) -> dict[str, Any]:
+def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: float | None) -> dict[str, Any]:
+    basics = {"name": names.name, "MACRO": names.macro}
     rods = [_rod_words(model, names, rod) for rod in names.rods]
+    actuators = [_actuator_words(model, names, i) for i in range(len(names.actuators))]
+    bodies = [_body_words(names, body) for body in names.bodies]
     return {
         **_sizes(model, names),
         **_solver_constants(),
@@ -61,15 +68,24 @@ def _words(model: Model, names: Names, error_estimate: float | None) -> dict[str
         **_input_words(model, names),
         **_unknown_words(model),
         **rods[0],
-        "rod_prototypes": "".join(_render("rod.h.in", words) for words in rods),
-        "rod_functions": "".join(_render("rod.c.in", words) for words in rods),
-        "tip_jacobians": ", ".join(words["tip_jacobian"] for words in rods),
+        **_pose_words(names),
+        **(dense_words(_render, basics) if parts is None else block_words(_render, basics, parts)),
+        "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
+        "functions": _rendered({"rod.c.in": rods, "actuator.c.in": actuators, "body.c.in": bodies}),
+        "pose_jacobians": ", ".join(
+            [*(words["tip_jacobian"] for words in rods), *(words["body_jacobian"] for words in bodies)]
+        ),
+        "further_results": _further_results(actuators, bodies),
         "title": _comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
         "casadi_version": ca.CasadiMeta.version(),
         "file_rows": _file_rows(names),
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
+
+
+def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
+    return "".join(_render(template, words) for template, wordings in entries.items() for words in wordings)
 
 
 def _sizes(model: Model, names: Names) -> dict[str, Any]:
@@ -159,6 +175,53 @@ def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
     kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
     basics = {"name": names.name, "rod": rod, "coordinates": model.frame.bases[rod].size}
     return {**words, **kernels, **basics}
+
+
+def _actuator_words(model: Model, names: Names, i: int) -> dict[str, Any]:
+    entry = actuator_entries(model)[i]
+    called = entry["name"]
+    symbols = {"actuator": names.function("actuator", called), "k_actuator": names.kernel("actuator", called)}
+    effort, extent = entry["effort"], entry["extent"]
+    facts = {"effort": effort, "extent": extent, "effort_unit": UNITS[effort], "extent_unit": UNITS[extent]}
+    return {"name": names.name, "called": called, "kind": entry["kind"], "rod": entry["rod"], **symbols, **facts}
+
+
+def _body_words(names: Names, body: str) -> dict[str, Any]:
+    words = {word: names.function(word, body) for word in BODY_FUNCTIONS}
+    kernels = {f"k_{word}": names.kernel(word, body) for word in words}
+    return {"name": names.name, "called": body, **words, **kernels}
+
+
+def _pose_words(names: Names) -> dict[str, Any]:
+    """Whose poses the sensitivities are of."""
+    if not names.bodies:
+        return {
+            "body_macro": "",
+            "poses": f"RODS = {names.macro}_RODS",
+            "pose_count": "RODS",
+            "pose_owners": "each rod: position, then quaternion",
+        }
+    return {
+        "body_macro": f"\n#define {names.macro}_BODIES {len(names.bodies)}",
+        "poses": f"RODS = {names.macro}_RODS, POSES = RODS + {names.macro}_BODIES",
+        "pose_count": "POSES",
+        "pose_owners": "each rod,\n   then each body: position, then quaternion",
+    }
+
+
+def _further_results(actuators: list[dict[str, Any]], bodies: list[dict[str, Any]]) -> str:
+    """A section on actuators and bodies; nothing where there are none."""
+    rows = [
+        f"| `{words['actuator']}` | {words['effort']} ({words['effort_unit']}) and {words['extent']} "
+        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d q |"
+        for words in actuators
+    ]
+    for words in bodies:
+        rows.append(f"| `{words['body']}` | pose of the body {words['called']} |")
+        rows.append(f"| `{words['body_jacobian']}` | its derivatives with q and with the inputs |")
+    if not rows:
+        return ""
+    return "\n".join(["", "## Actuators and bodies", "", "| function | what it gives |", "|---|---|", *rows, ""])
 
 
 def _file_rows(names: Names) -> str:

@@ -23,6 +23,10 @@ UNITS = {
     "base_force": "N",
     "base_moment": "N m",
     "generalised_force": "EI/L",
+    "tension": "N",
+    "length": "m",
+    "pressure": "Pa",
+    "volume": "m³",
 }
 """Units of arguments and results that have one; the rest, stacked inputs apart, are without."""
 
@@ -42,6 +46,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
         "title": model.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(model),
+        **_output_entries(model),
         "unknowns": unknown_entries(model),
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
         "tolerance": model.scene.accuracy.tolerance,
@@ -76,6 +81,27 @@ def _axes(cause: Any, default: FloatArray) -> str:
     if default.shape[0] == 1:
         return "none"
     return "section" if getattr(cause, "frame", "world") == "body" else "world"
+
+
+def actuator_entries(model: Model) -> list[dict[str, Any]]:
+    """Actuators in the order of the scene, with what they exert and what they work on."""
+    entries = []
+    for one in model.scene.actuators:
+        effort, extent = (model.actuator[one.name].name_out(i) for i in range(2))
+        entries.append({"name": one.name, "kind": one.kind, "rod": one.rod, "effort": effort, "extent": extent})
+    return entries
+
+
+def _output_entries(model: Model) -> dict[str, Any]:
+    """Actuators, bodies and the order of the sensitivities, of scenes that have such."""
+    found: dict[str, Any] = {}
+    if model.scene.actuators:
+        found["actuators"] = actuator_entries(model)
+    if model.scene.bodies:
+        found["bodies"] = [body.name for body in model.scene.bodies]
+        rods = [{"rod": rod} for rod in model.frame.bases]
+        found["sensitivities"] = [*rods, *({"body": body} for body in found["bodies"])]
+    return found
 
 
 def unknown_entries(model: Model) -> list[dict[str, Any]]:

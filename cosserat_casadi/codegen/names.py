@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.faults import shown
 
 LONGEST = 48
@@ -33,9 +34,15 @@ TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
 FUNCTIONS = ("igm", "tip", "tip_jacobian", "shape")
 """Functions that every rod has."""
 
+BODY_FUNCTIONS = ("body", "body_jacobian")
+"""Functions that every rigid body has."""
+
 QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
 sparsity_out work work_bytes"""
 """What CasADi appends to the name of a function."""
+
+PLURALS = {"rod": "rods", "actuator": "actuators", "body": "bodies"}
+"""Tables of a scene whose names become part of symbols."""
 
 
 @dataclass(frozen=True)
@@ -45,43 +52,71 @@ class Names:
     Attributes:
         name: the library, a C identifier.
         rods: names of the rods, in the order of the scene.
+        actuators: names of the actuators.
+        bodies: names of the rigid bodies.
     """
 
     name: str
     rods: tuple[str, ...]
+    actuators: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
 
     @property
     def macro(self) -> str:
         """What macros and enumerators begin with."""
         return self.name.upper()
 
-    def function(self, word: str, rod: str | None = None) -> str:
-        """Symbol of a function; the rod is named only where there are several."""
-        suffix = f"_{rod}" if rod is not None and len(self.rods) > 1 else ""
-        return f"{self.name}_{word}{suffix}"
+    def function(self, word: str, owner: str | None = None) -> str:
+        """Symbol of a function of a rod, an actuator or a body; a rod is named only where there are several."""
+        return self._symbol(word, word, owner)
 
-    def kernel(self, word: str, rod: str | None = None) -> str:
+    def kernel(self, word: str, owner: str | None = None) -> str:
         """Symbol of a generated kernel."""
-        return self.function(f"k_{word}", rod)
+        return self._symbol(f"k_{word}", word, owner)
 
-    def differentiable(self, word: str, rod: str | None = None) -> str:
+    def differentiable(self, word: str, owner: str | None = None) -> str:
         """Symbol of a function for ``casadi.external``."""
-        return self.function(f"f_{word}", rod)
+        return self._symbol(f"f_{word}", word, owner)
+
+    def _symbol(self, shown: str, word: str, owner: str | None) -> str:
+        named = owner is not None and (word not in FUNCTIONS or len(self.rods) > 1)
+        return f"{self.name}_{shown}_{owner}" if named else f"{self.name}_{shown}"
 
 
-def library_names(name: str, rods: tuple[str, ...] = (), inputs: tuple[str, ...] = ()) -> Names:
+def scene_names(name: str, scene: Scene) -> Names:
+    """Names of the exported library of a scene.
+
+    Raises:
+        ExportError: as :func:`library_names`.
+    """
+    rods, actuators, bodies = (
+        tuple(one.name for one in tables) for tables in (scene.rods, scene.actuators, scene.bodies)
+    )
+    return library_names(name, rods, scene.input_names(), actuators=actuators, bodies=bodies)
+
+
+def library_names(
+    name: str,
+    rods: tuple[str, ...] = (),
+    inputs: tuple[str, ...] = (),
+    *,
+    actuators: tuple[str, ...] = (),
+    bodies: tuple[str, ...] = (),
+) -> Names:
     """Names of an exported library.
 
     Args:
         name: the library.
         rods: names of the rods.
         inputs: names of the inputs.
+        actuators: names of the actuators.
+        bodies: names of the rigid bodies.
 
     Raises:
         ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
             would have one name.
     """
-    names = Names(name, rods)
+    names = Names(name, rods, actuators, bodies)
     problems = [*_name_problems(name), *_symbol_problems(names), *_macro_problems(inputs)]
     if problems:
         raise ExportError(*problems)
@@ -101,24 +136,29 @@ def _name_problems(name: str) -> Iterator[Problem]:
 
 
 def _symbol_problems(names: Names) -> Iterator[Problem]:
-    if len(names.rods) < 2:
-        return
-    owners: dict[str, str] = {}
-    for i, rod in enumerate(names.rods):
-        where = f"rods[{i}].name"
-        if "__" in rod:
-            yield Problem(where, f"{rod!r} cannot be part of a C symbol", "without two underscores in a row")
-        symbols = _symbols(names, rod)
-        clashing = [owners[symbol] for symbol in symbols if symbol in owners]
+    # Without a suffix, the functions of a rod that is alone clash with none.
+    rods = names.rods if len(names.rods) > 1 else ()
+    for noun, owners, words in (
+        ("rod", rods, FUNCTIONS),
+        ("actuator", names.actuators, ("actuator",)),
+        ("body", names.bodies, BODY_FUNCTIONS),
+    ):
+        yield from _clashes(noun, owners, [[f"{word}_{owner}" for word in words] for owner in owners])
+
+
+def _clashes(noun: str, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
+    """Names of one table that no C symbol can hold, or that give two functions one name."""
+    table, taken = PLURALS[noun], dict[str, str]()
+    for i, (owner, own) in enumerate(zip(owners, functions, strict=True)):
+        where = f"{table}[{i}].name"
+        if "__" in owner:
+            yield Problem(where, f"{owner!r} cannot be part of a C symbol", "without two underscores in a row")
+        symbols = own + [f"{function}_{query}" for function in own for query in QUERIES.split()]
+        clashing = [taken[symbol] for symbol in symbols if symbol in taken]
         if clashing:
-            problem = f"{rod!r} gives a function the name that rod {clashing[0]!r} gives another"
-            yield Problem(where, problem, "rename one of the rods")
-        owners.update(dict.fromkeys(symbols, rod))
-
-
-def _symbols(names: Names, rod: str) -> list[str]:
-    functions = [names.function(word, rod) for word in FUNCTIONS]
-    return functions + [f"{function}_{query}" for function in functions for query in QUERIES.split()]
+            problem = f"{owner!r} gives a function the name that {noun} {clashing[0]!r} gives another"
+            yield Problem(where, problem, f"rename one of the {table}")
+        taken.update(dict.fromkeys(symbols, owner))
 
 
 def _macro_problems(inputs: tuple[str, ...]) -> Iterator[Problem]:

@@ -132,6 +132,11 @@ class Model:
         return {body.name: functions.body(self.frame, body.name) for body in self.scene.bodies}
 
     @cached_property
+    def body_jacobian(self) -> dict[str, ca.Function]:
+        """For each rigid body (x, inputs) ↦ derivatives of its position and quaternion with x and with inputs."""
+        return {body.name: functions.body_jacobian(self.frame, body.name) for body in self.scene.bodies}
+
+    @cached_property
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of all rods, J."""
         return functions.energy(self.frame)

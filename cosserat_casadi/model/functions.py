@@ -243,6 +243,15 @@ def body(frame: Frame, name: str) -> ca.Function:
     return ca.Function(_name("body", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
+def body_jacobian(frame: Frame, name: str) -> ca.Function:
+    """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
+    a = _arguments(frame)
+    pose = ca.vertcat(*body(frame, name)(a.x, a.inputs)[:2])
+    outputs = [ca.densify(ca.jacobian(pose, a.x)), ca.densify(ca.jacobian(pose, a.inputs))]
+    names = ["d_pose_d_x", "d_pose_d_inputs"]
+    return ca.Function(_name("body_jacobian", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
+
+
 def energy(frame: Frame) -> ca.Function:
     """(x, inputs) ↦ elastic energy, J."""
     a = _arguments(frame)

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import Compiled, Model, Scene, Solution, build, discretise, export, solve
-from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.names import Names, scene_names
 from tests.scenes import WEIGHT, push, rod, scene
 
 HARNESS = Path(__file__).parent / "harness"
@@ -41,6 +41,23 @@ PAIR = [
     rod("planar", name="left", length=0.5, base={"position": [1.0, 0.0, 0.0], "quaternion": [0.5, 0.5, 0.5, 0.5]}),
     rod(["bending_x", "extension"], name="right"),
 ]
+
+
+TENDON = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
+HELD = {"name": "held", "kind": "tendon", "rod": "rod", "length": 0.79, "offset": [-0.03, 0.0], "span": [0.0, 0.5]}
+CHAMBER = {"name": "gas", "kind": "chamber", "rod": "rod", "pressure": 500.0, "area": 1e-4, "offset": [0.0, 0.02]}
+
+ARMS = [
+    rod("planar", name="left", base={"position": [0.1, 0.0, 0.0]}),
+    rod("planar", name="right", base={"position": [-0.1, 0.0, 0.0]}),
+    rod("planar", name="finger", length=0.3, base={"rod": "right", "at": 0.5}),
+]
+HAND = {"name": "hand", "mass": 0.1}
+WRISTS = [
+    {"body": "hand", "rod": "left", "kind": "fixed", "position": [0.1, 0.0, 0.0]},
+    {"body": "hand", "rod": "right", "kind": "fixed", "position": [-0.1, 0.0, 0.0]},
+]
+LOAD = {"name": "load", "kind": "body_wrench", "body": "hand", "force": [0.2, 0.0, -0.3]}
 
 
 @dataclass(frozen=True)
@@ -65,6 +82,8 @@ RECIPES = {
     "arch": Recipe(scene(KEYSTONE, supports=[PIN], **ARCH), 2, 5),
     "pair": Recipe(scene(PULL, WEIGHT, rods=PAIR), 2, 4),
     "fixed": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar", inputs=[]), 2, 4),
+    "tendons": Recipe(scene(push(), strain="reissner", actuators=[TENDON, HELD, CHAMBER]), 2, 4),
+    "robot": Recipe(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS), 2, 4),
     "loops": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar"), 2, 4, "permuted"),
 }
 """Scenes by the name of their library: every strain model, supports, several rods, no inputs, loops in the kernels."""
@@ -88,7 +107,7 @@ class Exported:
 
     @property
     def names(self) -> Names:
-        return library_names(self.name, tuple(self.model.frame.bases))
+        return scene_names(self.name, self.model.scene)
 
     @property
     def length(self) -> float:

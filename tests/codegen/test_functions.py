@@ -11,12 +11,17 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi import solve
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import Exported
 
 Library = Callable[[str], Exported]
 
-EACH = pytest.mark.parametrize("name", ["planar", "spatial", "thick", "pinned", "pair", "fixed", "loops"])
+ROBOTS = ("tendons", "robot")
+
+EACH = pytest.mark.parametrize(
+    "name", ["planar", "spatial", "thick", "pinned", "pair", "fixed", "loops", "tendons", "robot"]
+)
 
 CONVERGED, NOT_FINITE, NOT_IN_EQUILIBRIUM = 0, 2, 6
 
@@ -89,6 +94,53 @@ def test_functions_of_each_rod_vs_model(library: Library, name: str) -> None:
             arguments = [own, position, quaternion, inputs]
             found = results(made, symbol["igm"], arguments, [(basis.size,), (3,), (3,)])
             assert_as(found, list(model.igm[rod](*arguments)))
+
+
+def test_actuators_vs_model(library: Library) -> None:
+    made = library("tendons")
+    for name, function in made.model.actuator.items():
+        for q, inputs in points(made):
+            shapes = [(1,), (1,), (1, made.model.size)]
+            found = results(made, f"tendons_actuator_{name}", [q, inputs], shapes)
+            assert_as(found, list(function(q, inputs)))
+
+
+def test_bodies_vs_model(library: Library) -> None:
+    made = library("robot")
+    n, m = made.model.size, made.model.inputs.size
+    for q, inputs in points(made):
+        found = results(made, "robot_body_hand", [q, inputs], [(3,), (4,)])
+        assert_as(found, list(made.model.body["hand"](q, inputs))[:2])
+        found = results(made, "robot_body_jacobian_hand", [q, inputs], [(7, n), (7, m)])
+        assert_as(found, list(made.model.body_jacobian["hand"](q, inputs)))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_robots_vs_solver_in_python(library: Library, name: str) -> None:
+    made = library(name)
+    found, wanted = made.compiled.solve(), solve(made.model)
+    assert found.converged
+    assert wanted.converged
+    assert_allclose(found.q, wanted.x, rtol=0, atol=1e-9)
+
+
+def test_sensitivities_of_poses_vs_differences(library: Library) -> None:
+    """Tips of all rods and the pose of the body, by central differences over whole solves."""
+    made, step = library("robot"), 1e-4
+    compiled, inputs = made.compiled, made.model.pack()
+    q = compiled.solve(inputs).q
+    found = compiled.sensitivity(inputs, q)
+    bodies = compiled.body_sensitivity(inputs, q)
+    assert found is not None
+    assert bodies is not None
+    for k in range(len(inputs)):
+        moved = step * np.eye(len(inputs))[k]
+        ends = [compiled.solve(inputs + sign * moved, q).q for sign in (1, -1)]
+        functions = {**made.model.tip, **made.model.body}
+        for name, function in functions.items():
+            poses = [np.concatenate([part.full()[:, 0] for part in function(end, inputs)[:2]]) for end in ends]
+            columns = {**found[1], **bodies}[name][:, k]
+            assert_allclose(columns, (poses[0] - poses[1]) / (2 * step), rtol=1e-6, atol=1e-7)
 
 
 @pytest.mark.parametrize("name", ["planar", "pair", "fixed"])

@@ -33,11 +33,19 @@ ARITHMETIC = "arithmetic.txt"
 COARSE = ("accuracy.tolerance=1e-4",)
 """Small enough to be kept and read."""
 
+LEGS = (
+    "accuracy.tolerance=1e-3",
+    "inputs=" + str(["hand.force", "hand.moment", *(f"leg_{i}.length" for i in range(1, 7))]).replace("'", '"'),
+)
+"""A parallel robot is driven by the lengths of its legs."""
+
 GENERATED = {
     "planar_strip": ("planar_strip.toml", COARSE),
     "nitinol_wire": ("nitinol_wire.toml", COARSE),
     "follower_reissner": ("follower_reissner.toml", COARSE),
     "precurved_tube": ("precurved_tube.toml", COARSE),
+    "tendon_robot": ("two_section_robot.toml", COARSE),
+    "six_rod_platform": ("six_rod_platform.toml", LEGS),
 }
 """Scene file and overrides of each folder."""
 
@@ -80,7 +88,11 @@ def generated(pytestconfig: pytest.Config) -> Path:
     return FOLDER
 
 
-@pytest.fixture(params=GENERATED)
+LARGE = {"six_rod_platform"}
+"""Folders that take tens of seconds to write and compile: `make test-slow` checks them."""
+
+
+@pytest.fixture(params=[pytest.param(name, marks=[pytest.mark.slow] * (name in LARGE)) for name in GENERATED])
 def folder(request: pytest.FixtureRequest, generated: Path) -> Path:
     found: Path = generated / request.param
     if not (found / MANIFEST).is_file():
@@ -173,7 +185,9 @@ def test_committed_sources_give_the_tip_of_this_version(folder: Path, tmp_path: 
     result = json.loads(printed.stdout)
     assert result["status"] == "converged"
     length = solution.model.scene.rods[0].length
-    assert_allclose(result["tip"], solution.tip().position[0], rtol=0, atol=1e-9 * length)
+    assert_allclose(
+        result["tip"], solution.tip(solution.model.scene.rods[0].name).position[0], rtol=0, atol=1e-9 * length
+    )
 
 
 # The comparison itself

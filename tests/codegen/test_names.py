@@ -93,6 +93,24 @@ def test_double_underscores_in_names_of_rods() -> None:
         library_names("lib", ("c", "a__b"))
 
 
+def test_functions_of_bodies_and_actuators() -> None:
+    names = library_names("lib", ("a",), actuators=("a",), bodies=("a", "b"))
+    assert names.function("actuator", "a") == "lib_actuator_a"
+    assert names.kernel("body", "a") == "lib_k_body_a"
+    assert names.differentiable("body_jacobian", "b") == "lib_f_body_jacobian_b"
+
+
+def test_bodies_and_actuators_whose_functions_would_have_one_name() -> None:
+    with pytest.raises(ExportError) as caught:
+        library_names("lib", ("a",), actuators=("p", "p_n_in"), bodies=("c__d", "b", "jacobian_b"))
+    found = [(p.where, p.remedy) for p in caught.value.problems]
+    assert found == [
+        ("actuators[1].name", "rename one of the actuators"),
+        ("bodies[0].name", "without two underscores in a row"),
+        ("bodies[2].name", "rename one of the bodies"),
+    ]
+
+
 def test_inputs_that_differ_in_case_alone() -> None:
     assert library_names("lib", ("rod",), ("push.force", "push.moment"))
     with pytest.raises(ExportError, match=r"inputs: 'Push.force' and 'push.force' differ in case alone"):

@@ -35,7 +35,7 @@ def test_very_many_random_numbers_under_sanitizers(library: Library, name: str) 
     fuzz(library(name), 100_000)
 
 
-@pytest.mark.parametrize("name", ["planar", "pair"])
+@pytest.mark.parametrize("name", ["planar", "pair", "robot"])
 def test_threads_vs_one_thread(library: Library, name: str) -> None:
     assert int(run(library(name).program("threads.c", "-O0", "-fPIC", "-pthread"))) > 40
 

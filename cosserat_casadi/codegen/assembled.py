@@ -1,0 +1,61 @@
+"""The equations of an assembly as parts of rods, and the blocks of its Jacobian."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import casadi as ca
+
+from cosserat_casadi.codegen.blocks import Blocks, blocks
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.model.build import Model
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """What the solver of an assembly is made of.
+
+    Attributes:
+        blocks: of the Jacobian.
+        residual: the residual in parts.
+        jacobian: entries of ∂ residual / ∂x in parts.
+        input_jacobian: ∂ residual / ∂ inputs in parts, entries by their places in the dense matrix.
+    """
+
+    blocks: Blocks
+    residual: Parted
+    jacobian: Parted
+    input_jacobian: Parted
+
+    @property
+    def kernels(self) -> list[ca.Function]:
+        """All functions."""
+        return [*self.residual.kernels, *self.jacobian.kernels, *self.input_jacobian.kernels]
+
+
+def assembled(model: Model, names: Names) -> Assembled | None:
+    """The equations of an assembly in parts; None where one dense Jacobian does."""
+    found = blocks(model.frame, model.path_jacobian.sparsity_out(0))
+    if found is None:
+        return None
+    residual = _path_function(model.path_residual, dense=True)
+    inputs = model.input_jacobian
+    rows, columns = inputs.sparsity_out(0).get_triplet()
+    by_inputs = parted(_path_function(inputs), [found.owners[i] for i in rows], names.kernel("input_jacobian"))
+    places = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
+    parts = [replace(part, entries=[places[k] for k in part.entries]) for part in by_inputs.parts]
+    return Assembled(
+        found,
+        parted(residual, found.owners, names.kernel("residual")),
+        parted(model.path_jacobian, found.entry_owners, names.kernel("jacobian")),
+        replace(by_inputs, parts=parts),
+    )
+
+
+def _path_function(function: ca.Function, *, dense: bool = False) -> ca.Function:
+    """A map (x, inputs, factor) ↦ result of one that may not depend on the factor."""
+    symbols = function.mx_in()
+    result = function.call(symbols)[0]
+    given = symbols if len(symbols) == 3 else [*symbols, ca.MX.sym("factor")]
+    return ca.Function("path", given, [ca.densify(result) if dense else result])

@@ -1,0 +1,578 @@
+/* Solver of tendon_robot: damped Newton with a kept Jacobian, inside adaptive continuation in the load.
+   See tendon_robot.h for what each function does. */
+#include "tendon_robot.h"
+
+#define casadi_real tendon_robot_real
+#define casadi_int int
+#include "tendon_robot_kernels.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef tendon_robot_real real;
+typedef tendon_robot_status outcome;
+
+enum { N = TENDON_ROBOT_UNKNOWNS, INPUTS = TENDON_ROBOT_INPUTS, INPUT_ROOM = INPUTS > 0 ? INPUTS : 1, RODS = TENDON_ROBOT_RODS };
+
+#ifdef TENDON_ROBOT_SINGLE
+static const real TOLERANCE = (real)1e-5;
+static const real SHORTEST = (real)1e-4;
+static const real SINGULAR = (real)1e-7;
+#else
+static const real TOLERANCE = (real)1e-11;
+static const real SHORTEST = (real)1e-07;
+static const real SINGULAR = (real)1e-12;
+#endif
+enum { ITERATIONS = 60, STEPS = 400, QUICK = 2, SLOW = 4, KEPT_STEPS = 12, HALVINGS = 12 };
+static const real SUFFICIENT_DECREASE = (real)0.0001;
+static const real KEPT_DECREASE = (real)0.5;
+static const real LONGEST = (real)4.0;
+static const real NEAR = (real)0.5;
+
+/* Calls of generated kernels: arguments, results, and room as the kernel asks for. */
+#define KERNEL(kernel, ...) \
+  const real *given[] = {__VA_ARGS__}; \
+  const real *arguments[kernel##_SZ_ARG + 1]; \
+  real *results[kernel##_SZ_RES + 1]; \
+  int whole[kernel##_SZ_IW + 1]; \
+  real work[kernel##_SZ_W + 1]; \
+  memcpy(arguments, given, sizeof given)
+#define RESULTS(...) \
+  { \
+    real *const wanted[] = {__VA_ARGS__}; \
+    memcpy(results, wanted, sizeof wanted); \
+  }
+#define CALL(kernel) (void)kernel(arguments, results, whole, work, 0)
+
+/* A point of a path: inputs, and the share of the loads. */
+typedef struct {
+  real inputs[INPUT_ROOM];
+  real factor;
+} point;
+
+/* From the unloaded rod under growing loads, or from some inputs to others. */
+typedef struct {
+  const real *from;
+  const real *to;
+} path;
+
+/* A factorised Jacobian and the full steps taken since it was formed: Broyden's inverse by steps alone. */
+typedef struct {
+  real factors[N * N];
+  int pivots[N];
+  real steps[KEPT_STEPS][N];
+  real squares[KEPT_STEPS];
+  int count;
+} secant;
+
+typedef struct {
+  outcome status;
+  int iterations;
+  int jacobians;
+  int damped;
+  real norm;
+} correction;
+
+static void whole_load(const real *inputs, point *at) {
+  if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
+  at->factor = 1;
+}
+
+static void residual_at(const real *q, const point *at, real *residual) {
+  KERNEL(tendon_robot_k_residual, q, at->inputs, &at->factor);
+  RESULTS(residual);
+  CALL(tendon_robot_k_residual);
+}
+
+static void jacobian_at(const real *q, const point *at, real *jacobian) {
+  KERNEL(tendon_robot_k_jacobian, q, at->inputs, &at->factor);
+  RESULTS(jacobian);
+  CALL(tendon_robot_k_jacobian);
+}
+
+static void rate_at(const real *q, const point *at, const real *inputs_rate, real factor_rate, real *rate) {
+  KERNEL(tendon_robot_k_rate, q, at->inputs, &at->factor, inputs_rate, &factor_rate);
+  RESULTS(rate);
+  CALL(tendon_robot_k_rate);
+}
+
+static void unloaded_tangent(const real *inputs, real *tangent) {
+  KERNEL(tendon_robot_k_tangent, inputs);
+  RESULTS(tangent);
+  CALL(tendon_robot_k_tangent);
+}
+
+static real coarseness_of(const real *q, const real *inputs) {
+  real coarseness;
+  KERNEL(tendon_robot_k_coarseness, q, inputs);
+  RESULTS(&coarseness);
+  CALL(tendon_robot_k_coarseness);
+  return coarseness;
+}
+
+static real dot(const real *a, const real *b) {
+  real sum = 0;
+  int i;
+  for (i = 0; i < N; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+static real norm_of(const real *a) { return (real)sqrt((double)dot(a, a)); }
+
+static real distance(const real *a, const real *b) {
+  real sum = 0;
+  int i;
+  for (i = 0; i < N; i++) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return (real)sqrt((double)sum);
+}
+
+static int all_finite(const real *a, int count) {
+  int i;
+  for (i = 0; i < count; i++) {
+    if (!isfinite(a[i])) return 0;
+  }
+  return 1;
+}
+
+/* Gaussian elimination with partial pivoting, in place, column after column. A pivot at rounding becomes zero: symmetry
+   may let a rod turn without energy. */
+static void factorise(real *a, int *pivots) {
+  int i, j, k;
+  real tiny = 0;
+  for (i = 0; i < N * N; i++) tiny = fabs((double)a[i]) > (double)tiny ? (real)fabs((double)a[i]) : tiny;
+  tiny *= SINGULAR;
+  for (k = 0; k < N; k++) {
+    real *column = a + k * N;
+    int best = k;
+    for (i = k + 1; i < N; i++) {
+      if (fabs((double)column[i]) > fabs((double)column[best])) best = i;
+    }
+    pivots[k] = best;
+    if (best != k) {
+      for (j = 0; j < N; j++) {
+        const real kept = a[j * N + k];
+        a[j * N + k] = a[j * N + best];
+        a[j * N + best] = kept;
+      }
+    }
+    if (fabs((double)column[k]) <= (double)tiny) {
+      for (i = k; i < N; i++) column[i] = 0;
+      continue;
+    }
+    for (i = k + 1; i < N; i++) column[i] /= column[k];
+    for (j = k + 1; j < N; j++) {
+      real *target = a + j * N;
+      const real share = target[k];
+      if (share == 0) continue;
+      for (i = k + 1; i < N; i++) target[i] -= column[i] * share;
+    }
+  }
+}
+
+/* Solve with the factors, in place; an unknown without a pivot is left at zero. */
+static void substitute(const real *a, const int *pivots, real *b) {
+  int i, k;
+  for (k = 0; k < N; k++) {
+    const real kept = b[pivots[k]];
+    b[pivots[k]] = b[k];
+    b[k] = kept;
+  }
+  for (k = 0; k < N; k++) {
+    for (i = k + 1; i < N; i++) b[i] -= a[k * N + i] * b[k];
+  }
+  for (k = N - 1; k >= 0; k--) {
+    b[k] = a[k * N + k] == 0 ? 0 : b[k] / a[k * N + k];
+    for (i = 0; i < k; i++) b[i] -= a[k * N + i] * b[k];
+  }
+}
+
+/* Factorised Jacobian at q; zero where it is not finite. */
+static int linearise(const real *q, const point *at, secant *kept) {
+  jacobian_at(q, at, kept->factors);
+  if (!all_finite(kept->factors, N * N)) return 0;
+  factorise(kept->factors, kept->pivots);
+  kept->count = 0;
+  return 1;
+}
+
+/* Minus the inverse of the updated Jacobian times a vector; zero where that is not finite. */
+static int step_for(const secant *kept, const real *residual, real *step) {
+  int i, j;
+  for (i = 0; i < N; i++) step[i] = -residual[i];
+  substitute(kept->factors, kept->pivots, step);
+  for (j = 0; j + 1 < kept->count; j++) {
+    const real share = dot(kept->steps[j], step) / kept->squares[j];
+    for (i = 0; i < N; i++) step[i] += kept->steps[j + 1][i] * share;
+  }
+  if (kept->count > 0) {
+    const int last = kept->count - 1;
+    const real share = 1 - dot(kept->steps[last], step) / kept->squares[last];
+    for (i = 0; i < N; i++) step[i] /= share;
+  }
+  return all_finite(step, N);
+}
+
+/* Halve the step until the residual falls; the length that served, or zero. q, residual and norm move on then. */
+static real search(const point *at, const real *step, int halvings, real *q, real *residual, real *norm) {
+  real trial[N], there[N], length = 1;
+  int i, k;
+  for (k = 0; k <= halvings; k++) {
+    real trial_norm;
+    for (i = 0; i < N; i++) trial[i] = q[i] + length * step[i];
+    residual_at(trial, at, there);
+    trial_norm = norm_of(there);
+    if (isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * *norm) {
+      memcpy(q, trial, sizeof trial);
+      memcpy(residual, there, sizeof there);
+      *norm = trial_norm;
+      return length;
+    }
+    length /= 2;
+  }
+  return 0;
+}
+
+/* Newton at one point of a path, from q. */
+static correction newton(const point *at, real *q) {
+  correction end = {TENDON_ROBOT_MAX_ITERATIONS, 0, 0, 0, 0};
+  secant kept;
+  real residual[N], step[N], norm;
+  int keep = 0;
+  residual_at(q, at, residual);
+  norm = norm_of(residual);
+  for (;;) {
+    const real before = norm, size = 1 + norm_of(q);
+    real length = 0;
+    end.norm = norm / size;
+    /* Any residual is small beside unknowns whose norm overflows. */
+    if (!isfinite(norm) || !isfinite(size)) {
+      end.status = TENDON_ROBOT_NOT_FINITE;
+      return end;
+    }
+    if (norm <= TOLERANCE * size) end.status = TENDON_ROBOT_CONVERGED;
+    if (end.status == TENDON_ROBOT_CONVERGED || end.iterations == ITERATIONS) return end;
+    if (!keep) {
+      end.jacobians++;
+      if (!linearise(q, at, &kept)) {
+        end.status = TENDON_ROBOT_NOT_FINITE;
+        return end;
+      }
+    }
+    end.iterations++;
+    if (step_for(&kept, residual, step)) length = search(at, step, keep ? 0 : HALVINGS, q, residual, &norm);
+    if (length == 0) {
+      if (!keep) {
+        end.status = TENDON_ROBOT_SINGULAR;
+        return end;
+      }
+      keep = 0;
+      continue;
+    }
+    if (length < 1) end.damped = 1;
+    keep = length == 1 && norm <= KEPT_DECREASE * before && kept.count + 1 < KEPT_STEPS;
+    if (keep) {
+      memcpy(kept.steps[kept.count], step, sizeof step);
+      kept.squares[kept.count] = dot(step, step);
+      kept.count++;
+    }
+  }
+}
+
+static void point_on(const path *way, real t, point *at) {
+  int i;
+  /* Exact at both ends, whatever the sizes of the two. */
+  for (i = 0; i < INPUTS; i++) at->inputs[i] = way->from ? (1 - t) * way->from[i] + t * way->to[i] : way->to[i];
+  at->factor = way->from ? 1 : t;
+}
+
+/* dq/dt of a path at an equilibrium on it; zero where there is none to be had. */
+static void tangent_at(const path *way, real t, const real *q, real *tangent) {
+  real rate[N], inputs_rate[INPUT_ROOM];
+  secant here;
+  point at;
+  int i, sound;
+  point_on(way, t, &at);
+  for (i = 0; i < INPUTS; i++) inputs_rate[i] = way->from ? way->to[i] - way->from[i] : 0;
+  rate_at(q, &at, inputs_rate, way->from ? 0 : 1, rate);
+  sound = all_finite(rate, N) && linearise(q, &at, &here) && step_for(&here, rate, tangent);
+  if (!sound) memset(tangent, 0, N * sizeof *tangent);
+}
+
+/* Whether a corrected point lies on the path and not on some other. */
+static int trusted(const correction *end, const real *trial, const real *predicted, real predicted_length) {
+  if (end->status != TENDON_ROBOT_CONVERGED || end->jacobians > SLOW || end->damped) return 0;
+  return distance(trial, predicted) <= (real)0.3 + (real)0.5 * predicted_length;
+}
+
+/* Follow a path from t = 0 to 1; q is the equilibrium at 0, tangent its dq/dt, and info has been begun. */
+static void follow(const path *way, real *q, real *tangent, tendon_robot_info *info) {
+  real t = 0, step = 1;
+  int k, i;
+  info->status = TENDON_ROBOT_LOAD_STALLED;
+  for (k = 0; k < STEPS; k++) {
+    real trial[N], predicted[N], target, length = norm_of(tangent);
+    correction end;
+    point at;
+    if (step > 1 - t) step = 1 - t;
+    if (step * length > LONGEST) step = LONGEST / length;
+    if (step < SHORTEST && step < 1 - t) return;
+    target = t + step > 1 - (real)1e-12 ? 1 : t + step;
+    for (i = 0; i < N; i++) predicted[i] = trial[i] = q[i] + step * tangent[i];
+    point_on(way, target, &at);
+    end = newton(&at, trial);
+    info->iterations += end.iterations;
+    info->jacobians += end.jacobians;
+    if (!trusted(&end, trial, predicted, step * length)) {
+      step /= 2;
+      continue;
+    }
+    memcpy(q, trial, sizeof trial);
+    t = target;
+    info->load_factor = t;
+    info->residual_norm = end.norm;
+    if (t == 1) {
+      info->status = TENDON_ROBOT_CONVERGED;
+      return;
+    }
+    if (end.jacobians <= QUICK) step *= 2;
+    tangent_at(way, t, q, tangent);
+    info->jacobians++;
+  }
+}
+
+static void solve_cold(const real *inputs, real *q, tendon_robot_info *info) {
+  const path way = {0, inputs};
+  real tangent[N];
+  memset(q, 0, N * sizeof *q);
+  unloaded_tangent(inputs, tangent);
+  if (!isfinite(norm_of(tangent))) {
+    info->status = TENDON_ROBOT_NOT_FINITE;
+    return;
+  }
+  follow(&way, q, tangent, info);
+}
+
+/* Newton at the full load from q; zero, and q as it was, where that strays so far that it may be another branch. */
+static int solve_near(const real *inputs, real *q, tendon_robot_info *info) {
+  real trial[N];
+  correction end;
+  point at;
+  memcpy(trial, q, sizeof trial);
+  whole_load(inputs, &at);
+  end = newton(&at, trial);
+  info->iterations += end.iterations;
+  info->jacobians += end.jacobians;
+  if (end.status != TENDON_ROBOT_CONVERGED || end.damped || distance(trial, q) > NEAR) return 0;
+  memcpy(q, trial, sizeof trial);
+  info->status = end.status;
+  info->residual_norm = end.norm;
+  info->load_factor = 1;
+  return 1;
+}
+
+static int is_zero(const real *q) {
+  int i;
+  for (i = 0; i < N; i++) {
+    if (q[i] != 0) return 0;
+  }
+  return 1;
+}
+
+/* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
+static outcome finish(const real *q, const real *inputs, tendon_robot_info *found, tendon_robot_info *info) {
+  if (found->status == TENDON_ROBOT_CONVERGED && !(coarseness_of(q, inputs) <= 1)) found->status = TENDON_ROBOT_UNRESOLVED;
+  if (info) *info = *found;
+  return found->status;
+}
+
+outcome tendon_robot_solve(const real *inputs, real *q, tendon_robot_info *info) {
+  tendon_robot_info found = {TENDON_ROBOT_NOT_FINITE, 0, 0, 0, 0};
+  const int warm = all_finite(q, N) && !is_zero(q);
+  if (!all_finite(inputs, INPUTS)) return finish(q, inputs, &found, info);
+  if (!warm || !solve_near(inputs, q, &found)) solve_cold(inputs, q, &found);
+  return finish(q, inputs, &found, info);
+}
+
+outcome tendon_robot_follow(const real *from, const real *inputs, real *q, tendon_robot_info *info) {
+  tendon_robot_info found = {TENDON_ROBOT_NOT_FINITE, 0, 0, 0, 0};
+  const path way = {from, inputs};
+  real trial[N], tangent[N];
+  correction end;
+  point at;
+  if (!all_finite(from, INPUTS) || !all_finite(inputs, INPUTS) || !all_finite(q, N)) return finish(q, inputs, &found, info);
+  memcpy(trial, q, sizeof trial);
+  point_on(&way, 0, &at);
+  end = newton(&at, trial);
+  found.status = end.status;
+  found.iterations = end.iterations;
+  found.jacobians = end.jacobians;
+  found.residual_norm = end.norm;
+  if (end.status != TENDON_ROBOT_CONVERGED) return finish(q, inputs, &found, info);
+  memcpy(q, trial, sizeof trial);
+  tangent_at(&way, 0, q, tangent);
+  found.jacobians++;
+  follow(&way, q, tangent, &found);
+  return finish(q, inputs, &found, info);
+}
+
+/* Cases first to last, one after the other. */
+static int solve_run(int first, int last, const real *inputs, real *q, tendon_robot_info *info) {
+  int i, converged = 0;
+  for (i = first; i < last; i++) {
+    real *here = q + (size_t)i * N;
+    if (i > first && info[i - 1].status == TENDON_ROBOT_CONVERGED) memcpy(here, here - N, N * sizeof *here);
+    else memset(here, 0, N * sizeof *here);
+    converged += tendon_robot_solve(inputs + (size_t)i * INPUTS, here, info + i) == TENDON_ROBOT_CONVERGED;
+  }
+  return converged;
+}
+
+int tendon_robot_solve_batch(int count, const real *inputs, real *q, tendon_robot_info *info) {
+#ifdef _OPENMP
+  enum { RUN = 64 };
+  int converged = 0, first;
+#pragma omp parallel for schedule(dynamic) reduction(+ : converged)
+  for (first = 0; first < count; first += RUN) {
+    converged += solve_run(first, count - first < RUN ? count : first + RUN, inputs, q, info);
+  }
+  return converged;
+#else
+  return solve_run(0, count, inputs, q, info);
+#endif
+}
+
+void tendon_robot_residual(const real *q, const real *inputs, real *residual) {
+  const real factor = 1;
+  KERNEL(tendon_robot_k_residual, q, inputs, &factor);
+  RESULTS(residual);
+  CALL(tendon_robot_k_residual);
+}
+
+void tendon_robot_residual_jacobian(const real *q, const real *inputs, real *jacobian, real *residual) {
+  const real factor = 1;
+  KERNEL(tendon_robot_k_jacobian, q, inputs, &factor);
+  RESULTS(jacobian);
+  CALL(tendon_robot_k_jacobian);
+  tendon_robot_residual(q, inputs, residual);
+}
+
+void tendon_robot_input_jacobian(const real *q, const real *inputs, real *d_residual_d_inputs) {
+  real one[INPUT_ROOM] = {0};
+  point at;
+  int j;
+  whole_load(inputs, &at);
+  for (j = 0; j < INPUTS; j++) {
+    one[j] = 1;
+    rate_at(q, &at, one, 0, d_residual_d_inputs + j * N);
+    one[j] = 0;
+  }
+}
+
+void tendon_robot_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
+            real *generalised_force, real *base_force, real *base_moment) {
+  KERNEL(tendon_robot_k_igm, q, base_position, base_quaternion, inputs);
+  RESULTS(generalised_force, base_force, base_moment);
+  CALL(tendon_robot_k_igm);
+}
+
+void tendon_robot_tip(const real *q, const real *inputs, real *position, real *quaternion) {
+  KERNEL(tendon_robot_k_tip, q, inputs);
+  RESULTS(position, quaternion);
+  CALL(tendon_robot_k_tip);
+}
+
+void tendon_robot_tip_jacobian(const real *q, const real *inputs, real *d_pose_d_q, real *d_pose_d_inputs) {
+  KERNEL(tendon_robot_k_tip_jacobian, q, inputs);
+  RESULTS(d_pose_d_q, d_pose_d_inputs);
+  CALL(tendon_robot_k_tip_jacobian);
+}
+
+void tendon_robot_shape(const real *q, const real *inputs, real X, real *position, real *quaternion) {
+  KERNEL(tendon_robot_k_shape, q, inputs, &X);
+  RESULTS(position, quaternion);
+  CALL(tendon_robot_k_shape);
+}
+
+void tendon_robot_actuator_lower_east(const real *q, const real *inputs, real *effort, real *extent, real *d_extent_d_q) {
+  KERNEL(tendon_robot_k_actuator_lower_east, q, inputs);
+  RESULTS(effort, extent, d_extent_d_q);
+  CALL(tendon_robot_k_actuator_lower_east);
+}
+
+void tendon_robot_actuator_lower_north(const real *q, const real *inputs, real *effort, real *extent, real *d_extent_d_q) {
+  KERNEL(tendon_robot_k_actuator_lower_north, q, inputs);
+  RESULTS(effort, extent, d_extent_d_q);
+  CALL(tendon_robot_k_actuator_lower_north);
+}
+
+void tendon_robot_actuator_upper_west(const real *q, const real *inputs, real *effort, real *extent, real *d_extent_d_q) {
+  KERNEL(tendon_robot_k_actuator_upper_west, q, inputs);
+  RESULTS(effort, extent, d_extent_d_q);
+  CALL(tendon_robot_k_actuator_upper_west);
+}
+
+void tendon_robot_actuator_upper_south(const real *q, const real *inputs, real *effort, real *extent, real *d_extent_d_q) {
+  KERNEL(tendon_robot_k_actuator_upper_south, q, inputs);
+  RESULTS(effort, extent, d_extent_d_q);
+  CALL(tendon_robot_k_actuator_upper_south);
+}
+
+static void (*const TIP_JACOBIANS[RODS])(const real *, const real *, real *, real *) = {tendon_robot_tip_jacobian};
+
+/* Rows of d_pose_d_q times columns of d_q_d_inputs, added to d_pose_d_inputs. */
+static void add_product(const real *d_pose_d_q, const real *d_q_d_inputs, real *d_pose_d_inputs) {
+  int i, j, k;
+  for (j = 0; j < INPUTS; j++) {
+    for (k = 0; k < N; k++) {
+      for (i = 0; i < 7; i++) d_pose_d_inputs[j * 7 + i] += d_pose_d_q[k * 7 + i] * d_q_d_inputs[j * N + k];
+    }
+  }
+}
+
+outcome tendon_robot_solve_sensitivity(const real *inputs, const real *q, real *d_q_d_inputs, real *d_tip_d_inputs) {
+  real residual[N], columns[N * INPUT_ROOM], tips[RODS * 7 * INPUT_ROOM], d_pose_d_q[7 * N];
+  secant here;
+  point at;
+  int i, j;
+  if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return TENDON_ROBOT_NOT_FINITE;
+  whole_load(inputs, &at);
+  residual_at(q, &at, residual);
+  if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return TENDON_ROBOT_NOT_IN_EQUILIBRIUM;
+  if (!linearise(q, &at, &here)) return TENDON_ROBOT_NOT_FINITE;
+  for (i = 0; i < N; i++) {
+    if (here.factors[i * N + i] == 0) return TENDON_ROBOT_SINGULAR;
+  }
+  tendon_robot_input_jacobian(q, inputs, columns);
+  for (j = 0; j < INPUTS; j++) {
+    for (i = 0; i < N; i++) columns[j * N + i] = -columns[j * N + i];
+    substitute(here.factors, here.pivots, columns + j * N);
+  }
+  if (!all_finite(columns, N * INPUTS)) return TENDON_ROBOT_SINGULAR;
+  for (i = 0; i < RODS; i++) {
+    TIP_JACOBIANS[i](q, inputs, d_pose_d_q, tips + i * 7 * INPUTS);
+    add_product(d_pose_d_q, columns, tips + i * 7 * INPUTS);
+  }
+  if (d_q_d_inputs) memcpy(d_q_d_inputs, columns, (size_t)N * INPUTS * sizeof *columns);
+  if (d_tip_d_inputs) memcpy(d_tip_d_inputs, tips, (size_t)RODS * 7 * INPUTS * sizeof *tips);
+  return TENDON_ROBOT_CONVERGED;
+}
+
+const char *tendon_robot_status_text(outcome status) {
+  switch (status) {
+    case TENDON_ROBOT_CONVERGED:
+      return "Equilibrium found: the residual is below its tolerance.";
+    case TENDON_ROBOT_MAX_ITERATIONS:
+      return "No equilibrium found: the iterations ran out before the residual was small enough.";
+    case TENDON_ROBOT_NOT_FINITE:
+      return "No equilibrium found: the equations gave a value that is not a finite number.";
+    case TENDON_ROBOT_SINGULAR:
+      return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
+    case TENDON_ROBOT_LOAD_STALLED:
+      return "No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load.";
+    case TENDON_ROBOT_UNRESOLVED:
+      return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
+    case TENDON_ROBOT_NOT_IN_EQUILIBRIUM:
+      return "The unknowns are no equilibrium for these inputs: solve first.";
+  }
+  return "No such status.";
+}
