@@ -92,12 +92,21 @@ def _refuse_empty(model: Model, lower: FloatArray, upper: FloatArray) -> None:
 def scales(model: Model, wanted: Sought, start: Solution) -> FloatArray:
     """A change of each sought input that matters, shape (n,), in its unit.
 
-    Half the range where there is one; else what changes the dimensionless balance by one unit; else the scene's value.
+    Half the range where there is one; else what changes the dimensionless balance by one unit; else the value itself,
+    or the length of the rod whose base moves.
     """
     half = (wanted.upper - wanted.lower) / 2
     felt = np.linalg.norm(model.input_jacobian(start.x, start.inputs).full(), axis=0)[wanted.places]
-    values = np.abs(start.inputs[wanted.places])
-    own = np.where(values > 0.0, values, 1.0)
+    own = _own_sizes(model, start.inputs)[wanted.places]
     natural = np.where(felt > UNFELT * felt.max(initial=0.0), 1.0 / np.where(felt > 0.0, felt, 1.0), own)
     bounded = np.isfinite(half) & (half > 0.0)
     return np.where(bounded, np.where(bounded, half, 1.0), natural)
+
+
+def _own_sizes(model: Model, inputs: FloatArray) -> FloatArray:
+    """How large an input is by itself, where nothing else tells."""
+    sizes = np.where(inputs != 0.0, np.abs(inputs), 1.0)
+    lengths = {f"{rod.name}.base.position": rod.length for rod in model.scene.rods}
+    for name, place in model.inputs.slices.items():
+        sizes[place] = lengths.get(name, sizes[place])
+    return sizes
