@@ -1,9 +1,9 @@
 """A rod in an optimisation problem: its unknowns lifted into the problem, or solved for inside by a rootfinder.
 
 *Lifted* gives the optimiser the unknowns as variables and the equilibrium as constraints: no inner loop, and it may
-pass through states out of balance. *Embedded* keeps the problem small: x is a function of the inputs, the root nearest to a
-start, with derivatives by the implicit-function theorem. CasADi's rootfinders report success where they have none, so
-the root comes with its own residual, which a problem must hold at zero.
+pass through states out of balance. *Embedded* keeps the problem small: x is a function of the inputs, the root that
+Newton's method finds from a start, with derivatives by the implicit-function theorem. CasADi's rootfinders report
+success where they have none, so the root comes with its own residual, which a problem must hold near zero.
 """
 
 from __future__ import annotations
