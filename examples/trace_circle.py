@@ -92,6 +92,7 @@ def draw(tensions: np.ndarray, equilibria: list[Solution], file: Path) -> None:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 5.0), layout="constrained")
+    figure.get_layout_engine().set(wspace=0.15)
     space = figure.add_subplot(1, 2, 1, projection="3d")
     for solution in equilibria:
         space.plot(*solution.pose(np.linspace(0, 1, 41)).position.T, color="#4477aa", alpha=0.6)
@@ -99,7 +100,6 @@ def draw(tensions: np.ndarray, equilibria: list[Solution], file: Path) -> None:
     space.plot(*tips.T, color="#ee6677", marker="o", markersize=4)
     space.set(xlabel="x, m", ylabel="y, m", zlabel="z, m")
     space.set_aspect("equal")
-    space.set_box_aspect(None, zoom=0.85)
     panel = figure.add_subplot(1, 2, 2)
     panel.plot(np.degrees(2 * np.pi * np.arange(len(tensions)) / len(tensions)), tensions, marker="o")
     panel.axhline(LARGEST, color="0.5", linestyle="--")
