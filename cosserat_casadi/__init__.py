@@ -6,6 +6,7 @@ Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tole
 
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.mesh import discretise
@@ -28,6 +29,7 @@ __all__ = [
     "Discretisation",
     "EquilibriumPath",
     "ExportError",
+    "Inverse",
     "Model",
     "Outcome",
     "PathEvent",
@@ -43,6 +45,8 @@ __all__ = [
     "export",
     "follow_path",
     "follow_scene_path",
+    "inverse",
+    "inverse_scene",
     "load",
     "parse_scene",
     "path_result",

@@ -1,4 +1,4 @@
-"""The command line: solve, follow a path, check, export, tune, bench."""
+"""The command line: solve, follow a path, find inputs, check, export, tune, bench."""
 
 from __future__ import annotations
 
@@ -32,6 +32,8 @@ from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.control.inverse_file import inverse_text
 from cosserat_casadi.effects.effect import coefficients
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
@@ -129,6 +131,30 @@ def path(
         _draw_path(found, plot)
     report.print_path(Console(), found, [p for p in (output, table, plot) if p is not None])
     if not found.converged:
+        raise typer.Exit(NOT_FOUND)
+
+
+@app.command()
+def inverse(
+    scene: SceneFile,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the result at the inputs found (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    stable: Annotated[bool, typer.Option("--stable", help="Accept a stable equilibrium only.")] = False,
+) -> None:
+    """Find inputs that bring rods and bodies to the [[targets]] of a scene.
+
+    Exit codes: 0 targets met, 2 refused, 3 not met, or no equilibrium found; the files show the closest pose then.
+    """
+    _check_outputs(output, plot)
+    with _told("Finding inputs") as (_, said):
+        found = inverse_scene(read_scene(scene, tuple(settings or ())), stable=stable, report=said)
+    if output is not None:
+        write_atomically(output, inverse_text(found).encode())
+    if plot is not None:
+        _draw(found.solution, plot)
+    report.print_inverse(Console(), found, [p for p in (output, plot) if p is not None])
+    if not found.met:
         raise typer.Exit(NOT_FOUND)
 
 

@@ -18,6 +18,7 @@ from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.scene import CurveTarget
 from cosserat_casadi.solver.solution import Pose, Solution
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -33,6 +34,7 @@ SLACK = 1e-6
 
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 BODIES = "#777777"
+TARGETS: dict[str, Any] = {"marker": "+", "markersize": 13, "markeredgewidth": 2.0, "color": "#aa3377", "zorder": 10}
 JOINTS: dict[str, dict[str, Any]] = {
     "fixed": {"marker": "s", "markersize": 7, "color": "0.35"},
     "spherical": {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"},
@@ -192,6 +194,7 @@ def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) 
     for body in solution.model.scene.bodies:
         _draw_body(axes, solution, body, plane)
     _draw_arrows(axes, solution, plane)
+    _draw_targets(axes, solution, plane)
     names = "xyz"
     shown = plane or (0, 1, 2)
     axes.set_xlabel(f"{names[shown[0]]}, m")
@@ -204,6 +207,16 @@ def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) 
         axes.set_aspect("equal", adjustable="datalim")
         axes.grid(alpha=0.3)
     axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
+
+
+def _draw_targets(axes: Any, solution: Solution, plane: tuple[int, int] | None) -> None:
+    points = [
+        point
+        for target in solution.model.scene.targets
+        for point in (target.points if isinstance(target, CurveTarget) else (target.position,))
+    ]
+    if points:
+        _line(axes, np.array(points), plane, linestyle="none", label="targets", **TARGETS)
 
 
 def _unloaded(solution: Solution, name: str) -> FloatArray:

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from cosserat_casadi.control.inverse import Inverse
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -34,6 +35,23 @@ def print_solution(console: Console, solution: Solution, written: Sequence[Path]
     console.print(_figures(solution), highlight=False)
     for path in written:
         console.print(f"wrote {escape(str(path))}", highlight=False)
+
+
+def print_inverse(console: Console, found: Inverse, written: Sequence[Path]) -> None:
+    """The inputs found and how far the targets are missed, then the equilibrium like that of a solve."""
+    table = Table()
+    for heading in ("input", "value found"):
+        table.add_column(heading)
+    for name, value in found.values.items():
+        table.add_row(escape(name), ", ".join(_digits(value.ravel(order="F"))))
+    console.print(table)
+    table = Table()
+    for heading in ("target", "position missed by, m", "angle missed by, rad"):
+        table.add_column(heading)
+    for gap in found.gaps:
+        table.add_row(escape(gap.what), f"{gap.position:.3g}", "free" if gap.angle is None else f"{gap.angle:.3g}")
+    console.print(table)
+    print_solution(console, found.solution, written)
 
 
 def print_unstable(console: Console) -> None:

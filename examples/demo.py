@@ -19,12 +19,15 @@ SCENES = (
     "euler_column",
     "deep_arch",
     "tendon_finger",
+    "finger_to_point",
     "helical_tendon",
     "two_section_robot",
     "soft_arm",
     "branching_rod",
     "six_rod_platform",
 )
+
+WITH_TARGETS = ("finger_to_point",)
 
 
 def main() -> int:
@@ -36,7 +39,7 @@ def main() -> int:
     for name in SCENES:
         scene = Path(__file__).with_name(f"{name}.toml")
         arguments = [
-            "solve",
+            "inverse" if name in WITH_TARGETS else "solve",
             str(scene),
             "--output",
             str(folder / f"{name}.json"),

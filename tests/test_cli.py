@@ -126,6 +126,8 @@ def test_check_prices_the_scene(wire: Path) -> None:
         (["path", "wire.toml", "--input", "push.force", "--to", "1], b = [2"], "--to: must be a number or a list"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--csv", "no/p.csv"], "--csv"),
         (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--plot", "f.doc"], "--plot"),
+        (["inverse", "wire.toml", "--output", "r.json"], "targets: missing"),
+        (["inverse", "wire.toml", "--plot", "f.doc"], "--plot"),
         (["sing"], "sing"),
         (["bench", "missing.toml"], "missing.toml"),
         (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "'euler' is no method"),
@@ -244,6 +246,23 @@ def test_examples_solve(path: Path, tmp_path: Path) -> None:
     result = json.loads((tmp_path / "r.json").read_text())
     assert result["converged"]
     assert result["error_estimate"] <= read_scene(path).accuracy.tolerance
+
+
+def test_inverse_writes_what_was_found(wire: Path) -> None:
+    """A wire of 0.2 m that keeps its length reaches one point, and not one that lies beyond it."""
+    target = 'inputs = ["push.force"]\n{}\n[[targets]]\nkind = "position"\nrod = "wire"\nposition = [{}, 0, 0.1]\n'
+    for name, x, code in (("near", 0.16, 0), ("far", 0.3, 3)):
+        (wire / f"{name}.toml").write_text(target.format("", x).replace("\n\n", SCENE, 1))
+        done = cosserat("inverse", f"{name}.toml", "--output", f"{name}.json", "--plot", "f.svg", cwd=wire)
+        assert done.returncode == code, done.stdout + done.stderr
+        found = json.loads((wire / f"{name}.json").read_text())
+        assert found["targets_met"] is (code == 0)
+        assert found["converged"] is True
+        assert found["targets"][0]["angle_gap"] is None
+        assert (wire / "f.svg").stat().st_size > 1000
+        assert ("The targets are met." in found["message"]) is (code == 0)
+    assert found["targets"][0]["position_gap"] == pytest.approx(np.hypot(0.3, 0.1) - 0.2, abs=1e-3)
+    assert "misses tip of wire" in found["message"]
 
 
 def test_demo_solves_every_example() -> None:

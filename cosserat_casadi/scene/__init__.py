@@ -31,6 +31,7 @@ from cosserat_casadi.scene.schema import (
     Tendon,
     TipWrench,
 )
+from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
 
 __all__ = [
     "Accuracy",
@@ -39,9 +40,11 @@ __all__ = [
     "Base",
     "Body",
     "BodyWrench",
+    "Bound",
     "Chamber",
     "Circle",
     "ClampedSupport",
+    "CurveTarget",
     "DistributedWrench",
     "FixedJoint",
     "Gravity",
@@ -52,6 +55,8 @@ __all__ = [
     "Material",
     "PinnedSupport",
     "PointWrench",
+    "PoseTarget",
+    "PositionTarget",
     "Rectangle",
     "Rod",
     "Scene",
@@ -59,6 +64,7 @@ __all__ = [
     "SphericalJoint",
     "Stiffness",
     "Support",
+    "Target",
     "Tendon",
     "TipWrench",
     "parse_scene",

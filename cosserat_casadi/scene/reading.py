@@ -20,7 +20,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.scene import schema
+from cosserat_casadi.scene import schema, targets
 from cosserat_casadi.scene.faults import Fault, shown
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.schema import Scene
@@ -54,6 +54,10 @@ _RECORDS: dict[str | int, type[BaseModel]] = {
     "⟨tendon⟩": schema.Tendon,
     "⟨chamber⟩": schema.Chamber,
     "helix": schema.Helix,
+    "⟨pose⟩": targets.PoseTarget,
+    "⟨position⟩": targets.PositionTarget,
+    "⟨curve⟩": targets.CurveTarget,
+    "bounds": targets.Bound,
 }
 """The record that a segment of pydantic's path leads to; the schema marks its choices with ⟨ ⟩."""
 

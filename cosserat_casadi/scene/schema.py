@@ -10,32 +10,39 @@ The local z axis of a section is the rod's tangent; strains are ordered K_x, K_y
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    ModelWrapValidatorHandler,
-    StrictBool,
-    Tag,
-    ValidationError,
-    model_validator,
-)
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, StrictBool, Tag, ValidationError
 
 from cosserat_casadi.scene.assembly import assembly_faults
 from cosserat_casadi.scene.faults import Fault, Path, shown
 from cosserat_casadi.scene.faults import listing as _listing
 from cosserat_casadi.scene.faults import named as _named
 from cosserat_casadi.scene.faults import tables as _tables
+from cosserat_casadi.scene.records import (
+    Component,
+    Direction,
+    Name,
+    NotEmpty,
+    Number,
+    Polynomials,
+    Positive,
+    Quadruple,
+    Quaternion,
+    Record,
+    Size,
+    SizeOrZero,
+    Vector,
+    Whole,
+    by,
+    kind_word,
+    listed,
+    one_or_list,
+    refusal,
+    without_repetition,
+)
+from cosserat_casadi.scene.targets import Bound, Target, target_faults
 
 STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension")
 """Names of the six strains, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
@@ -43,226 +50,33 @@ STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension
 PRESETS: dict[str, tuple[int, ...]] = {"planar": (1,), "kirchhoff": (0, 1, 2), "reissner": (0, 1, 2, 3, 4, 5)}
 """Indices of the strains that the named rod theories admit."""
 
-NOT_YET = "is part of the scene format but this version cannot solve it yet"
-"""What is said of words that the format knows and this version does not."""
-
-ROUNDING = 1e-15
-"""Norms as near to 1 as this are left as they are: what is read, written and read again stays the same."""
-
-Quadruple = tuple[float, float, float, float]
-Triple = tuple[float, float, float]
 RecordType = TypeVar("RecordType", bound="Record")
 Chosen = TypeVar("Chosen")
 
 
-# Faults
-
-
-def _refusal(faults: Iterable[Fault], others: ValidationError | None = None) -> ValidationError:
-    """The faults, together with those that pydantic found, as the exception that pydantic passes on."""
-    lines = [] if others is None else [_line(error) for error in others.errors(include_url=False)]
-    for path, problem, remedy in faults:
-        told = PydanticCustomError("refused", "{problem}", {"problem": problem, "remedy": remedy})
-        lines.append(InitErrorDetails(type=told, loc=path, input=None))
-    return ValidationError.from_exception_data("scene", lines)
-
-
-def _line(error: Any) -> InitErrorDetails:
-    told, context = error["type"], error.get("ctx", {})
-    if told == "refused":
-        told = PydanticCustomError("refused", "{problem}", context)
-    return InitErrorDetails(type=told, loc=error["loc"], input=error["input"], ctx=context)
-
-
-def _plain(value: Any) -> Any:
-    """Records as the tables they were read from, and without what is not given."""
-    if isinstance(value, BaseModel):
-        value = value.model_dump(by_alias=True, exclude_unset=True)
-    if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items() if entry is not None}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    return value
-
-
-class Record(BaseModel):
-    """A table of the scene: frozen, without unknown keys, every number finite."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-    @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
-        """Faults of keys against each other, in a table whose values may be faulty too."""
-        yield from ()
-
-    @model_validator(mode="wrap")
-    @classmethod
-    def _every_fault_at_once(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        faults = list(cls.conflicts(_plain(given))) if isinstance(given, Mapping) else []
-        try:
-            record = handler(given)
-        except ValidationError as refused:
-            raise _refusal(faults, refused) from None
-        if faults:
-            raise _refusal(faults)
-        return record
-
-
-# Numbers, vectors and choices
-
-
-def _listed(count: int, what: str) -> BeforeValidator:
-    """Lists of one length only, said in one sentence instead of one for each missing entry."""
-
-    def check(value: Any) -> Any:
-        if not isinstance(value, list | tuple):
-            raise _refusal([Fault((), f"must be a list of {what}, got {shown(value)}")])
-        if len(value) != count:
-            raise _refusal([Fault((), f"must be a list of {what}, got {len(value)}")])
-        return value
-
-    return BeforeValidator(check)
-
-
-class _NotEmpty:
-    """Lists with an entry: pydantic's own bound does not count entries that are faulty."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self._check, handler(source))
-
-    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return {**handler(core), "minItems": 1}
-
-    def _check(self, value: Any) -> Any:
-        if isinstance(value, list | tuple) and not value:
-            raise _refusal([Fault((), "must have at least one entry")])
-        return value
-
-
-def _one_or_list(value: Any) -> str:
-    return "⟨list⟩" if isinstance(value, list | tuple) else "⟨one⟩"
-
-
-def _word(key: str, known: Sequence[str], not_yet: Sequence[str] = ()) -> BeforeValidator:
-    """The key that says which kind of table this is, checked before the table itself."""
-    choices = ", ".join(repr(word) for word in known)
-
-    def check(value: Any) -> Any:
-        if isinstance(value, BaseModel):
-            return value
-        if not isinstance(value, Mapping):
-            raise _refusal([Fault((), f"must be a table, got {shown(value)}")])
-        word = value.get(key)
-        if word is None:
-            raise _refusal([Fault((key,), "missing", f"one of {choices}")])
-        if word in not_yet:
-            raise _refusal([Fault((key,), f"{word!r} {NOT_YET}")])
-        if word not in known:
-            raise _refusal([Fault((key,), f"must be one of {choices}, got {shown(word)}")])
-        return value
-
-    return BeforeValidator(check)
-
-
-def _by(key: str) -> Callable[[Any], str]:
-    def tag(value: Any) -> str:
-        return f"⟨{value[key] if isinstance(value, Mapping) else getattr(value, key, None)}⟩"
-
-    return tag
-
-
-def _unit_quaternion(value: Quadruple) -> Quadruple:
-    norm = math.hypot(*value)
-    if abs(norm - 1.0) > 1e-6:
-        raise _refusal([Fault((), f"must have norm 1, got norm {norm:.9g}", "divide it by its norm; order w, x, y, z")])
-    if abs(norm - 1.0) <= ROUNDING:
-        return value
-    w, x, y, z = value
-    return (w / norm, x / norm, y / norm, z / norm)
-
-
-def _direction(value: Triple) -> Triple:
-    if abs(math.hypot(*value) - 1.0) <= ROUNDING:
-        return value
-    largest = max(map(abs, value))
-    if largest == 0.0:
-        raise _refusal([Fault((), "must not be zero", "a direction, such as [1, 0, 0]")])
-    x, y, z = (component / largest for component in value)
-    norm = math.hypot(x, y, z)
-    return (x / norm, y / norm, z / norm)
-
-
-def _without_repetition(value: tuple[str, ...]) -> tuple[str, ...]:
-    if faults := list(_repeated(value)):
-        raise _refusal(faults)
-    return value
-
-
-def _repeated(entries: Sequence[Any]) -> Iterator[Fault]:
-    seen: set[str] = set()
-    for i, entry in enumerate(entries):
-        if isinstance(entry, str) and entry in seen:
-            yield Fault((i,), f"{shown(entry)} is listed twice")
-        elif isinstance(entry, str):
-            seen.add(entry)
-
-
 def _exactly_one(value: Any) -> Any:
     if type(value) is not int or value != 1:
-        raise _refusal([Fault((), f"must be 1, got {shown(value)}", "this version reads schema = 1")])
+        raise refusal([Fault((), f"must be 1, got {shown(value)}", "this version reads schema = 1")])
     return value
 
 
 def _loaded_section(value: float) -> float:
     if not 0.0 < value <= 1.0:
         remedy = "a wrench on the base goes straight into the clamp: leave it out" if value == 0.0 else ""
-        raise _refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
+        raise refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
     return value
 
 
-def _not_yet(value: Any) -> Any:
-    if isinstance(value, list | tuple) and not value:
-        return value
-    raise _refusal([Fault((), NOT_YET)])
-
-
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[Number, Field(gt=0)]
-Whole = Annotated[int, Field(strict=True)]
-Vector = Annotated[tuple[Number, Number, Number], _listed(3, "3 numbers")]
-Quaternion = Annotated[tuple[Number, Number, Number, Number], _listed(4, "4 numbers"), AfterValidator(_unit_quaternion)]
-Direction = Annotated[Vector, AfterValidator(_direction)]
-Size = Annotated[
-    Annotated[Positive, Tag("⟨one⟩")]
-    | Annotated[tuple[Positive, Positive], _listed(2, "2 numbers, base and tip"), Tag("⟨list⟩")],
-    Discriminator(_one_or_list),
-]
-SizeOrZero = Annotated[
-    Annotated[Number, Field(ge=0), Tag("⟨one⟩")]
-    | Annotated[
-        tuple[Annotated[Number, Field(ge=0)], Annotated[Number, Field(ge=0)]],
-        _listed(2, "2 numbers, base and tip"),
-        Tag("⟨list⟩"),
-    ],
-    Discriminator(_one_or_list),
-]
-Component = Annotated[
-    Annotated[Number, Tag("⟨one⟩")] | Annotated[tuple[Number, ...], _NotEmpty(), Tag("⟨list⟩")],
-    Discriminator(_one_or_list),
-]
-Polynomials = Annotated[tuple[Component, Component, Component], _listed(3, "3 components")]
-Unavailable = Annotated[tuple[()], BeforeValidator(_not_yet)]
 StrainName = Literal["bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension"]
 StrainChoice = Annotated[
     Annotated[Literal["planar", "kirchhoff", "reissner"], Tag("⟨one⟩")]
-    | Annotated[tuple[StrainName, ...], _NotEmpty(), AfterValidator(_without_repetition), Tag("⟨list⟩")],
-    Discriminator(_one_or_list),
+    | Annotated[tuple[StrainName, ...], NotEmpty(), AfterValidator(without_repetition), Tag("⟨list⟩")],
+    Discriminator(one_or_list),
 ]
 Modes = Annotated[Whole, Field(ge=1, le=200)]
 ModesChoice = Annotated[
-    Annotated[Modes, Tag("⟨one⟩")] | Annotated[tuple[Modes, ...], _NotEmpty(), Tag("⟨list⟩")],
-    Discriminator(_one_or_list),
+    Annotated[Modes, Tag("⟨one⟩")] | Annotated[tuple[Modes, ...], NotEmpty(), Tag("⟨list⟩")],
+    Discriminator(one_or_list),
 ]
 
 
@@ -354,8 +168,8 @@ Section = Annotated[
     Annotated[Circle, Tag("⟨circle⟩")]
     | Annotated[Annulus, Tag("⟨annulus⟩")]
     | Annotated[Rectangle, Tag("⟨rectangle⟩")],
-    Discriminator(_by("shape")),
-    _word("shape", ("circle", "annulus", "rectangle")),
+    Discriminator(by("shape")),
+    kind_word("shape", ("circle", "annulus", "rectangle")),
 ]
 
 
@@ -385,7 +199,7 @@ class Intrinsic(Record):
 def _carrying_section(value: float) -> float:
     if not 0.0 < value <= 1.0:
         remedy = "at its base the other rod does not move: give a pose in the world" if value == 0.0 else ""
-        raise _refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
+        raise refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
     return value
 
 
@@ -493,10 +307,10 @@ class Gravity(Record):
     name: Name = Field(description="name of the load, a letter, then letters, digits and underscores")
     kind: Literal["gravity"] = Field(description="weight of the rods and bodies")
     acceleration: Vector = Field(description="acceleration in world axes, m/s²")
-    rods: Annotated[tuple[str, ...], _NotEmpty(), AfterValidator(_without_repetition)] | None = Field(
+    rods: Annotated[tuple[str, ...], NotEmpty(), AfterValidator(without_repetition)] | None = Field(
         None, description="names of the rods that it acts on; all rods when neither rods nor bodies are named"
     )
-    bodies: Annotated[tuple[str, ...], _NotEmpty(), AfterValidator(_without_repetition)] | None = Field(
+    bodies: Annotated[tuple[str, ...], NotEmpty(), AfterValidator(without_repetition)] | None = Field(
         None, description="names of the bodies that it acts on; all bodies when neither rods nor bodies are named"
     )
 
@@ -587,8 +401,8 @@ Load = Annotated[
     | Annotated[PointWrench, Tag("⟨point_wrench⟩")]
     | Annotated[DistributedWrench, Tag("⟨distributed_wrench⟩")]
     | Annotated[BodyWrench, Tag("⟨body_wrench⟩")],
-    Discriminator(_by("kind")),
-    _word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench", "body_wrench")),
+    Discriminator(by("kind")),
+    kind_word("kind", ("gravity", "tip_wrench", "point_wrench", "distributed_wrench", "body_wrench")),
 ]
 
 # Supports
@@ -615,8 +429,8 @@ class PinnedSupport(_Support):
 
 Support = Annotated[
     Annotated[ClampedSupport, Tag("⟨clamped⟩")] | Annotated[PinnedSupport, Tag("⟨pinned⟩")],
-    Discriminator(_by("kind")),
-    _word("kind", ("clamped", "pinned")),
+    Discriminator(by("kind")),
+    kind_word("kind", ("clamped", "pinned")),
 ]
 SUPPORTS: dict[str, type[ClampedSupport] | type[PinnedSupport]] = {"clamped": ClampedSupport, "pinned": PinnedSupport}
 """The record of each kind of support."""
@@ -625,17 +439,17 @@ SUPPORTS: dict[str, type[ClampedSupport] | type[PinnedSupport]] = {"clamped": Cl
 # Actuators
 
 
-Offset = Annotated[tuple[Component, Component], _listed(2, "2 components, x and y")]
+Offset = Annotated[tuple[Component, Component], listed(2, "2 components, x and y")]
 Share = Annotated[Number, Field(ge=0, le=1)]
 
 
 def _ascending(value: tuple[float, float]) -> tuple[float, float]:
     if not value[0] < value[1]:
-        raise _refusal([Fault((), f"must begin before it ends, got {list(value)}", "two abscissae X, base side first")])
+        raise refusal([Fault((), f"must begin before it ends, got {list(value)}", "two abscissae X, base side first")])
     return value
 
 
-Span = Annotated[tuple[Share, Share], _listed(2, "2 abscissae"), AfterValidator(_ascending)]
+Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_ascending)]
 
 
 class Helix(Record):
@@ -697,8 +511,8 @@ class Chamber(Record):
 
 Actuator = Annotated[
     Annotated[Tendon, Tag("⟨tendon⟩")] | Annotated[Chamber, Tag("⟨chamber⟩")],
-    Discriminator(_by("kind")),
-    _word("kind", ("tendon", "chamber")),
+    Discriminator(by("kind")),
+    kind_word("kind", ("tendon", "chamber")),
 ]
 
 
@@ -716,6 +530,9 @@ MAGNITUDES: dict[str, tuple[str, ...]] = {
 
 ROD_INPUTS = ("length", "base.position", "base.quaternion")
 """What of a rod itself may stay free at run time."""
+
+_SIZES = {"tension": 1, "length": 1, "pressure": 1, "base.position": 3, "base.quaternion": 4}
+"""Numbers of entries of the inputs that are not vectors of loads."""
 
 
 # Bodies and joints
@@ -753,8 +570,8 @@ class SphericalJoint(_Joint):
 
 Joint = Annotated[
     Annotated[FixedJoint, Tag("⟨fixed⟩")] | Annotated[SphericalJoint, Tag("⟨spherical⟩")],
-    Discriminator(_by("kind")),
-    _word("kind", ("fixed", "spherical")),
+    Discriminator(by("kind")),
+    kind_word("kind", ("fixed", "spherical")),
 ]
 
 
@@ -768,18 +585,19 @@ class Scene(Record):
         alias="schema", description="version of the scene format: 1"
     )
     title: str = Field("", description="one line about the scene")
-    inputs: Annotated[tuple[str, ...], AfterValidator(_without_repetition)] | None = Field(
+    inputs: Annotated[tuple[str, ...], AfterValidator(without_repetition)] | None = Field(
         None,
         description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
-    rods: Annotated[tuple[Rod, ...], _NotEmpty()] = Field(description="the rods, at least one")
+    rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field(description="the rods, at least one")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
-    targets: Unavailable = Field((), description="prescribed motions; not in this version")
+    targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
+    bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
 
     @property
     def causes(self) -> tuple[Load | Actuator, ...]:
@@ -814,6 +632,7 @@ class Scene(Record):
         yield from _unreachable_supports(given)
         yield from _miscounted_modes(given)
         yield from _inputs_that_are_not(given)
+        yield from target_faults(given, _input_sizes(given))
 
 
 def _repeated_names(given: Mapping[str, Any], key: str) -> Iterator[Fault]:
@@ -936,6 +755,30 @@ def _not_free(given: Mapping[str, Any], name: str, rod: Mapping[str, Any], field
     held = any(table.get("rod") == name for key in ("supports", "joints") for _, table in _tables(given, key))
     if held and set(_admitted(rod.get("strain"))) <= {1, 3, 5}:
         yield f"{shown(name)} bends in a plane and its tip is held", "admit torsion, or its base could leave the plane"
+
+
+def _input_sizes(given: Mapping[str, Any]) -> dict[str, int]:
+    """Numbers of entries of what the tables leave free at run time, by name."""
+    causes = {**_named(_tables(given, "actuators")), **_named(_tables(given, "loads"))}
+    every = [
+        f"{name}.{field}"
+        for name, (_, cause) in causes.items()
+        for field in _choice(MAGNITUDES, cause.get("kind")) or ()
+        if field in cause
+    ]
+    entries = given.get("inputs")
+    names = [name for name in entries if isinstance(name, str)] if isinstance(entries, list) else every
+    sizes = {}
+    for name in names:
+        owner, _, field = name.partition(".")
+        sizes[name] = _SIZES.get(field) or _entry_count(causes[owner][1].get(field) if owner in causes else None)
+    return sizes
+
+
+def _entry_count(vector: Any) -> int:
+    """Entries of a vector whose components may list coefficients; 3 where it is left out or faulty."""
+    components = vector if isinstance(vector, list | tuple) else ()
+    return 3 * max((len(entry) for entry in components if isinstance(entry, list | tuple)), default=1)
 
 
 def _no_magnitude(name: str, cause: Mapping[str, Any], field: str) -> Iterator[tuple[str, str]]:

@@ -264,7 +264,6 @@ BAD = [
     ("input_of_the_other_kind",
      scene(actuator_table("tension = 1\noffset = [0, 1]"), before="inputs = ['cable.length']"), "inputs[0]",
      "no magnitude 'length'"),
-    ("targets", scene("[[targets]]\nrod = 'toe'"), "targets", "this version cannot solve it yet"),
     ("toml_syntax", "schema = 1\nrods = [\n= 3", "line 3, column 1", "is not TOML: Invalid value"),
     ("toml_unfinished", "schema = ", "end of document", "is not TOML"),
     ("toml_key_twice", "schema = 1\nschema = 1\n", "line 2, column 11", "is not TOML"),
@@ -368,13 +367,6 @@ def test_five_faults_are_told_at_once_in_the_order_of_the_file():
     """
     where = ["inputs[0]", "accuracy.tolerance", "rods[0].length", "rods[0].stiffness.torsion", "loads[0].rod"]
     assert [problem.where for problem in problems(text)] == where
-
-
-def test_words_of_later_versions_are_refused_once_without_a_cascade():
-    text = scene(
-        "[[targets]]\nrod = 'a'\n[[targets]]\nrod = 'b'",
-    )
-    assert [problem.where for problem in problems(text)] == ["targets"]
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,9 @@
+"""Inverse problems and optimal control: what stands around an equilibrium, with the equilibrium as constraints."""
+
+from cosserat_casadi.control.embedding import Lifted, embedded, lifted
+from cosserat_casadi.control.goals import Gap
+from cosserat_casadi.control.inverse import Inverse, inverse
+from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.control.inverse_file import inverse_result
+
+__all__ = ["Gap", "Inverse", "Lifted", "embedded", "inverse", "inverse_result", "inverse_scene", "lifted"]

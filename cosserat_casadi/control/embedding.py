@@ -1,0 +1,77 @@
+"""A rod in an optimisation problem: its unknowns lifted into the problem, or solved for inside by a rootfinder.
+
+*Lifted* gives the optimiser the unknowns as variables and the equilibrium as constraints: no inner loop, and it may
+pass through states out of balance. *Embedded* keeps the problem small: x is a function of the inputs, the root that
+Newton's method finds from a start, with derivatives by the implicit-function theorem. CasADi's rootfinders report
+success where they have none, so the root comes with its own residual, which a problem must hold near zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solver.newton import NewtonSettings
+from cosserat_casadi.solver.solution import Solution
+
+CERTIFIED = NewtonSettings().tolerance
+"""Largest relative residual of a root that counts as an equilibrium."""
+
+
+@dataclass(frozen=True)
+class Lifted:
+    """One state of a model in an optimisation problem, for raw NLPs and ``Opti`` alike.
+
+    Attributes:
+        x: the unknowns, symbols of the problem, shape (size,).
+        residual: what the problem holds at zero, shape (size,).
+        start: a value of x to start from, shape (size,).
+    """
+
+    x: Matrix
+    residual: Matrix
+    start: FloatArray
+
+
+def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None) -> Lifted:
+    """A state of a model whose unknowns are variables of the problem.
+
+    Args:
+        model: the model.
+        x: variables for its unknowns, shape (model.size,): ``MX.sym`` or ``opti.variable``.
+        inputs: stacked inputs, any expressions, shape (model.inputs.size,).
+        near: an equilibrium to start from; the unloaded rods by default.
+    """
+    return Lifted(x, model.residual(x, inputs), model.unloaded() if near is None else near.x)
+
+
+def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
+    """The equilibrium as a function of the inputs, on the branch of a solution.
+
+    Newton's method from the unknowns of that solution, whatever the inputs: exact first and second derivatives.
+
+    Args:
+        model: the model.
+        near: the equilibrium that it starts from.
+        iterations: most steps.
+
+    Returns:
+        inputs ↦ (x, excess): ``excess`` is the squared relative residual over its squared tolerance.
+        Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
+        the residual is. A problem holds it by a constraint; ``lifted`` needs none.
+    """
+    options = {
+        "abstol": CERTIFIED / 10,
+        "max_iter": iterations,
+        "error_on_fail": False,
+        "jacobian_function": model.jacobian,
+    }
+    finder = ca.rootfinder("equilibrium", "newton", model.residual, options)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    x = finder(ca.DM(near.x), inputs)
+    residual = model.residual(x, inputs)
+    scale = CERTIFIED**2 * (1 + ca.sumsqr(x))
+    return ca.Function("embedded", [inputs], [x, ca.sumsqr(residual) / scale], ["inputs"], ["x", "excess"])

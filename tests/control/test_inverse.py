@@ -1,0 +1,178 @@
+"""Inverse problems: inputs recovered from poses, closed form, targets out of reach, bounds, refusals."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Scene, SceneError, Solution, build, inverse, inverse_scene, read_scene, solve
+from cosserat_casadi.control import inverse_result
+from cosserat_casadi.scene import scene_from_dict
+from cosserat_casadi.scene.writing import scene_tables
+from tests.conftest import ROOT
+from tests.scenes import push, scene
+
+TENSIONS = ["lower_east.tension", "lower_north.tension", "upper_west.tension", "upper_south.tension"]
+
+
+def changed(base: Scene, **tables: Any) -> Scene:
+    return scene_from_dict({**scene_tables(base), **tables})
+
+
+def pose_of(solution: Solution, rod: str) -> dict[str, Any]:
+    tip = solution.tip(rod)
+    position, quaternion = tip.position[0].tolist(), tip.quaternion[0].tolist()
+    return {"kind": "pose", "rod": rod, "position": position, "quaternion": quaternion}
+
+
+def test_tensions_are_recovered_from_a_pose() -> None:
+    base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
+    truth = dict(zip(TENSIONS, [3.0, 7.0, 2.0, 9.0], strict=True))
+    target = pose_of(solve(build(base), truth), "backbone")
+    found = inverse(build(changed(base, targets=[target])))
+    assert found.met
+    assert found.gaps[0].angle is not None
+    assert_allclose([found.gaps[0].position, found.gaps[0].angle], 0.0, rtol=0, atol=1e-9)
+    for name, tension in truth.items():
+        assert_allclose(found.values[name].item(), tension, rtol=1e-7, atol=0)
+
+
+def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
+    """Four tensions for three coordinates: no solution on the line of solutions is nearer by more than the damping."""
+    base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
+    truth = dict(zip(TENSIONS, [9.0, 3.0, 7.0, 6.0], strict=True))
+    position = solve(build(base), truth).tip().position[0].tolist()
+    model = build(changed(base, targets=[{"kind": "position", "rod": "backbone", "position": position}]))
+    found = inverse(model)
+    assert found.met
+    assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-8)
+    start, reached = model.pack(), found.solution.inputs
+    assert np.linalg.norm(reached - start) < np.linalg.norm(np.array(list(truth.values())) - start)
+
+
+def test_constant_curvature_closed_form() -> None:
+    """One straight tendon at a distance d on a planar rod bends it to the curvature T d / EI: x = (1 − cos κL)/κ."""
+    stiffness, distance, length, tension = 1.4, 0.02, 0.8, 60.0
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 5.0, "offset": [distance, 0.0]}
+    curvature = tension * distance / stiffness
+    x, z = (1 - np.cos(curvature * length)) / curvature, np.sin(curvature * length) / curvature
+    target = {"kind": "position", "rod": "rod", "position": [x, 0.0, z]}
+    bounds = [{"input": "cable.tension", "upper": 1e3}]
+    found = inverse_scene(scene(strain="planar", actuators=[cable], targets=[target], bounds=bounds))
+    assert found.met
+    assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-8)
+    assert_allclose(found.values["cable.tension"].item(), tension, rtol=1e-7, atol=0)
+
+
+@pytest.mark.slow
+def test_lengths_of_a_parallel_robot() -> None:
+    """The six-rod platform brought to a pose by the lengths of its rods."""
+    names = [f"leg_{i}.length" for i in range(1, 7)]
+    base = changed(read_scene(ROOT / "examples" / "six_rod_platform.toml"), inputs=names, accuracy={"modes": 4})
+    truth = dict(zip(names, [0.44, 0.45, 0.44, 0.45, 0.43, 0.44], strict=True))
+    body = solve(build(base), truth).body()
+    target = {
+        "kind": "pose",
+        "body": "platform",
+        "position": body.position[0].tolist(),
+        "quaternion": body.quaternion[0].tolist(),
+    }
+    found = inverse(build(changed(base, targets=[target])))
+    assert found.met
+    assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-9)
+    assert_allclose([found.values[name].item() for name in names], list(truth.values()), rtol=0, atol=1e-8)
+
+
+def test_base_and_curve() -> None:
+    """A rod without load is moved by its base on to a straight line that is turned and shifted."""
+    points = [[0.1, 0.2, 0.3 + 0.8 * X] for X in (0.25, 0.5, 1.0)]
+    target = {"kind": "curve", "rod": "rod", "at": [0.25, 0.5, 1.0], "points": points}
+    found = inverse(build(scene(inputs=["rod.base.position"], targets=[target])))
+    assert found.met
+    assert_allclose(found.values["rod.base.position"].ravel(), [0.1, 0.2, 0.3], rtol=0, atol=1e-8)
+
+
+OUT_OF_REACH = {"kind": "position", "rod": "rod", "position": [0.0, 0.0, 1.8]}
+
+
+def test_out_of_reach_gives_the_closest_and_says_so() -> None:
+    """A rod of 0.8 m that keeps its length, and a point 1.8 m away: 1 m is left."""
+    found = inverse_scene(scene(push(force=[0.5, 0, 0]), inputs=["push.force"], targets=[OUT_OF_REACH]))
+    assert found.solution.converged
+    assert not found.met
+    assert_allclose(found.gaps[0].position, 1.0, rtol=0, atol=1e-6)
+    assert "misses tip of rod by 1 m" in found.solution.message
+    assert found.gaps[0].angle is None
+
+
+def test_bounds_are_kept_and_reached() -> None:
+    """The nearest that a force of at most 0.3 N brings the tip: at the bound, and against a scan over the range."""
+    target = {"kind": "position", "rod": "rod", "position": [0.4, 0.0, 0.6]}
+    bounds = [{"input": "push.force", "lower": [-0.3, 0.0, 0.0], "upper": [0.3, 0.0, 0.0]}]
+    bounded = scene(push(force=[0.0, 0.0, 0.0]), inputs=["push.force"], targets=[target], bounds=bounds)
+    found = inverse(build(bounded))
+    assert not found.met
+    force = found.values["push.force"].ravel()
+    assert_allclose(force, [0.3, 0.0, 0.0], rtol=0, atol=1e-6)
+    assert np.all(np.abs(force) <= [0.3, 0.0, 0.0])
+    tips = [solve(build(bounded), {"push.force": [f, 0, 0]}).tip().position[0] for f in np.linspace(-0.3, 0.3, 13)]
+    scanned = min(float(np.linalg.norm(tip - target["position"])) for tip in tips)
+    assert_allclose(found.gaps[0].position, scanned, rtol=0, atol=1e-6)
+
+
+def test_weights_decide_between_targets() -> None:
+    """Two points for one tip on a line: the nearer to the one of weight w, the larger w; least squares in between."""
+    targets = [{"kind": "position", "rod": "rod", "position": [0.0, 0.0, 0.8 + z]} for z in (0.0, 0.2)]
+    for weight in (1.0, 3.0):
+        targets[1] = {**targets[1], "weight": weight}
+        found = inverse(build(scene(inputs=["rod.base.position"], targets=targets)))
+        assert_allclose(found.values["rod.base.position"][2, 0], 0.2 * weight / (1 + weight), rtol=0, atol=1e-8)
+        assert not found.met
+
+
+def test_the_equilibrium_is_that_of_a_solve() -> None:
+    """Inputs found, given to a plain solve, lead to the same tip; the file says what is left."""
+    found = inverse_scene(read_scene(ROOT / "examples" / "finger_to_point.toml"))
+    assert found.met
+    again = solve(found.solution.model, found.values)
+    assert_allclose(again.tip().position, found.solution.tip().position, rtol=0, atol=1e-12)
+    file = inverse_result(found)
+    assert (file["targets_met"], file["converged"], file["stable"]) == (True, True, True)
+    assert file["targets"][0]["position_gap"] <= 1e-7 * 0.1
+    assert file["error_estimate"] <= 1e-7
+    json.dumps(file, allow_nan=False)
+
+
+def test_a_stable_equilibrium_when_asked() -> None:
+    """Beyond its critical load a column meets its target straight; asked for a stable one, it is told that none is."""
+    column = scene(
+        push(force=[0.0, 0.0, -12.0]),
+        strain="planar",
+        inputs=["push.force"],
+        targets=[{"kind": "position", "rod": "rod", "position": [0.0, 0.0, 0.8]}],
+        bounds=[{"input": "push.force", "lower": [0.0, 0.0, -12.0], "upper": [0.0, 0.0, -10.0]}],
+    )
+    straight = inverse(build(column))
+    assert (straight.met, straight.solution.stable) == (True, False)
+    assert "unstable" in straight.solution.message
+    asked = inverse(build(column), stable=True)
+    assert not asked.met
+
+
+def test_refusals() -> None:
+    target = {"kind": "position", "rod": "rod", "position": [0, 0, 1]}
+    with pytest.raises(SceneError, match=r"targets: missing"):
+        inverse(build(scene(push(), inputs=["push.force"])))
+    with pytest.raises(SceneError, match="no input is named that could be found"):
+        inverse(build(scene(push(), targets=[target])))
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "tension": 5.0, "offset": [0.01, 0.0]}
+    bounds = [{"input": "cable.tension", "upper": -1.0}]
+    with pytest.raises(SceneError, match=r"bounds\[0\].upper: is below 0, the least that cable.tension can be"):
+        inverse(build(scene(actuators=[cable], targets=[target], bounds=bounds)))
+    follower = push(frame="body", force=[1, 0, 0])
+    with pytest.raises(SceneError, match="no potential"):
+        inverse(build(scene(follower, inputs=["push.force"], targets=[target])), stable=True)
