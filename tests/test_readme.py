@@ -55,8 +55,8 @@ def commands() -> list[str]:
     return [line.split(" > ")[0] for line in lines if line.startswith(".venv/bin/cosserat ")]
 
 
-def test_there_are_eight_commands() -> None:
-    assert len(commands()) == 8
+def test_there_are_nine_commands() -> None:
+    assert len(commands()) == 9
 
 
 @pytest.mark.parametrize("line", commands())
