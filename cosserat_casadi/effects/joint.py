@@ -11,6 +11,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi.effects import support
 from cosserat_casadi.effects.support import Pose
 from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -110,11 +111,8 @@ class Joint:
         self, section: Pose, base: Placement, other: Placement, moved: Matrix, turned: Matrix
     ) -> Matrix:
         """Variation of the gap, size×n, from those of the section: δr and δθ, 3×n each, base frame."""
-        parts = [moved[list(self.position_axes), :] / self.rod.length]
-        if self.rotation_axes:
-            left = self._turn_left(section, base, other)
-            parts.append(((left[0] * ca.DM.eye(3) - hat(left[1:])) @ turned)[list(self.rotation_axes), :])
-        return ca.vertcat(*parts)
+        left = self._turn_left(section, base, other) if self.rotation_axes else None
+        return support.gap_with_strain(self, left, moved, turned)
 
     def gap_with_other(self, section: Pose, base: Placement, other: Placement) -> Matrix:
         """Variation of the gap with the other frame's δp (m) and δθ (world axes), size×6."""
@@ -128,10 +126,7 @@ class Joint:
 
     def force_with_strain(self, moved: Matrix, turned: Matrix) -> Matrix:
         """Derivative of the rod's residual with respect to the multipliers, n×size."""
-        rows = [moved[list(self.position_axes), :] / -self.rod.length]
-        if self.rotation_axes:
-            rows.append(-turned[list(self.rotation_axes), :])
-        return ca.vertcat(*rows).T
+        return support.force_with_strain(self, moved, turned)
 
     def units(self) -> tuple[Matrix, Matrix]:
         """Force (N) and moment (N m) on the section for a unit of each multiplier, 3×size each, base frame."""

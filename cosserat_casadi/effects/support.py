@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Protocol, final
 
 import casadi as ca
 
@@ -24,6 +24,38 @@ class Pose:
 
     position: Matrix
     quaternion: Matrix
+
+
+class Tied(Protocol):
+    """What holds a section of a rod along and about some of the axes of its base frame."""
+
+    @property
+    def rod(self) -> RodProperties:
+        """The rod."""
+
+    @property
+    def position_axes(self) -> tuple[int, ...]:
+        """Axes along which the section is held."""
+
+    @property
+    def rotation_axes(self) -> tuple[int, ...]:
+        """Axes about which the section is held."""
+
+
+def force_with_strain(tied: Tied, moved: Matrix, turned: Matrix) -> Matrix:
+    """Derivative of a rod's residual with respect to multipliers, n×size, from δr and δθ of the section, 3×n each."""
+    rows = [moved[list(tied.position_axes), :] / -tied.rod.length]
+    if tied.rotation_axes:
+        rows.append(-turned[list(tied.rotation_axes), :])
+    return ca.vertcat(*rows).T
+
+
+def gap_with_strain(tied: Tied, left: Matrix | None, moved: Matrix, turned: Matrix) -> Matrix:
+    """Variation of the gap, size×n, from δr and δθ of the section and the quaternion of the turn that is left."""
+    parts = [moved[list(tied.position_axes), :] / tied.rod.length]
+    if left is not None:
+        parts.append(((left[0] * ca.DM.eye(3) - hat(left[1:])) @ turned)[list(tied.rotation_axes), :])
+    return ca.vertcat(*parts)
 
 
 @dataclass(frozen=True)
@@ -80,19 +112,12 @@ class Hold:
 
     def gap_variation(self, tip: Pose, moved: Matrix, turned: Matrix) -> Matrix:
         """Variation of the gap, size×n, from those of the tip: δr and δθ, 3×n each."""
-        parts = [moved[list(self.position_axes), :] / self.rod.length]
-        if self.turns:
-            left = quaternion_product(tip.quaternion, quaternion_conjugate(self.target.quaternion))
-            turning = left[0] * ca.DM.eye(3) - hat(left[1:])
-            parts.append((turning @ turned)[list(self.rotation_axes), :])
-        return ca.vertcat(*parts)
+        left = quaternion_product(tip.quaternion, quaternion_conjugate(self.target.quaternion)) if self.turns else None
+        return gap_with_strain(self, left, moved, turned)
 
     def force_variation(self, moved: Matrix, turned: Matrix) -> Matrix:
         """Derivative of the rod's residual with respect to the multipliers, n×size."""
-        rows = [moved[list(self.position_axes), :] / -self.rod.length]
-        if self.turns:
-            rows.append(-turned[list(self.rotation_axes), :])
-        return ca.vertcat(*rows).T
+        return force_with_strain(self, moved, turned)
 
     @property
     def _planar(self) -> bool:

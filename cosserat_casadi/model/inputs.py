@@ -24,7 +24,7 @@ class InputLayout:
         names: ``load.field`` or ``actuator.field`` in the order of the vector.
         defaults: the scene's value of each, shape (1, 1) of a tension, a length or a pressure, (3, k) of a vector:
             column k holds the k-th Legendre coefficient.
-        rods: names of the rods that leave some of their own geometry free.
+        rods: names of the rods, those apart that a load or an actuator has too.
     """
 
     names: tuple[str, ...]

@@ -53,9 +53,13 @@ class InverseGeometricModel:
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
         unit = self.shape.basis.energy_unit
-        forces = [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation if not isinstance(a, Cable)]
-        forces += [tension / unit * cable.length_gradient for tension, cable in self.cables]
+        forces = self._stress_forces + [tension / unit * cable.length_gradient for tension, cable in self.cables]
         return sum(forces[1:], forces[0]) if forces else None
+
+    @cached_property
+    def _stress_forces(self) -> list[Matrix]:
+        """What stresses that no strain changes put against the elastic one, n×1 each."""
+        return [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation if not isinstance(a, Cable)]
 
     @cached_property
     def residual(self) -> Matrix:
@@ -91,10 +95,8 @@ class InverseGeometricModel:
         energy: Matrix = ca.DM(0.0)
         for tension, cable in self.cables:
             energy = energy + tension * cable.length
-        for a in self.actuation:
-            if not isinstance(a, Cable):
-                work = ca.dot(self._project(a.stress @ ca.DM(a.profiles)), self.shape.q)
-                energy = energy + self.shape.basis.energy_unit * work
+        for force in self._stress_forces:
+            energy = energy + self.shape.basis.energy_unit * ca.dot(force, self.shape.q)
         return energy
 
     def _transposed_force(self) -> Matrix:
