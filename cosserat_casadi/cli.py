@@ -142,7 +142,7 @@ def inverse(
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
     stable: Annotated[bool, typer.Option("--stable", help="Accept a stable equilibrium only.")] = False,
 ) -> None:
-    """Find inputs that bring rods and bodies to the [[targets]] of a scene.
+    """Find inputs that bring rods and bodies to the targets of a scene.
 
     Exit codes: 0 targets met, 2 refused, 3 not met, or no equilibrium found; the files show the closest pose then.
     """
