@@ -52,7 +52,7 @@ def _gap_rows(probe: Frame) -> FloatArray:
     """Gaps of supports and ties linearised at a random shape, against strains and moving frames."""
     x = np.zeros(probe.size)
     x[: probe.strain_size] = 0.3 * np.random.default_rng(SEED).standard_normal(probe.strain_size)
-    system = System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM.zeros(probe.layout.size))))
+    system = System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
     jacobian = ca.evalf(system.jacobian).full()
     first, last = probe.strain_size, probe.strain_size + probe.multiplier_size
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))
