@@ -13,33 +13,42 @@ from cosserat_casadi.maths.typing import FloatArray
 
 
 @cache
-def soft_minimum(free: int, size: int, width: float) -> ca.Callback:
-    """Matrix ↦ soft minimum, size×size ↦ 1×1; NaN where the matrix is not finite.
+def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
+    """Bordered matrix ↦ soft minimum, size×size ↦ 1×1; NaN where that has no meaning.
 
     Cached, since CasADi holds no reference to what Python computes: a callback must outlive the problems that call it.
 
     Args:
-        free: rows of the second variation; the rest are linearised gaps.
+        measure: M of :class:`Spectrum`, the bytes of its doubles row by row.
         size: rows of the bordered matrix.
         width: of the soft minimum.
     """
-    return _Value("soft_minimum", _Place(free, size, width))
+    doubles = np.frombuffer(measure)
+    rows = round(len(doubles) ** 0.5)
+    return _Value("soft_minimum", _Place(doubles.reshape(rows, rows), size, width))
 
 
 class _Place:
     """Spectrum of the matrix asked about last: value, gradient and curvature share one decomposition."""
 
-    def __init__(self, free: int, size: int, width: float) -> None:
-        self.free, self.size, self.width = free, size, width
+    def __init__(self, measure: FloatArray, size: int, width: float) -> None:
+        self.measure, self.size, self.width = measure, size, width
         self._last: tuple[bytes, Spectrum | None] = (b"", None)
 
     def spectrum(self, matrix: ca.DM) -> Spectrum | None:
-        """The spectrum of a matrix, None where it is not finite."""
+        """The spectrum of a matrix; None where it is not finite or the measure is zero for some variation."""
         full = matrix.full()
         if self._last[0] != full.tobytes():
-            finite = bool(np.all(np.isfinite(full)))
-            self._last = full.tobytes(), Spectrum.of(full, self.free, self.width) if finite else None
+            self._last = full.tobytes(), self._computed(full)
         return self._last[1]
+
+    def _computed(self, matrix: FloatArray) -> Spectrum | None:
+        if not np.all(np.isfinite(matrix)):
+            return None
+        try:
+            return Spectrum.of(matrix, self.measure, self.width)
+        except np.linalg.LinAlgError:
+            return None
 
 
 class _Computed(ca.Callback):  # type: ignore[misc]

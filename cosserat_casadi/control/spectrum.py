@@ -1,8 +1,8 @@
-"""Soft minimum of the eigenvalues of a symmetric matrix on the null space of constraints, with two derivatives.
+"""Soft minimum of the eigenvalues of a symmetric pencil on the null space of constraints, with two derivatives.
 
-With z = [v; w], where K v + Aᵀ w = λ v and A v = 0, the eigenvalues are those of the pencil S − λ D of the bordered
-matrix S = [[K, Aᵀ], [A, 0]] and D = diag(1, 0). Its inverse is Σ z zᵀ/(λⱼ − λ) + P₀ + λ P₁: the derivatives of a function
-of the eigenvalues follow by residues, with divided differences where two of them meet (Kato 1995, chapter II).
+With K v + Aᵀ w = λ M v and A v = 0, the eigenvalues are those of S − λ D, where S = [[K, Aᵀ], [A, 0]] is the bordered
+matrix, D = diag(M, 0) is constant and z = [v; w]. Its inverse is Σ z zᵀ/(λⱼ − λ) + P₀ + λ P₁: the derivatives of a
+function of the eigenvalues follow by residues, with divided differences where two of them meet (Kato 1995, chapter II).
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from functools import cached_property
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solver.stability import Variations, admissible_spectrum
+
+RANK = 1e-12
+"""Share of the largest singular value of the constraints below which one counts as zero."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Spectrum:
 
     Attributes:
         values: eigenvalues λ, ascending, shape (k,).
-        modes: z = [v; w], N×k, with orthonormal v.
+        modes: z = [v; w], N×k, with vᵀ M v = 1.
         constant: P₀, N×N.
         linear: P₁, N×N.
         width: w of the soft minimum −w log Σ exp(−λ/w).
@@ -35,19 +37,22 @@ class Spectrum:
     width: float
 
     @staticmethod
-    def of(bordered: FloatArray, free: int, width: float) -> Spectrum:
-        """Spectrum of a bordered matrix whose first ``free`` rows are those of K."""
-        size = len(bordered)
-        places = np.arange(size)
-        values, v = admissible_spectrum(bordered, Variations(places[:free], places[free:], np.ones(free)))
-        stiffness, gaps = bordered[:free, :free], bordered[free:, :free]
-        closing = np.linalg.pinv(gaps, rcond=1e-12)
-        modes = np.vstack([v, -closing.T @ stiffness @ v])
-        constant, linear = np.zeros((size, size)), np.zeros((size, size))
-        constant[:free, free:], constant[free:, :free] = closing, closing.T
-        constant[free:, free:] = -closing.T @ stiffness @ closing
-        linear[free:, free:] = closing.T @ closing
-        return Spectrum(values, modes, constant, linear, width)
+    def of(bordered: FloatArray, measure: FloatArray, width: float) -> Spectrum:
+        """Spectrum of a bordered matrix, N×N, against a measure M, n×n.
+
+        Raises:
+            numpy.linalg.LinAlgError: M is not positive on the null space of the constraints.
+        """
+        n = len(measure)
+        stiffness, gaps = bordered[:n, :n], bordered[n:, :n]
+        values, v = _on_the_null_space(stiffness, gaps, measure)
+        closing = np.linalg.pinv(gaps, rcond=RANK)
+        closing -= v @ (v.T @ measure @ closing)
+        constant, linear = np.zeros_like(bordered), np.zeros_like(bordered)
+        constant[:n, n:], constant[n:, :n] = closing, closing.T
+        constant[n:, n:] = -closing.T @ stiffness @ closing
+        linear[n:, n:] = closing.T @ measure @ closing
+        return Spectrum(values, np.vstack([v, -closing.T @ stiffness @ v]), constant, linear, width)
 
     @cached_property
     def soft_minimum(self) -> float:
@@ -86,3 +91,12 @@ class Spectrum:
         equal = apart == 0.0
         ratio = np.where(equal, -1.0, np.expm1(-apart) / np.where(equal, 1.0, apart))
         return np.asarray(larger * ratio / self.width)
+
+
+def _on_the_null_space(stiffness: FloatArray, gaps: FloatArray, measure: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Eigenvalues of K against M where A v = 0, ascending, and their vectors, n×k, with vᵀ M v = 1."""
+    _, singular, basis = np.linalg.svd(gaps)
+    free = basis[int(np.sum(singular > RANK * singular.max(initial=0.0))) :].T
+    unit = free @ np.linalg.inv(np.linalg.cholesky(free.T @ measure @ free)).T
+    values, turn = np.linalg.eigh(unit.T @ stiffness @ unit)
+    return np.asarray(values), np.asarray(unit @ turn)
