@@ -1,8 +1,9 @@
 """A parallel robot of three slender rods carries a heavy load over an arch, away from instabilities.
 
-The rods are fed through feet that slide on rails: three lengths and three feet bring the load to a point, and the feet go
-no farther from where they want to be than they must. Without regard to stability they stay there, and the legs buckle on
-the way. With the stability margin as a constraint they spread before the load gets high, and draw in again after it.
+The rods are fed through feet that slide on rails: three lengths and three feet bring the load to a point, and the feet
+go no farther from where they want to be than they must. Without regard to stability they stay there, and the legs
+buckle on the way. With the stability margin as a constraint they spread before the load gets high, and draw in again
+after it.
 """
 
 from __future__ import annotations
@@ -157,9 +158,9 @@ def set_scene(space: Axes3D, title: str, points: np.ndarray) -> None:
     for rail in RAILS:
         space.plot(*np.outer([NEAREST, 0.15], rail).T, color="0.75", linewidth=3, solid_capstyle="round")
     space.plot(*points.T, color="0.4", linestyle=":", linewidth=1.2)
-    space.set(xlim=(-0.14, 0.14), ylim=(-0.10, 0.15), zlim=(0.0, 0.46))
-    space.set_title(title, y=0.95)
-    space.set_box_aspect((0.28, 0.25, 0.46), zoom=1.1)
+    space.set(xlim=(-0.14, 0.14), ylim=(-0.10, 0.15), zlim=(0.0, 0.5))
+    space.set_title(title, y=0.94)
+    space.set_box_aspect((0.28, 0.25, 0.5), zoom=1.15)
     space.view_init(elev=14, azim=-72)
     space.set_axis_off()
 

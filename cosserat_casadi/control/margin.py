@@ -1,12 +1,12 @@
 """How far an equilibrium is from instability, as a function that an optimiser can bound.
 
 The second variation of the energy is set against that of the elastic energy of the unloaded rods, over the admissible
-variations. Its smallest eigenvalue is the share of the elastic stiffness that loads leave: 1 − P/P_c for a column under
-the thrust P, zero where the equilibrium is critical, whatever the units and the number of modes. It has a kink where
-two eigenvalues meet, which is the rule in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w): smooth,
-never above the smallest eigenvalue, and below it by at most w times the logarithm of the number of eigenvalues. It looks
-at all eigenvalues at once, so no optimiser escapes to a higher one, as it may where one eigenpair is made part of the
-problem.
+variations. Its smallest eigenvalue is the share of the elastic stiffness that loads leave: 1 − P/P_c for a column
+under the thrust P, zero where the equilibrium is critical, whatever the units and the number of modes. It has a kink
+where two eigenvalues meet, which is the rule in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w):
+smooth, never above the smallest eigenvalue, and below it by at most w times the logarithm of the number of
+eigenvalues. It looks at all eigenvalues at once, so no optimiser escapes to a higher one, as it may where one
+eigenpair is made part of the problem.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def _refuse_slack(model: Model) -> None:
 def _shares(model: Model) -> FloatArray:
     """Energy unit of each free unknown relative to the largest, shape (n,)."""
     units = variations(model).units
-    return units / units.max(initial=0.0)
+    return np.asarray(units / units.max(initial=0.0))
 
 
 def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:

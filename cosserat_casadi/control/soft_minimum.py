@@ -100,9 +100,7 @@ class _Value(_Computed):
     def get_reverse(self, nadj: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
         matrix, value, _ = self._symbols(1)
         seeds = ca.MX.sym("seeds", 1, nadj)
-        return ca.Function(
-            name, [matrix, value, seeds], [ca.kron(seeds, self.gradient(matrix))], inames, onames, opts
-        )
+        return ca.Function(name, [matrix, value, seeds], [ca.kron(seeds, self.gradient(matrix))], inames, onames, opts)
 
     def _symbols(self, count: int) -> tuple[ca.MX, ca.MX, ca.MX]:
         matrix = ca.MX.sym("matrix", self._square(1))

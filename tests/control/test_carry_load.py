@@ -48,7 +48,7 @@ def test_the_path_is_as_stable_with_more_modes() -> None:
     for solution in held:
         again = solve(fine, fine.inputs.unpack(solution.inputs), start=prolong(solution, fine), raise_on_failure=True)
         assert again.stable
-        assert_allclose(place_of_load(again), place_of_load(solution), rtol=0, atol=1e-4)
+        assert_allclose(place_of_load(again), place_of_load(solution), rtol=0, atol=2e-4)
         assert_allclose(margins([again]), margins([solution]), rtol=0, atol=5e-3)
     assert np.all(margins(held) >= LEAST - 1e-6)
 
