@@ -160,7 +160,7 @@ def set_scene(space: Axes3D, title: str, points: np.ndarray) -> None:
     space.plot(*points.T, color="0.4", linestyle=":", linewidth=1.2)
     space.set(xlim=(-0.14, 0.14), ylim=(-0.10, 0.15), zlim=(0.0, 0.5))
     space.set_title(title, y=0.94)
-    space.set_box_aspect((0.28, 0.25, 0.5), zoom=1.15)
+    space.set_box_aspect((0.28, 0.25, 0.5), zoom=1.05)
     space.view_init(elev=14, azim=-72)
     space.set_axis_off()
 

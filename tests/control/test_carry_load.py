@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import solve
 from cosserat_casadi.solver.accuracy import prolong
-from examples.carry_load import HOME, LEAST, arch, carry, margins, place_of_load, robot
+from examples.carry_load import HOME, LEAST, arch, carry, draw, margins, place_of_load, robot
 from tests.conftest import ROOT
 
 LENGTH_INPUTS = 3
@@ -23,9 +23,9 @@ def feet(inputs: np.ndarray) -> np.ndarray:
     return np.linalg.norm(inputs[LENGTH_INPUTS:].reshape(3, 3), axis=1)
 
 
-def test_the_margin_is_held_where_the_feet_alone_would_not() -> None:
+def test_the_margin_is_held_where_the_feet_alone_would_not(tmp_path: Path) -> None:
     """At the top, where the robot is symmetric and its smallest eigenvalue double."""
-    model, top = robot(), arch(3)[1:2]
+    model, top = robot(modes=3), arch(3)[1:2]
     (without,), (held,) = (carry(model, top, bounded=bounded) for bounded in (False, True))
     for solution in (without, held):
         assert_allclose(place_of_load(solution), top[0], rtol=0, atol=1e-8)
@@ -34,6 +34,8 @@ def test_the_margin_is_held_where_the_feet_alone_would_not() -> None:
     assert_allclose(margins([held]), LEAST, rtol=0, atol=1e-6)
     spread = feet(held.inputs)
     assert_allclose(spread, spread[0], rtol=0, atol=1e-6)
+    draw(top, [without], [held], tmp_path / "c.png")
+    assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
     # No less of a spread would do.
     nearer = held.inputs.copy()
     nearer[LENGTH_INPUTS:] *= (spread[0] - 1e-3) / spread[0]
@@ -53,6 +55,7 @@ def test_the_path_is_as_stable_with_more_modes() -> None:
     assert np.all(margins(held) >= LEAST - 1e-6)
 
 
+@pytest.mark.slow
 def test_the_program_draws_its_figure_and_its_animation(tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "examples" / "carry_load.py"), "--stages", "3", "--output", "c.png"]
     done = subprocess.run(
