@@ -5,5 +5,16 @@ from cosserat_casadi.control.goals import Gap
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
 from cosserat_casadi.control.inverse_file import inverse_result
+from cosserat_casadi.control.margin import stability_margin
 
-__all__ = ["Gap", "Inverse", "Lifted", "embedded", "inverse", "inverse_result", "inverse_scene", "lifted"]
+__all__ = [
+    "Gap",
+    "Inverse",
+    "Lifted",
+    "embedded",
+    "inverse",
+    "inverse_result",
+    "inverse_scene",
+    "lifted",
+    "stability_margin",
+]

@@ -1,4 +1,6 @@
-"""Joints that over-constrain: told by the rank of the linearised gaps, before anything is solved.
+"""Joints that hold too much or too little, told before anything is solved.
+
+Those that over-constrain show in the rank of the linearised gaps.
 
 Rods hold a body as far as their strains allow. Where the gaps' equations depend on each other for every shape of the
 rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch, clamped in one
@@ -17,6 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.mesh import discretise
+from cosserat_casadi.model.spins import free_spins
 from cosserat_casadi.model.system import Arguments, Frame, System, frame
 
 MODES, NODES, SEED = 4, 10, 20250711
@@ -28,15 +31,18 @@ RANK = 1e-8
 
 @lru_cache(maxsize=64)
 def check_constraints(scene: scenes.Scene) -> None:
-    """Refuse a scene whose ties over-constrain.
+    """Refuse a scene whose ties over-constrain, or leave a body free to turn.
 
     Raises:
-        SceneError: with the first tie that has nothing of its own to hold.
+        SceneError: with the first tie that has nothing of its own to hold, or every body that turns freely.
     """
     if not scene.joints and all(rod.base.rod is None for rod in scene.rods):
         return
     probe = frame(scene, input_layout(scene), discretise(scene, MODES, NODES, "magnus4"))
-    gaps = _gap_rows(probe)
+    system = _at_a_random_shape(probe)
+    if spins := list(free_spins(system)):
+        raise SceneError(*spins)
+    gaps = _gap_rows(system)
     if _rank(gaps) == len(gaps):
         return
     remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
@@ -48,12 +54,16 @@ def check_constraints(scene: scenes.Scene) -> None:
             raise SceneError(Problem(tie.where, problem, remedy))
 
 
-def _gap_rows(probe: Frame) -> FloatArray:
-    """Gaps of supports and ties linearised at a random shape, against strains and moving frames."""
+def _at_a_random_shape(probe: Frame) -> System:
+    """The equations at a shape that has nothing special, at the scene's inputs."""
     x = np.zeros(probe.size)
     x[: probe.strain_size] = 0.3 * np.random.default_rng(SEED).standard_normal(probe.strain_size)
-    system = System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM.zeros(probe.layout.size))))
-    jacobian = ca.evalf(system.jacobian).full()
+    return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
+
+
+def _gap_rows(system: System) -> FloatArray:
+    """Linearised gaps of supports and ties against strains and moving frames."""
+    probe, jacobian = system.frame, ca.evalf(system.jacobian).full()
     first, last = probe.strain_size, probe.strain_size + probe.multiplier_size
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))
 

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict
+from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.model.couplings import Carrier
+from cosserat_casadi.scene.writing import scene_tables
 from tests.scenes import STIFFNESS
 
 FEW = {"modes": 3, "nodes": 8}
@@ -204,6 +205,63 @@ def test_joints_that_over_constrain_are_refused() -> None:
         (problem,) = refused.value.problems
         assert problem.where == "joints[1]"
         assert "over-constrains: the tip of 'b' at 'plate'" in problem.problem
+
+
+def test_joints_are_checked_at_the_lengths_of_the_scene() -> None:
+    """Where lengths are inputs too: at length zero every joint over-constrains."""
+    legs = (leg("a", 0.0, "kirchhoff"), leg("b", 0.1, "kirchhoff"), leg("c", 0.2, "kirchhoff"))
+    tables = {**scene_tables(held_by(*legs)), "inputs": [f"{name}.length" for name in "abc"]}
+    assert [tie.joint.size for tie in build(scene_from_dict(tables)).frame.couplings.ties] == [6, 6, 6]
+
+
+HANGING = {"name": "plate", "mass": 0.1, "centre_of_mass": [0.05, 0.0, -0.1]}
+PULL = {"name": "pull", "kind": "body_wrench", "body": "plate", "force": [0.1, 0.2, 0.3], "position": [0.0, 0.0, 0.1]}
+DOWN = {"name": "down", "kind": "gravity", "acceleration": [0.0, 0.0, -9.81]}
+JOINTS, JOINT = "the line through its joints", "the line through its joint and the force on it"
+SPINS: dict[str, tuple[list[float], dict[str, Any], str]] = {
+    "joint": ([0.0], {}, "its joint"),
+    "pendulum": ([0.0], {"bodies": [HANGING], "loads": [DOWN]}, JOINT),
+    "two": ([0.0, 0.1], {}, JOINTS),
+    "three": ([0.0, 0.1, 0.3], {}, JOINTS),
+    "weight_on_the_line": ([0.0, 0.1], {"bodies": [{"name": "plate", "mass": 0.1}], "loads": [DOWN]}, JOINTS),
+    "force_on_the_line": ([0.0, 0.1], {"loads": [{**PULL, "position": [0.7, 0.0, 0.0]}]}, JOINTS),
+    "force_that_turns": ([0.0, 0.1], {"loads": [{**PULL, "frame": "body"}]}, JOINTS),
+    "moment": ([0.0, 0.1], {"loads": [{**PULL, "force": None, "moment": [0.1, 0.0, 0.0]}]}, JOINTS),
+}
+
+
+def hung(places: list[float], changes: dict[str, Any], *moved: float) -> Scene:
+    """Rods abreast that hold a plate by spherical joints on a line, one more at each of the moved places off it."""
+    legs = [leg(name, x, "kirchhoff") for name, x in zip("abcd", [*places, *moved], strict=False)]
+    tables = scene_tables(held_by(*legs, kind="spherical"))
+    for joint in tables["joints"][len(places) :]:
+        joint["position"] = [joint["position"][0], 0.1, 0.0]
+    loads = [{k: v for k, v in load.items() if v is not None} for load in changes.get("loads", [])]
+    return scene_from_dict({**tables, **changes, "loads": loads})
+
+
+@pytest.mark.parametrize("case", SPINS)
+def test_bodies_that_turn_freely_are_refused(case: str) -> None:
+    places, changes, about = SPINS[case]
+    with pytest.raises(SceneError) as refused:
+        build(hung(places, changes))
+    (problem,) = refused.value.problems
+    assert (problem.where, problem.problem) == (
+        "bodies[0]",
+        f"nothing holds the orientation of 'plate': it turns freely about {about}",
+    )
+    if len(places) > 1:
+        assert len(build(hung(places, changes, 0.2)).frame.couplings.ties) == len(places) + 1
+
+
+def test_a_body_that_hangs_from_a_line_is_held_by_its_weight() -> None:
+    """A swing below its joints is stable, the same upside down is not; a force off the line holds it as well."""
+    for height, stable in ((-0.1, True), (0.1, False)):
+        body = {**HANGING, "mass": 0.01, "centre_of_mass": [0.05, 0.0, height]}
+        solution = solve(build(hung([0.0, 0.1], {"bodies": [body], "loads": [DOWN]})))
+        assert (solution.converged, solution.stable) == (True, stable)
+        assert "neutral" not in solution.message
+    assert solve(build(hung([0.0, 0.1], {"loads": [PULL]}))).stable
 
 
 def test_planar_rods_of_one_plane_hold_a_body_in_it() -> None:

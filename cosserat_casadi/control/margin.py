@@ -1,0 +1,102 @@
+"""How far an equilibrium is from instability, as a function that an optimiser can bound.
+
+The second variation of the energy is set against that of the elastic energy of the unloaded rods, over the admissible
+variations. Its smallest eigenvalue is the share of the elastic stiffness that loads leave: 1 − P/P_c for a column
+under the thrust P, zero where the equilibrium is critical, whatever the units and the number of modes. It has a kink
+where two eigenvalues meet, which is the rule in symmetric robots. The margin is the soft minimum −w log Σ exp(−λ/w):
+smooth, never above the smallest eigenvalue, and below it by at most w times the logarithm of the number of
+eigenvalues. It looks at all eigenvalues at once, so no optimiser escapes to a higher one, as it may where one
+eigenpair is made part of the problem.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.control.soft_minimum import soft_minimum
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.solver.solve import check_potential
+from cosserat_casadi.solver.stability import variations
+
+WIDTH = 0.02
+"""Width w of the soft minimum."""
+
+
+def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
+    """A smooth lower bound of the smallest eigenvalue of the second variation, relative to the elastic stiffness.
+
+    Where it is positive ``solve`` judges the equilibrium stable, on the same variations: those that supports, joints
+    and cables of given length admit. First and second derivatives are exact, at multiple eigenvalues too. NumPy finds
+    the eigenvalues, so the function cannot be exported to C.
+
+    Args:
+        model: with loads that have a potential, and without cables that may go slack.
+        width: of the soft minimum.
+
+    Returns:
+        (x, inputs) ↦ margin; off equilibrium that of the symmetric part of the Jacobian there. NaN where x or inputs
+        are, or where a body may move while no rod is strained.
+
+    Raises:
+        SceneError: the loads have no potential, or a cable may go slack.
+        ValueError: the width is not positive.
+    """
+    if not width > 0.0:
+        raise ValueError(f"the width of a soft minimum is positive, got {width}")
+    check_potential(model, model.pack())
+    _refuse_slack(model)
+    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    bordered = _bordered(model, x, inputs)
+    margin = soft_minimum(_elastic(model).tobytes(), bordered.shape[0], width)(bordered)
+    return ca.Function("stability_margin", [x, inputs], [margin], ["x", "inputs"], ["margin"])
+
+
+def _refuse_slack(model: Model) -> None:
+    """Refuse cables that hold the rod at times only: the eigenvalues jump where they go slack."""
+    problems = [
+        Problem(f"actuators[{i}].slack", "a cable that may go slack makes eigenvalues jump", "give it slack = false")
+        for i, one in enumerate(model.scene.actuators)
+        if one.kind == "tendon" and one.length is not None and one.slack
+    ]
+    if problems:
+        raise SceneError(*problems)
+
+
+def _shares(model: Model) -> FloatArray:
+    """Energy unit of each free unknown relative to the largest, shape (n,)."""
+    units = variations(model).units
+    return np.asarray(units / units.max(initial=0.0))
+
+
+def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
+    """Second variation bordered by the linearised gaps and the lengths of quaternions, symmetric."""
+    allowed, jacobian = variations(model), model.jacobian(x, inputs)[0]
+    free, held = allowed.free.tolist(), allowed.held.tolist()
+    stiffness = ca.diag(ca.DM(_shares(model))) @ jacobian[free, free]
+    gaps = ca.vertcat(jacobian[held, free], _growth(model, x)[:, free])
+    corner = ca.MX(gaps.shape[0], gaps.shape[0])
+    return ca.densify(ca.blockcat([[(stiffness + stiffness.T) / 2, gaps.T], [gaps, corner]]))
+
+
+def _growth(model: Model, x: Matrix) -> Matrix:
+    """Variation of the length of each moving frame's quaternion, which moves nothing and is not admitted, k×size."""
+    frame = model.frame
+    rows = []
+    for carrier, place in frame.moving_slices.items():
+        quaternion = ca.DM(frame.couplings.moving[carrier].start.quaternion) + x[place][3:]
+        rows.append(ca.horzcat(ca.MX(1, place.start + 3), quaternion.T, ca.MX(1, model.size - place.stop)))
+    return ca.vertcat(ca.MX(0, model.size), *rows)
+
+
+def _elastic(model: Model) -> FloatArray:
+    """Second variation of the elastic energy of the unloaded rods, n×n; zero for moving frames."""
+    whole = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
+    elastic = np.zeros_like(whole)
+    for place in model.frame.rod_slices.values():
+        elastic[place, place] = whole[place, place]
+    free = variations(model).free
+    scaled = _shares(model)[:, None] * elastic[np.ix_(free, free)]
+    return np.asarray((scaled + scaled.T) / 2)

@@ -1,0 +1,59 @@
+"""Bodies that turn freely: their joints are spherical and lie on one line, and nothing has a lever about it.
+
+Turning such a body about the line strains no rod and moves no force, in every pose: its orientation is not determined
+and the equations are singular. A force that keeps its direction, or weight, holds it where it acts off the line. Forces
+that turn with the body and moments cannot: they have no potential.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.effects.registry import EFFECTS
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.couplings import FLAT, Carrier
+from cosserat_casadi.model.system import System
+
+
+def free_spins(system: System) -> Iterator[Problem]:
+    """A problem for every body whose orientation nothing holds."""
+    for i, body in enumerate(system.frame.scene.bodies):
+        joints, forces = _joints(system, body), _forces(system, body)
+        if joints is None or _lines(np.vstack([joints, forces])) > 1:
+            continue
+        about = _line(joints, forces)
+        problem = f"nothing holds the orientation of {body.name!r}: it turns freely about {about}"
+        yield Problem(f"bodies[{i}]", problem, "hold a tip by a fixed joint, or by a spherical one off that line")
+
+
+def _joints(system: System, body: scenes.Body) -> FloatArray | None:
+    """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
+    ties = [tie for tie in system.frame.couplings.ties if tie.other == Carrier("body", body.name)]
+    if any(tie.joint.rotation_axes for tie in ties):
+        return None
+    return np.array([np.asarray(tie.joint.place.position).ravel() for tie in ties])
+
+
+def _forces(system: System, body: scenes.Body) -> FloatArray:
+    """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
+    actions = [EFFECTS[load.kind].on_body(load, body, system.values(load)) for load in system.frame.scene.loads]
+    points = [a.position for a in actions if a is not None and a.force is not None and not a.follower]
+    return np.reshape(points, (-1, 3))
+
+
+def _lines(points: FloatArray) -> int:
+    """Dimension of what points span: 0 for one point, 1 for a line."""
+    apart = points - points[0]
+    size = max(float(np.abs(points).max(initial=0.0)), np.finfo(float).tiny)
+    return int(np.linalg.matrix_rank(apart / size, tol=FLAT))
+
+
+def _line(joints: FloatArray, forces: FloatArray) -> str:
+    """The line that a body turns about, in words."""
+    if _lines(joints):
+        return "the line through its joints"
+    return "the line through its joint and the force on it" if _lines(np.vstack([joints, forces])) else "its joint"
