@@ -2,7 +2,8 @@
 
 Turning such a body about the line strains no rod and moves no force, in every pose: its orientation is not determined
 and the equations are singular. A force that keeps its direction, or weight, holds it where it acts off the line. Forces
-that turn with the body and moments cannot: they have no potential.
+that turn with the body and moments cannot: they have no potential. What hangs from one joint is let through: its weight
+holds it but for a turn about the vertical, and the solution says that it is neutral.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ def free_spins(system: System) -> Iterator[Problem]:
     """A problem for every body whose orientation nothing holds."""
     for i, body in enumerate(system.frame.scene.bodies):
         joints, forces = _joints(system, body), _forces(system, body)
-        if joints is None or _lines(np.vstack([joints, forces])) > 1:
+        if joints is None or _lines(joints) > 1 or _lines(np.vstack([joints, forces])) > _lines(joints):
             continue
-        about = _line(joints, forces)
+        about = "the line through its joints" if _lines(joints) else "its joint"
         problem = f"nothing holds the orientation of {body.name!r}: it turns freely about {about}"
         yield Problem(f"bodies[{i}]", problem, "hold a tip by a fixed joint, or by a spherical one off that line")
 
@@ -50,10 +51,3 @@ def _lines(points: FloatArray) -> int:
     apart = points - points[0]
     size = max(float(np.abs(points).max(initial=0.0)), np.finfo(float).tiny)
     return int(np.linalg.matrix_rank(apart / size, tol=FLAT))
-
-
-def _line(joints: FloatArray, forces: FloatArray) -> str:
-    """The line that a body turns about, in words."""
-    if _lines(joints):
-        return "the line through its joints"
-    return "the line through its joint and the force on it" if _lines(np.vstack([joints, forces])) else "its joint"

@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.model.couplings import Carrier
@@ -217,10 +218,10 @@ def test_joints_are_checked_at_the_lengths_of_the_scene() -> None:
 HANGING = {"name": "plate", "mass": 0.1, "centre_of_mass": [0.05, 0.0, -0.1]}
 PULL = {"name": "pull", "kind": "body_wrench", "body": "plate", "force": [0.1, 0.2, 0.3], "position": [0.0, 0.0, 0.1]}
 DOWN = {"name": "down", "kind": "gravity", "acceleration": [0.0, 0.0, -9.81]}
-JOINTS, JOINT = "the line through its joints", "the line through its joint and the force on it"
+JOINTS = "the line through its joints"
 SPINS: dict[str, tuple[list[float], dict[str, Any], str]] = {
     "joint": ([0.0], {}, "its joint"),
-    "pendulum": ([0.0], {"bodies": [HANGING], "loads": [DOWN]}, JOINT),
+    "weight_at_the_joint": ([0.0], {"bodies": [{"name": "plate", "mass": 0.1}], "loads": [DOWN]}, "its joint"),
     "two": ([0.0, 0.1], {}, JOINTS),
     "three": ([0.0, 0.1, 0.3], {}, JOINTS),
     "weight_on_the_line": ([0.0, 0.1], {"bodies": [{"name": "plate", "mass": 0.1}], "loads": [DOWN]}, JOINTS),
@@ -262,6 +263,16 @@ def test_a_body_that_hangs_from_a_line_is_held_by_its_weight() -> None:
         assert (solution.converged, solution.stable) == (True, stable)
         assert "neutral" not in solution.message
     assert solve(build(hung([0.0, 0.1], {"loads": [PULL]}))).stable
+
+
+def test_what_hangs_from_one_joint_is_neutral() -> None:
+    """The centre of mass is straight below the joint, and the body may turn about the vertical."""
+    solution = solve(build(hung([0.0], {"bodies": [{**HANGING, "mass": 0.01}], "loads": [DOWN]})))
+    assert (solution.converged, solution.stable) == (True, True)
+    assert "neutral" in solution.message
+    quaternion = solution.model.body["plate"](solution.x, solution.inputs)[1].full()[:, 0]
+    lever = Rotation.from_quat(quaternion, scalar_first=True).apply(HANGING["centre_of_mass"])
+    assert_allclose(lever / np.linalg.norm(lever), [0.0, 0.0, -1.0], rtol=0, atol=1e-8)
 
 
 def test_planar_rods_of_one_plane_hold_a_body_in_it() -> None:
