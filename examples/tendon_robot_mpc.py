@@ -12,14 +12,14 @@ from __future__ import annotations
 import argparse
 import time
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import Model, Solution, build, read_scene, solve, solve_scene
-from cosserat_casadi.codegen.stage import compiled_stage
+from cosserat_casadi import Model, Solution, build, compiled_stage, read_scene, solve, solve_scene
 
 SCENE = Path(__file__).parent / "two_section_robot.toml"
 TENDONS = ["lower_east", "lower_north", "upper_west", "upper_south"]
@@ -180,7 +180,7 @@ class Controller:
         """Start the next step from this plan, one stage on; the last stage is held."""
         self.start = plan.values.copy()
         for places in self.problem.places.values():
-            for place, following in zip(places, places[1:], strict=False):
+            for place, following in pairwise(places):
                 self.start[place] = plan.values[following]
 
     def next_tensions(self, plan: Plan) -> np.ndarray:
@@ -247,8 +247,11 @@ def simulate(known: Solution, robot: Model, stage: ca.Function, solver: str, ste
         tip = state.tip().position[0]
         predicted = solve(known.model, dict(zip(TENSIONS, tensions, strict=True)), start=known)
         offset = tip - predicted.tip().position[0]
-        for rows, row in zip((wanted, tips, pulls, plans, states), (ahead[0], tip, tensions, plan, state), strict=True):
-            rows.append(row)
+        wanted.append(ahead[0])
+        tips.append(tip)
+        pulls.append(tensions)
+        plans.append(plan)
+        states.append(state)
     return Run(np.array(wanted), np.array(tips), np.array(pulls), plans, states)
 
 
