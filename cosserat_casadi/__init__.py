@@ -4,8 +4,10 @@ scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Func
 Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
 """
 
+from cosserat_casadi.codegen.acados import acados_expressions, write_acados
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
@@ -40,7 +42,9 @@ __all__ = [
     "Solution",
     "SolveError",
     "Tuning",
+    "acados_expressions",
     "build",
+    "compiled_stage",
     "discretise",
     "export",
     "follow_path",
@@ -56,5 +60,6 @@ __all__ = [
     "solve",
     "solve_scene",
     "tune",
+    "write_acados",
     "write_result",
 ]

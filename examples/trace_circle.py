@@ -108,10 +108,39 @@ def draw(tensions: np.ndarray, equilibria: list[Solution], file: Path) -> None:
     figure.savefig(file, dpi=150)
 
 
+def animate(tensions: np.ndarray, equilibria: list[Solution], file: Path) -> None:
+    """The finger on its way round beside what its tendons pull."""
+    from matplotlib.animation import FuncAnimation, PillowWriter
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 3.4), layout="constrained")
+    space = figure.add_subplot(1, 2, 1, projection="3d")
+    shapes = [solution.pose(np.linspace(0, 1, 41)).position for solution in equilibria]
+    tips = np.array([shape[-1] for shape in [*shapes, shapes[0]]])
+    space.plot(*tips.T, color="#ee6677")
+    (finger_line,) = space.plot(*shapes[0].T, color="#4477aa", linewidth=4)
+    space.set(xlim=(0, LENGTH), ylim=(-RADIUS, RADIUS), zlim=(-RADIUS, RADIUS), xlabel="x, m", ylabel="y, m")
+    space.set_aspect("equal")
+    space.locator_params(nbins=4)
+    panel = figure.add_subplot(1, 2, 2)
+    bars = panel.bar(["1", "2", "3"], tensions[0], color="#228833")
+    panel.axhline(LARGEST, color="0.5", linestyle="--")
+    panel.set(xlabel="tendon", ylabel="tension, N", ylim=(0, 1.1 * LARGEST))
+
+    def frame(k: int) -> list[object]:
+        finger_line.set_data_3d(*shapes[k].T)
+        for bar, height in zip(bars, tensions[k], strict=True):
+            bar.set_height(height)
+        return [finger_line, *bars]
+
+    FuncAnimation(figure, frame, len(equilibria)).save(file, PillowWriter(fps=12), dpi=80)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--stages", type=int, default=24, help="points on the circle, at least 3")
     parser.add_argument("--output", type=Path, default=Path("trace_circle.png"), help="figure")
+    parser.add_argument("--animation", type=Path, help="the finger in motion, a .gif")
     arguments = parser.parse_args()
     tensions, equilibria = trace(finger(), arguments.stages)
     draw(tensions, equilibria, arguments.output)
@@ -119,6 +148,9 @@ def main() -> None:
     stable = sum(solution.stable is True for solution in equilibria)
     print(f"mean square tension {effort:.4g} N², largest {tensions.max():.4g} N; {stable} of {len(tensions)} stable")
     print(f"wrote {arguments.output}")
+    if arguments.animation:
+        animate(tensions, equilibria, arguments.animation)
+        print(f"wrote {arguments.animation}")
 
 
 if __name__ == "__main__":

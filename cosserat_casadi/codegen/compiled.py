@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -235,10 +236,25 @@ def cache_folder() -> Path:
 def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
     sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    return shared_object(names.name, sources, headers, compiler)
+
+
+def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str) -> Path:
+    """Sources, compiled unless the cache folder has them already.
+
+    Args:
+        name: what the object is called before its hash.
+        sources: files of C, of one folder, compiled side by side.
+        headers: what they include beside the standard library's.
+        compiler: path of a C compiler.
+
+    Raises:
+        ExportError: a file is missing, the compiler fails, or the cache folder cannot be written to.
+    """
     digest = hashlib.sha256("\0".join([compiler, *FLAGS]).encode())
     for path in (*sources, *headers):
         digest.update(_read(path))
-    target = cache_folder() / f"{names.name}-{digest.hexdigest()[:20]}.so"
+    target = cache_folder() / f"{name}-{digest.hexdigest()[:20]}.so"
     if not target.exists():
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -249,7 +265,7 @@ def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
     return target
 
 
-def _compile(compiler: str, sources: list[Path], target: Path) -> None:
+def _compile(compiler: str, sources: Sequence[Path], target: Path) -> None:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / target.name
         objects = [Path(scratch) / f"{source.stem}.o" for source in sources]

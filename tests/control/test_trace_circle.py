@@ -26,8 +26,10 @@ def test_the_tip_is_on_the_circle_at_little_effort() -> None:
 
 
 def test_the_program_draws_its_figure(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "examples" / "trace_circle.py"), "--stages", "3", "--output", "c.png"]
+    program = ROOT / "examples" / "trace_circle.py"
+    command = [sys.executable, str(program), "--stages", "3", "--output", "c.png", "--animation", "c.gif"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 0, done.stderr
     assert "3 of 3 stable" in done.stdout
     assert (tmp_path / "c.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "c.gif").read_bytes().startswith(b"GIF89a")

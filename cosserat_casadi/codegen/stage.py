@@ -1,0 +1,128 @@
+"""What one stage of an optimal-control problem evaluates, compiled, with the derivatives that its solver asks for.
+
+An optimiser needs whole Jacobians. A library that knows only directional derivatives gives them a column at a time;
+here the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import casadi as ca
+
+from cosserat_casadi.codegen.compiled import find_compiler, shared_object
+from cosserat_casadi.codegen.kernels import body_pose, sources, tip
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.build import Model
+
+
+def compiled_stage(
+    model: Model, name: str = "stage", *, curvature: bool = False, compiler: str | None = None
+) -> ca.Function:
+    """(x, inputs) ↦ (residual, pose of every tip and body), compiled once, with compiled derivatives.
+
+    Args:
+        model: the model.
+        name: what the function is called, a C identifier.
+        curvature: whether second derivatives are exact. If not, those of residual and poses count as zero, so that any
+            of CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and
+            good where the deviations are small. Exact ones have several times as many instructions: minutes of gcc.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+
+    Returns:
+        outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
+        m, and quaternion w x y z.
+
+    Raises:
+        ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails.
+    """
+    library_names(name)
+    check_scalar(model)
+    found = find_compiler(compiler)
+    with tempfile.TemporaryDirectory() as scratch:
+        texts: dict[str, str] = {}
+        for function in stage_functions(model, name, curvature):
+            texts |= sources([function], function.name(), "long long int")
+        for file, text in texts.items():
+            (Path(scratch) / file).write_text(text, encoding="utf-8")
+        paths = [Path(scratch) / file for file in texts]
+        library = shared_object(
+            name, [p for p in paths if p.suffix == ".c"], [p for p in paths if p.suffix == ".h"], found
+        )
+    return ca.external(name, os.fspath(library))
+
+
+def check_scalar(model: Model) -> None:
+    """Refuse a model that cannot be written as scalar instructions.
+
+    Raises:
+        ExportError: a rod has the literal transport.
+    """
+    literal = [rod for rod, chosen in model.discretisation.items() if chosen.transport == "permuted"]
+    if literal:
+        problem = "the literal transport is solved with pivoting, which has no scalar form"
+        raise ExportError(*[Problem(f"rods.{rod}", problem, "leave transport out") for rod in literal])
+
+
+def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Function]:
+    """The function, its Jacobian, its adjoint and the adjoint's Jacobian, named as ``casadi.external`` looks for them.
+
+    Args:
+        model: the model.
+        name: what the function is called.
+        curvature: whether the last one is exact.
+    """
+    plain = straight(_stage(model, name), name)
+    slopes = straight(_slopes(model, plain), f"jac_{name}")
+    adjoint = plain.reverse(1)
+    second = adjoint.jacobian() if curvature else _bare(plain, slopes, adjoint)
+    return [plain, slopes, straight(adjoint, adjoint.name()), straight(second, f"jac_{adjoint.name()}")]
+
+
+def straight(function: ca.Function, name: str) -> ca.Function:
+    """A function as scalar instructions, common terms shared, zeros left out of its outputs."""
+    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    results = ca.cse(list(function.call(symbols)))
+    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+
+
+def _stage(model: Model, name: str) -> ca.Function:
+    x, inputs = model.residual.mx_in()
+    poses = {f"tip_{rod}": tip(model, rod) for rod in model.tip}
+    poses |= {f"body_{body}": body_pose(model, body) for body in model.body}
+    results = [model.residual(x, inputs), *[ca.vertcat(*pose(x, inputs)) for pose in poses.values()]]
+    return ca.Function(name, [x, inputs], results, ["x", "inputs"], ["residual", *poses])
+
+
+def _slopes(model: Model, plain: ca.Function) -> ca.Function:
+    """∂ output / ∂ input, output by output, with the model's own Jacobians."""
+    x, inputs = model.residual.mx_in()
+    poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
+    blocks = [model.jacobian(x, inputs)[0], model.input_jacobian(x, inputs)]
+    for pose in poses:
+        blocks += pose(x, inputs)
+    return _jacobian(plain, [x, inputs], blocks)
+
+
+def _bare(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
+    """Jacobian of the adjoint with its multipliers; with x and inputs it is left empty."""
+    symbols = adjoint.mx_in()
+    blocks = slopes.call(symbols[: slopes.n_in()])
+    rows = []
+    for i in range(plain.n_in()):
+        rows += [ca.MX(plain.size1_in(i), symbol.numel()) for symbol in symbols[: slopes.n_in()]]
+        rows += [block.T for block in blocks[i :: plain.n_in()]]
+    return _jacobian(adjoint, symbols, rows)
+
+
+def _jacobian(function: ca.Function, symbols: Sequence[Matrix], blocks: Sequence[Matrix]) -> ca.Function:
+    """Blocks as the function that CasADi takes for a Jacobian: its outputs are inputs too, without an entry."""
+    outputs = [ca.MX.sym(f"out_{name}", ca.Sparsity(*function.size_out(name))) for name in function.name_out()]
+    words_in = [*function.name_in(), *[f"out_{name}" for name in function.name_out()]]
+    words_out = [f"jac_{o}_{i}" for o in function.name_out() for i in function.name_in()]
+    return ca.Function(f"jac_{function.name()}", [*symbols, *outputs], blocks, words_in, words_out)

@@ -1,0 +1,87 @@
+"""A compiled stage against the model: values, Jacobians, and second derivatives, exact or Gauss–Newton's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import ExportError, Model, build, compiled_stage, discretise
+from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
+from tests.codegen.test_load import cached, needs_compiler
+from tests.scenes import WEIGHT, push, scene
+
+pytestmark = needs_compiler
+
+
+@pytest.fixture(autouse=True)
+def quick(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cached(tmp_path, monkeypatch)
+
+
+def wire() -> Model:
+    wanted = scene(push(), WEIGHT, strain="planar", inputs=["push.force"])
+    return build(wanted, discretise(wanted, 3, 6))
+
+
+def hand() -> Model:
+    wanted = scene(LOAD, inputs=["load.force"], rods=ARMS, bodies=[HAND], joints=WRISTS)
+    return build(wanted, discretise(wanted, 1, 3))
+
+
+def somewhere(model: Model) -> tuple[np.ndarray, np.ndarray]:
+    random = np.random.default_rng(3)
+    return 0.2 * random.standard_normal(model.size), model.pack() + 0.1 * random.standard_normal(model.inputs.size)
+
+
+@pytest.mark.parametrize("make", [wire, hand])
+def test_stage_vs_model(make: Callable[[], Model]) -> None:
+    model = make()
+    stage = compiled_stage(model, "stage_of_" + make.__name__)
+    at = somewhere(model)
+    names = [*[f"tip_{rod}" for rod in model.tip], *[f"body_{body}" for body in model.body]]
+    assert stage.name_out() == ["residual", *names]
+    poses = [pose(*at)[:2] for pose in (*model.tip.values(), *model.body.values())]
+    expected = [model.residual(*at), *[ca.vertcat(*pose) for pose in poses]]
+    for found, value in zip(stage(*at), expected, strict=True):
+        assert_allclose(found.full(), value.full(), rtol=1e-12, atol=1e-13)
+    slopes = stage.jacobian()(*at, *[ca.DM(*size) for size in map(stage.size_out, range(stage.n_out()))])
+    pose_slopes = [
+        block for pose in (*model.tip_jacobian.values(), *model.body_jacobian.values()) for block in pose(*at)
+    ]
+    assert_allclose(slopes[0].full(), model.jacobian(*at)[0].full(), rtol=1e-11, atol=1e-12)
+    for found, value in zip(slopes[1:], [model.input_jacobian(*at), *pose_slopes], strict=True):
+        assert_allclose(found.full(), value.full(), rtol=1e-11, atol=1e-12)
+
+
+def hessian(function: ca.Function, model: Model, weights: np.ndarray) -> np.ndarray:
+    """Of a Lagrangian: half the squared deviation of a position, and the residual times its multipliers."""
+    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    residual, pose = function(x, inputs)
+    lagrangian = ca.sumsqr(pose[:3] - ca.DM([0.3, 0.1, 0.6])) / 2 + ca.dot(weights, residual)
+    both = ca.vertcat(x, inputs)
+    return ca.Function("hessian", [x, inputs], [ca.hessian(lagrangian, both)[0]])(*somewhere(model)).full()
+
+
+def test_second_derivatives_vs_model() -> None:
+    model = wire()
+    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    plain = ca.Function("plain", [x, inputs], [model.residual(x, inputs), ca.vertcat(*model.tip["rod"](x, inputs)[:2])])
+    weights = np.linspace(-1.0, 2.0, model.size)
+    exact = compiled_stage(model, "exact_stage", curvature=True)
+    assert_allclose(hessian(exact, model, weights), hessian(plain, model, weights), rtol=1e-10, atol=1e-12)
+    slopes = np.hstack([block.full() for block in model.tip_jacobian["rod"](*somewhere(model))])[:3]
+    bare = hessian(compiled_stage(model, "bare_stage"), model, weights)
+    assert_allclose(bare, slopes.T @ slopes, rtol=1e-10, atol=1e-12)
+
+
+def test_a_model_without_scalar_form_is_refused() -> None:
+    wanted = scene(push(), strain="planar", inputs=["push.force"])
+    with pytest.raises(ExportError, match="no scalar form"):
+        compiled_stage(build(wanted, discretise(wanted, 2, 4, "permuted")))
+    with pytest.raises(ExportError, match="no name for a C library"):
+        compiled_stage(wire(), "a stage")
