@@ -6,10 +6,12 @@ import ctypes
 import hashlib
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -218,7 +220,9 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
-    return Compiled(_shared_object(folder, names, find_compiler(compiler)), described, names)
+    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
+    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
 
 
 def cache_folder() -> Path:
@@ -232,13 +236,23 @@ def cache_folder() -> Path:
     return base / "cosserat_casadi"
 
 
-def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
-    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
-    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
-    digest = hashlib.sha256("\0".join([compiler, *FLAGS]).encode())
+def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str) -> Path:
+    """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
+
+    Args:
+        name: what the name of the object begins with.
+        sources: files to compile.
+        headers: files beside them that they include.
+        compiler: path of a C compiler.
+
+    Raises:
+        ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
+    """
+    # The cache may lie in a home folder that machines of several kinds share.
+    digest = hashlib.sha256("\0".join([compiler, *FLAGS, platform.system(), platform.machine()]).encode())
     for path in (*sources, *headers):
         digest.update(_read(path))
-    target = cache_folder() / f"{names.name}-{digest.hexdigest()[:20]}.so"
+    target = cache_folder() / f"{name}-{digest.hexdigest()[:20]}.so"
     if not target.exists():
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
@@ -249,7 +263,7 @@ def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
     return target
 
 
-def _compile(compiler: str, sources: list[Path], target: Path) -> None:
+def _compile(compiler: str, sources: Sequence[Path], target: Path) -> None:
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / target.name
         objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
