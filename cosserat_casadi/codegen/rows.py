@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import tempfile
+import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -31,6 +32,8 @@ JUDGED = ("outcome", "iterations", "residual")
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
+
+_LOCK = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ def row_library(model: Model) -> RowLibrary:
 
 def row_results(scene: Scene) -> tuple[str, ...]:
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
-    posed = [one.name for one in (*scene.rods, *scene.bodies)]
+    posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
     states = [f"{one.name}.{word}" for one in scene.actuators for word in _state(one.kind)]
     return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
 
@@ -110,8 +113,14 @@ def _rows_source(model: Model, names: Names, results: int) -> str:
     return re.sub(r"@\{(\w+)\}", lambda match: words[match[1]], template.read_text(encoding="utf-8"))
 
 
-@cache
 def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    # Threads wait for the one that compiles, instead of compiling too.
+    with _LOCK:
+        return _library(files)
+
+
+@cache
+def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
     return ctypes.CDLL(str(_object(dict(files), find_compiler())))
 
 
