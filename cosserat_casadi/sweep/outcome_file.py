@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -98,13 +99,13 @@ def read_sweep(path: str | Path) -> Sweep:
 def _cells(sweep: Sweep) -> Iterator[list[Any]]:
     """Rows of the CSV file; what was not found is an empty cell."""
     swept, steps = len(sweep.swept), sweep.found.index("iterations")
+    whole = np.isfinite(sweep.values.sum(axis=1))
     for first in range(0, len(sweep.values), BLOCK):
         block = sweep.values[first : first + BLOCK]
-        whole: list[bool] = np.isfinite(block).all(axis=1).tolist()
-        for row, number, complete in zip(block.tolist(), sweep.outcomes[first : first + BLOCK], whole, strict=True):
-            cells: list[Any] = row if complete else ["" if cell != cell else cell for cell in row]
+        for place, row in enumerate(block.tolist(), first):
+            cells: list[Any] = row if whole[place] else ["" if math.isnan(cell) else cell for cell in row]
             cells[swept + steps] = int(cells[swept + steps])
-            yield [*cells[:swept], LABELS[number], *cells[swept:]]
+            yield [*cells[:swept], LABELS[sweep.outcomes[place]], *cells[swept:]]
 
 
 def _write_parquet(sweep: Sweep, path: Path) -> None:

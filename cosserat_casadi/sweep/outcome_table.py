@@ -55,6 +55,16 @@ class Sweep:
         counted = Counter(self.outcomes.tolist())
         return {LABELS[number]: counted[number] for number in sorted(counted)}
 
+    @property
+    def holds(self) -> bool:
+        """Whether some row converged, and every row that was looked at is within the scene's tolerance."""
+        tolerance = self.record["tolerance"]
+        chosen = self.record["chosen"]["error_estimate"]
+        looked_at = [0.0 if chosen is None else chosen]
+        for one in self.record["checked"]:
+            looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
+        return bool(self.converged.any()) and max(looked_at) <= tolerance
+
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).
 

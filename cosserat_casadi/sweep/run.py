@@ -67,6 +67,13 @@ class Plan:
         return digest.hexdigest()
 
     @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of numbers that the results will have."""
+        # What is swept and found alike, such as a given tension, is in the table already.
+        found = [name for name in row_results(self.scene)[1:] if name not in self.table.columns]
+        return (*self.table.columns, *found)
+
+    @property
     def part(self) -> Path | None:
         """The file of what is done, until all is."""
         return None if self.output is None else self.output.with_name(f"{self.output.name}.part")
@@ -102,7 +109,7 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
         problems += _clashing_columns(plan)
     except SceneError as error:
         problems += error.problems
-    problems += _output_problems(output, plan)
+    problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
     scene_names(NAME, scene)
@@ -229,10 +236,9 @@ def _sweep(plan: Plan, choice: Choice, work: Sequence[Chunk], done: dict[int, Fl
     for chunk in work:
         results[chunk.rows] = done[chunk.number]
     checked = check(plan.found, choice, results, told)
-    # What is swept and found alike, such as a given tension, is in the table already.
-    kept = [k for k, name in enumerate(names) if k > 0 and name not in plan.table.columns]
-    values = np.hstack([plan.table.values, results[:, kept]])
-    sweep = Sweep(plan.table.columns, tuple(names[k] for k in kept), values, results[:, 0].astype(np.int64), {})
+    found = plan.columns[len(plan.table.columns) :]
+    values = np.hstack([plan.table.values, results[:, [names.index(name) for name in found]]])
+    sweep = Sweep(plan.table.columns, found, values, results[:, 0].astype(np.int64), {})
     sweep.record.update(_record(plan, choice, sweep, checked))
     return sweep
 
@@ -260,7 +266,7 @@ def _clashing_columns(plan: Plan) -> Iterator[Problem]:
             yield Problem(plan.table.where, f"{column!r} is a column of the results", "rename it")
 
 
-def _output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
+def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
     """Why the results cannot be written where they are wanted."""
     if output is None:
         return []
