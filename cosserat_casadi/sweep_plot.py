@@ -67,7 +67,8 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     points = sweep.positions(sweep.posed[-1])[_thinned(sweep.converged)]
     plane = _plane(points)
     figure, grid = _figure(rows=1 if plane else 2, columns=(1 if plane else 2) + failing)
-    views = [plane] if plane else [None, (0, 1), (0, 2), (1, 2)]
+    # From above, in space; from the front below the first, from the side beside that.
+    views = [plane] if plane else [(0, 1), None, (0, 2), (1, 2)]
     places = [grid[0, 0]] if plane else [grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1]]
     shades = None if chosen == "outcome" else sweep[chosen][_thinned(sweep.converged)]
     panels = [_add_view(figure, place, view) for place, view in zip(places, views, strict=True)]
