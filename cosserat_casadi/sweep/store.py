@@ -86,7 +86,8 @@ def _entries(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
     """Whole entries; what follows a damaged one is not trusted."""
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)
-        content = file.read(size) if size >= 0 else b""
-        if len(content) != size or zlib.crc32(content) != checksum:
+        content = file.read(size) if size > 0 else b""
+        # No chunk is empty: zeros are what a file system may leave after a failure of power.
+        if not content or len(content) != size or zlib.crc32(content) != checksum:
             return
         yield number, content
