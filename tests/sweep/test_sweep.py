@@ -113,12 +113,12 @@ def test_what_a_row_gives_depends_on_no_other() -> None:
 
 
 def test_rows_without_an_equilibrium_show_none(tmp_path: Path) -> None:
-    """Loads far beyond what three modes resolve: their rows say how they ended, and nothing that looks like a pose."""
+    """Moments far beyond what three modes resolve: their rows say how they ended, and show nothing like a pose."""
     file = tmp_path / "rows.csv"
-    found = sweep_scene(PLANAR, {"push.force.z": [-0.4, -900.0, 0.2, 5e4]}, file)
+    found = sweep_scene(PLANAR, {"push.moment.y": [0.3, 100.0, 0.2, 400.0]}, file)
     failed = ~found.converged
     assert failed.tolist() == [False, True, False, True]
-    assert set(np.array(found.outcome)[failed]) <= {"unresolved", "load_stalled", "max_iterations", "singular"}
+    assert found.outcome == ["converged", "unresolved", "converged", "load_stalled"]
     assert np.isnan(found.positions()[failed]).all()
     rows = list(csv.DictReader(file.open()))
     for row, missing in zip(rows, failed, strict=True):
@@ -212,7 +212,9 @@ def test_what_is_kept_is_not_solved_again(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(KeyboardInterrupt):
         sweep_scene(PLANAR, table, output, cores=1)
     again: list[int] = []
-    monkeypatch.setattr(Store, "add", lambda store, number, results: (again.append(number), add(store, number, results)))
+    monkeypatch.setattr(
+        Store, "add", lambda store, number, results: (again.append(number), add(store, number, results))
+    )
     found = sweep_scene(PLANAR, table, output)
     assert again == [2]
     assert_array_equal(found.values, sweep_scene(PLANAR, table).values)
@@ -280,7 +282,7 @@ def test_parquet_holds_the_same(tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     import pyarrow.parquet
 
-    table = {"push.force.z": [-0.4, -900.0, 0.2]}
+    table = {"push.moment.y": [0.3, 100.0, 0.2]}
     found = sweep_scene(PLANAR, table, tmp_path / "a.parquet")
     columns = pyarrow.parquet.read_table(tmp_path / "a.parquet").to_pydict()
     assert columns["outcome"] == found.outcome

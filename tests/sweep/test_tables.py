@@ -31,9 +31,7 @@ def refusals(text: str) -> str:
 def test_every_combination_the_last_column_fastest() -> None:
     columns, rows = grid_of('"a.b" = { from = -1, to = 1, count = 3 }\nc.d = [5, 7]\ne = 2')
     assert columns == ("a.b", "c.d", "e")
-    assert_allclose(
-        rows, [[-1, 5, 2], [-1, 7, 2], [0, 5, 2], [0, 7, 2], [1, 5, 2], [1, 7, 2]], rtol=0, atol=1e-15
-    )
+    assert_allclose(rows, [[-1, 5, 2], [-1, 7, 2], [0, 5, 2], [0, 7, 2], [1, 5, 2], [1, 7, 2]], rtol=0, atol=1e-15)
 
 
 def test_draws_stand_beside_every_combination() -> None:
