@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -120,7 +119,7 @@ def test_rows_without_an_equilibrium_show_none(tmp_path: Path) -> None:
     assert failed.tolist() == [False, True, False, True]
     assert found.outcome == ["converged", "unresolved", "converged", "load_stalled"]
     assert np.isnan(found.positions()[failed]).all()
-    rows = list(csv.DictReader(file.open()))
+    rows = list(csv.DictReader(file.read_text().splitlines()))
     for row, missing in zip(rows, failed, strict=True):
         assert (row["rod.x"] == "") is bool(missing)
         assert row["iterations"].isdigit()
@@ -154,7 +153,7 @@ def test_a_check_that_finds_the_tolerance_missed_says_so() -> None:
 # Kept, gone on with, written
 
 
-SLOW = {"push.force.x": np.random.default_rng(5).uniform(-3.0, 3.0, 20_000)}
+SLOW = {"push.force.x": np.random.default_rng(5).uniform(-3.0, 3.0, 12_000)}
 
 
 def command(folder: Path, output: str, *more: str) -> list[str]:
@@ -181,22 +180,23 @@ def stopped(folder: Path, how: signal.Signals) -> subprocess.CompletedProcess[st
     return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_a_stopped_sweep_goes_on_to_the_same_bytes(tmp_path: Path, how: signal.Signals) -> None:
-    done = stopped(tmp_path, how)
-    assert done.returncode == (-9 if how is signal.SIGKILL else 130), done.stderr
-    if how is signal.SIGINT:
-        assert "the same command goes on" in " ".join(done.stderr.split())
-    assert not (tmp_path / "a.csv").exists()
-    kept = (tmp_path / "a.csv.part").stat().st_size
-    assert kept < 20_000 * 10 * 8
+def test_a_killed_sweep_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    assert stopped(tmp_path, signal.SIGKILL).returncode == -signal.SIGKILL
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv.part", "rows.csv", "scene.toml"]
     again = subprocess.run(command(tmp_path, "a.csv"), cwd=tmp_path, capture_output=True, text=True, check=False)
     assert again.returncode == 0, again.stderr
     sweep_scene(PLANAR, SLOW, tmp_path / "b.csv")
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
-    assert record_file(tmp_path / "a.csv").read_bytes() == record_file(tmp_path / "b.csv").read_bytes()
     names = ["a.csv", "a.csv.json", "b.csv", "b.csv.json", "rows.csv", "scene.toml"]
     assert sorted(file.name for file in tmp_path.iterdir()) == names
+
+
+def test_an_interrupt_says_that_the_sweep_can_go_on(tmp_path: Path) -> None:
+    done = stopped(tmp_path, signal.SIGINT)
+    assert done.returncode == 130
+    assert "the same command goes on" in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["a.csv.part", "rows.csv", "scene.toml"]
 
 
 def test_what_is_kept_is_not_solved_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -327,6 +327,6 @@ def children(pid: int) -> list[int]:
     if not Path("/proc/self/task").exists():
         pytest.skip("there is no /proc")
     listed: list[int] = []
-    for task in os.listdir(f"/proc/{pid}/task"):
-        listed += map(int, Path(f"/proc/{pid}/task/{task}/children").read_text().split())
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        listed += map(int, (task / "children").read_text().split())
     return listed
