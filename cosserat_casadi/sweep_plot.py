@@ -105,7 +105,11 @@ def _scatter(panel: Any, points: FloatArray, view: tuple[int, int] | None, shade
     style: dict[str, Any] = {"s": size, "linewidths": 0.0, "rasterized": len(points) > VECTORS}
     style |= {"color": COLOURS[0]} if shades is None else {"c": shades, "cmap": MAP}
     found = panel.scatter(*(points.T if view is None else points[:, list(view)].T), **style)
-    panel.set_aspect("equal", adjustable="datalim" if view else "box")
+    if view is None:
+        # A little smaller than its place, for the label of the third axis.
+        panel.set_box_aspect(np.ptp(points, axis=0) if len(points) else None, zoom=0.9)
+    else:
+        panel.set_aspect("equal", adjustable="datalim")
     return found
 
 

@@ -69,9 +69,9 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
             _write_parquet(sweep, temporary)
         else:
             with temporary.open("w", encoding="utf-8", newline="") as stream:
-                writer = csv.writer(stream, lineterminator="\n")
-                writer.writerow([*sweep.swept, "outcome", *sweep.found])
-                writer.writerows(_cells(sweep))
+                csv.writer(stream, lineterminator="\n").writerow([*sweep.swept, "outcome", *sweep.found])
+                # Numbers and words without commas: the csv module would take half as long again.
+                stream.writelines(f"{','.join(cells)}\n" for cells in _cells(sweep))
 
 
 def read_sweep(path: str | Path) -> Sweep:
@@ -96,16 +96,16 @@ def read_sweep(path: str | Path) -> Sweep:
     return Sweep(tuple(names[:place]), tuple(names[place + 1 :]), np.column_stack(numbers), outcomes, record or {})
 
 
-def _cells(sweep: Sweep) -> Iterator[list[Any]]:
+def _cells(sweep: Sweep) -> Iterator[list[str]]:
     """Rows of the CSV file; what was not found is an empty cell."""
     swept, steps = len(sweep.swept), sweep.found.index("iterations")
-    whole = np.isfinite(sweep.values.sum(axis=1))
+    whole = np.isfinite(sweep.values.sum(axis=1)).tolist()
     for first in range(0, len(sweep.values), BLOCK):
-        block = sweep.values[first : first + BLOCK]
-        for place, row in enumerate(block.tolist(), first):
-            cells: list[Any] = row if whole[place] else ["" if math.isnan(cell) else cell for cell in row]
-            cells[swept + steps] = int(cells[swept + steps])
-            yield [*cells[:swept], LABELS[sweep.outcomes[place]], *cells[swept:]]
+        for place, row in enumerate(sweep.values[first : first + BLOCK].tolist(), first):
+            cells = list(map(repr, row)) if whole[place] else ["" if math.isnan(cell) else repr(cell) for cell in row]
+            cells[swept + steps] = str(int(row[swept + steps]))
+            cells.insert(swept, LABELS[sweep.outcomes[place]])
+            yield cells
 
 
 def _write_parquet(sweep: Sweep, path: Path) -> None:

@@ -18,6 +18,8 @@ from cosserat_casadi.sweep.table import Table, read_table
 from cosserat_casadi.sweep.variants import variants
 from tests.conftest import ROOT
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 PAGE = (ROOT / "docs" / "sweeps.md").read_text()
 WIRE = ROOT / "examples" / "nitinol_wire.toml"
 
