@@ -93,6 +93,7 @@ def _add_view(figure: Any, place: Any, view: tuple[int, int] | None) -> Any:
     if view is None:
         panel = figure.add_subplot(place, projection="3d")
         panel.set(xlabel="x, m", ylabel="y, m", zlabel="z, m")
+        panel.locator_params(nbins=4)
         return panel
     panel = figure.add_subplot(place)
     panel.set(xlabel=f"{'xyz'[view[0]]}, m", ylabel=f"{'xyz'[view[1]]}, m")
@@ -107,7 +108,7 @@ def _scatter(panel: Any, points: FloatArray, view: tuple[int, int] | None, shade
     found = panel.scatter(*(points.T if view is None else points[:, list(view)].T), **style)
     if view is None:
         # A little smaller than its place, for the label of the third axis.
-        panel.set_box_aspect(np.ptp(points, axis=0) if len(points) else None, zoom=0.9)
+        panel.set_box_aspect(np.ptp(points, axis=0) if len(points) else None, zoom=0.85)
     else:
         panel.set_aspect("equal", adjustable="datalim")
     return found

@@ -112,5 +112,11 @@ def _solve(answer: Answer | tuple[Part, ...], inputs: FloatArray | None) -> Floa
 
 
 def _taken(future: Any, waiting: dict[str, Chunk]) -> tuple[Chunk, FloatArray]:
-    found: FloatArray = future.result()
+    from distributed import CancelledError, KilledWorker
+
+    try:
+        found: FloatArray = future.result()
+    except (CancelledError, KilledWorker, OSError) as error:
+        message = f"the cluster gave a chunk up: {error}; the same command goes on with what is not done"
+        raise ClusterError(message) from None
     return waiting.pop(future.key), found
