@@ -48,7 +48,7 @@ def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -
 def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
     """Figure of a sweep: one panel for points in a plane, else the points in space and their three projections.
 
-    Where rows have no equilibrium and two columns were swept, one more panel shows which of these they are.
+    Where rows have no result and two columns were swept, one more panel shows which of these they are.
 
     Args:
         sweep: results.
@@ -115,15 +115,15 @@ def _scatter(panel: Any, points: FloatArray, view: tuple[int, int] | None, shade
 
 
 def _draw_inputs(panel: Any, sweep: Sweep, columns: list[str]) -> None:
-    """Which of the first two swept columns have an equilibrium, and how the others ended."""
+    """How rows ended, over the first two swept columns."""
     for number, label in enumerate(LABELS):
         rows = _thinned(sweep.outcomes == number)
         if rows.size:
             one, other = (sweep[name][rows] for name in columns)
             named = label.replace("_", " ")
             panel.scatter(one, other, s=9.0, linewidths=0.0, color=COLOURS[number], label=named, zorder=2 + number)
-    panel.set(xlabel=columns[0], ylabel=columns[1], title="outcome")
-    panel.legend(loc="upper left", fontsize=9, framealpha=0.9, markerscale=2.0)
+    panel.set(xlabel=columns[0], ylabel=columns[1])
+    panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9, markerscale=2.0)
     panel.grid(alpha=0.3)
 
 
@@ -145,5 +145,5 @@ def _thinned(chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
 
 def _subtitle(sweep: Sweep) -> str:
     count, found = len(sweep.outcomes), int(sweep.converged.sum())
-    rest = "" if found == count else f", {count - found:,} without an equilibrium"
+    rest = "" if found == count else f", {count - found:,} without a result"
     return f"{sweep.posed[-1]}: {found:,} of {count:,} rows{rest}"

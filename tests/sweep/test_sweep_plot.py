@@ -50,7 +50,7 @@ def test_rows_that_failed_are_shown_among_the_inputs() -> None:
     figure = plot_sweep(sweep, "outcome")
     panel, inputs = figure.axes
     assert len(panel.collections[0].get_offsets()) == 30
-    assert "10 without an equilibrium" in panel.get_title()
+    assert "10 without a result" in panel.get_title()
     assert [text.get_text() for text in inputs.get_legend().get_texts()] == ["converged", "load stalled"]
     assert_allclose(inputs.collections[1].get_offsets(), sweep.values[::4, :2], rtol=0, atol=0)
 
