@@ -163,7 +163,9 @@ def run_sweep(
         cores: as there.
         progress: as there.
     """
-    if plan.finished and plan.output is not None:
+    if plan.finished and plan.output is not None and plan.part is not None:
+        # A kill between the last two steps of the run before leaves it.
+        plan.part.unlink(missing_ok=True)
         return read_sweep(plan.output)
     told = progress or (lambda doing, done, total: None)
     # A cluster that does not answer is told of before the discretisation is chosen.

@@ -247,7 +247,10 @@ def test_a_finished_sweep_is_read_and_left_alone(tmp_path: Path) -> None:
     output, table = tmp_path / "a.csv", {"push.force.x": [0.1, 0.2]}
     first = sweep_scene(PLANAR, table, output)
     written = output.stat().st_mtime_ns
+    with Store(tmp_path / "a.csv.part") as left:
+        left.start({"sweep": first.record["sweep"]})
     second = sweep_scene(PLANAR, table, output)
+    assert not left.path.exists()
     assert output.stat().st_mtime_ns == written
     assert_array_equal(second.values, first.values)
     assert second.record == first.record
