@@ -61,6 +61,7 @@ def test_python_of_the_page_runs() -> None:
     assert "{'converged': 9} True" in done.stdout
 
 
+@pytest.mark.slow
 def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
     first = blocks("sh")[0].replace("\\\n", " ")
     grid = (ROOT / "examples" / "sweeps" / "robot_workspace.toml").read_text()
