@@ -27,7 +27,7 @@ class Worker:
         paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
         # Small matrices: threads of BLAS would only take the other processes' cores.
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
-        command = [sys.executable, "-m", "cosserat_casadi.sweep.worker"]
+        command = [sys.executable, "-c", "from cosserat_casadi.sweep.worker import main; main()"]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
 
     def solve(self, parts: Sequence[Part]) -> FloatArray:
@@ -72,7 +72,3 @@ def main() -> None:
     # Whatever else prints must not get among the results.
     os.dup2(2, 1)
     serve(sys.stdin.buffer, results)
-
-
-if __name__ == "__main__":
-    main()

@@ -89,6 +89,7 @@ def test_wires_drawn_from_tolerances_are_solved(tmp_path: Path) -> None:
         [sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
     )
     assert done.returncode == 0, done.stderr + done.stdout
+    assert "Warning" not in done.stderr
     rows = list(csv.DictReader(io.StringIO((tmp_path / "wires.csv").read_text())))
     assert len(rows) == 16 * 5
     hardest = [row for row in rows if float(row["push.force.y"]) == pytest.approx(0.3)]
