@@ -24,6 +24,7 @@ from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.solve import solve
 from cosserat_casadi.solver.trace import PathOutcome
 from cosserat_casadi.solver.tuning import Tuning, tune
+from cosserat_casadi.sweep import Sweep, read_sweep, sweep_scene
 
 __all__ = [
     "Compiled",
@@ -41,6 +42,7 @@ __all__ = [
     "SceneError",
     "Solution",
     "SolveError",
+    "Sweep",
     "Tuning",
     "acados_expressions",
     "build",
@@ -55,10 +57,12 @@ __all__ = [
     "parse_scene",
     "path_result",
     "read_scene",
+    "read_sweep",
     "result",
     "scene_from_dict",
     "solve",
     "solve_scene",
+    "sweep_scene",
     "tune",
     "write_acados",
     "write_result",

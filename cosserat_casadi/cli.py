@@ -1,4 +1,4 @@
-"""The command line: solve, follow a path, find inputs, check, export, tune, bench."""
+"""The command line: solve, follow a path, find inputs, sweep, check, export, tune, bench."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -16,11 +16,14 @@ from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
+    ProgressColumn,
     SpinnerColumn,
+    Task,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
 )
+from rich.text import Text
 
 from cosserat_casadi import report
 from cosserat_casadi.bench.effects import effect_times
@@ -51,6 +54,9 @@ from cosserat_casadi.solver.path import EquilibriumPath
 from cosserat_casadi.solver.path_accuracy import follow_scene_path
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import tune as tune_scene
+from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
+from cosserat_casadi.sweep.table import read_table
 
 REFUSED = 2
 """Exit code: the input is refused, nothing was written."""
@@ -155,6 +161,44 @@ def inverse(
         _draw(found.solution, plot)
     report.print_inverse(Console(), found, [p for p in (output, plot) if p is not None])
     if not found.met:
+        raise typer.Exit(NOT_FOUND)
+
+
+@app.command()
+def sweep(
+    scene: SceneFile,
+    over: Annotated[Path, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")],
+    output: Annotated[Path, typer.Option(help="Write a row for each solve here: .csv or .parquet.")],
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
+    ] = None,
+    cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    samples: Annotated[
+        int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
+    ] = SAMPLES,
+    plot: Annotated[Path | None, typer.Option(help="Draw the workspace here: .png, .pdf or .svg.")] = None,
+    colour: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
+    ] = None,
+    settings: Settings = None,
+) -> None:
+    """Solve a scene for every row of a grid or a table of inputs and parameters.
+
+    What a stopped or killed run has done is not done again. Exit codes: 0 every row has its outcome, 2 refused,
+    3 the tolerance is missed on rows that were checked, or no row has an equilibrium, 130 interrupted.
+    """
+    plan = _check_sweep(scene, tuple(settings or ()), over, output, samples, plot, colour)
+    finished = plan.finished
+    try:
+        with _progress(Rate()) as bar:
+            found = run_sweep(plan, scheduler=scheduler, cores=cores, progress=_stages(bar))
+    except KeyboardInterrupt:
+        report.print_stopped_sweep(Console(stderr=True), plan)
+        raise typer.Exit(INTERRUPTED) from None
+    if plot is not None:
+        _draw_sweep(found, plot, colour)
+    report.print_sweep(Console(), found, output, plot, finished=finished)
+    if not found.holds:
         raise typer.Exit(NOT_FOUND)
 
 
@@ -339,6 +383,44 @@ def _check_path(
     return read, np.asarray(value)
 
 
+def _check_sweep(
+    scene: Path,
+    settings: tuple[str, ...],
+    over: Path,
+    output: Path,
+    samples: int,
+    plot: Path | None,
+    colour: str | None,
+) -> Plan:
+    """The sweep that is asked for.
+
+    Raises:
+        SceneError: with every fault of the scene, the table and the places to write to.
+    """
+    problems: list[Problem] = []
+    found: list[Any] = []
+    steps: list[Callable[[], object]] = [
+        lambda: _check_outputs(None, plot),
+        lambda: read_scene(scene, settings),
+        lambda: read_table(over),
+    ]
+    for step in steps:
+        try:
+            found.append(step())
+        except SceneError as error:
+            problems.extend(error.problems)
+    if len(found) < len(steps):
+        # Without scene or table the output is all that can still be looked at.
+        problems += output_problems(output, None)
+        raise SceneError(*problems)
+    plan = plan_sweep(found[1], found[2], output, samples)
+    if colour is not None:
+        known = ("outcome", *plan.columns)
+        if colour not in known:
+            raise SceneError(Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(known)}"))
+    return plan
+
+
 def _check_input(scene: Scene, name: str, value: object) -> None:
     """Refuse an input that the scene does not have, or a value of another size; of a value refused already, None."""
     inputs = build(scene).inputs
@@ -371,20 +453,51 @@ def _draw_path(found: EquilibriumPath, file: Path) -> None:
     save_path_plot(found, file)
 
 
+def _draw_sweep(found: Sweep, file: Path, colour: str | None) -> None:
+    from cosserat_casadi.sweep_plot import save_sweep_plot
+
+    save_sweep_plot(found, file, colour)
+
+
 def _solve_with_progress(scene: Scene, *, stable: bool = False) -> Solution:
     with _told("Solving") as (told, said):
         return solve_scene(scene, stable=stable, progress=told, report=said)
 
 
-def _progress() -> Progress:
+def _progress(*more: ProgressColumn) -> Progress:
     columns = (
         SpinnerColumn(),
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
         TimeElapsedColumn(),
+        *more,
     )
     return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+class Rate(ProgressColumn):
+    """How many are done in a second, once that is known."""
+
+    def render(self, task: Task) -> Text:
+        """The rate as text."""
+        return Text(f"{task.speed:,.0f}/s" if task.speed else "")
+
+
+def _stages(bar: Progress) -> Callable[[str, int, int], None]:
+    """Shows one stage after the other; each has its own rate."""
+    task = bar.add_task("Reading the table", total=None)
+    doing = ""
+
+    def told(stage: str, done: int, total: int) -> None:
+        nonlocal doing
+        if stage == doing:
+            bar.update(task, completed=done, total=total or None)
+        else:
+            bar.reset(task, description=stage, completed=done, total=total or None)
+        doing = stage
+
+    return told
 
 
 def _reporter(bar: Progress) -> Callable[[str, int, int], None]:

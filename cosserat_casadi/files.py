@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from cosserat_casadi.errors import Problem, SceneError
@@ -26,11 +28,18 @@ def check_writable(path: Path, option: str) -> None:
 
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file under a temporary name beside its place, then move it there: it is never half there."""
+    with atomic_file(path) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def atomic_file(path: Path) -> Iterator[Path]:
+    """A temporary file beside a path, to be filled; it is moved there at the end, or removed where that fails."""
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    os.close(handle)
     temporary = Path(name)
     try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
+        yield temporary
         temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:

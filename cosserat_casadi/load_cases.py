@@ -40,6 +40,22 @@ def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
     Raises:
         SceneError: with every fault: a column that is no input, a row of another length, what is not a finite number.
     """
+    header, numbers, _, problems = read_numbers(path)
+    places = column_places(layout)
+    problems = [_no_column(str(path), column, places) for column in header if column not in places] + problems
+    if problems:
+        raise SceneError(*problems)
+    cases = np.tile(layout.pack(), (len(numbers), 1))
+    cases[:, [places[column] for column in header]] = numbers
+    return cases
+
+
+def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Problem]]:
+    """Header of a CSV file, its numbers, shape (count, columns), the line of each row, and every fault of its cells.
+
+    Raises:
+        SceneError: the file cannot be read, or holds no row.
+    """
     try:
         rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -47,14 +63,13 @@ def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
     filled = [(number, row) for number, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
     if len(filled) < 2:
         raise SceneError(Problem(str(path), "holds no load case", "give a header and one row for each case"))
-    header, places = [cell.strip() for cell in filled[0][1]], column_places(layout)
-    problems = _header_problems(str(path), header, places)
-    cases = np.tile(layout.pack(), (len(filled) - 1, 1))
-    for case, (number, row) in zip(cases, filled[1:], strict=True):
-        problems += _fill(case, f"{path}, line {number}", header, row, places)
-    if problems:
-        raise SceneError(*problems)
-    return cases
+    header = [cell.strip() for cell in filled[0][1]]
+    repeated = sorted({column for column in header if header.count(column) > 1})
+    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated]
+    numbers = np.full((len(filled) - 1, len(header)), np.nan)
+    for found, (number, row) in zip(numbers, filled[1:], strict=True):
+        problems += _fill(found, f"{path}, line {number}", header, row)
+    return header, numbers, [number for number, _ in filled[1:]], problems
 
 
 def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray:
@@ -99,26 +114,20 @@ def _additive_recurrence(count: int, dimension: int) -> FloatArray:
     return np.vstack([np.ones((1, dimension)), (0.5 + np.arange(1, count)[:, None] * steps) % 1.0])
 
 
-def _header_problems(where: str, header: list[str], places: dict[str, int]) -> list[Problem]:
-    problems = [_no_column(where, column, places) for column in header if column not in places]
-    repeated = sorted({column for column in header if header.count(column) > 1})
-    return problems + [Problem(where, f"has the column {column} twice") for column in repeated]
-
-
 def _no_column(where: str, column: str, places: dict[str, int]) -> Problem:
     return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {', '.join(places) or 'none'}")
 
 
-def _fill(case: FloatArray, where: str, header: list[str], row: list[str], places: dict[str, int]) -> list[Problem]:
+def _fill(found: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
     if len(row) != len(header):
         return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
     problems = []
-    for column, cell in zip(header, row, strict=True):
+    for k, (column, cell) in enumerate(zip(header, row, strict=True)):
         number = _number(cell)
         if number is None:
             problems.append(Problem(where, f"{column} must be a finite number, got {cell!r}"))
-        elif column in places:
-            case[places[column]] = number
+        else:
+            found[k] = number
     return problems
 
 

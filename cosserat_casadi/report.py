@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -20,6 +21,9 @@ from cosserat_casadi.rod.properties import STRAINS
 from cosserat_casadi.solver.path import EquilibriumPath
 from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import Tuning
+from cosserat_casadi.sweep.outcome_file import record_file
+from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.run import Plan
 
 ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}
 
@@ -136,6 +140,78 @@ def print_tuning(console: Console, tuning: Tuning, layout: InputLayout, cases: F
     )
     said = worst.message if worst.error_estimate is None else f"estimated error {worst.error_estimate:.1e}"
     console.print(f"Worst case, number {tuning.worst + 1}: {escape(values)}: {said}", highlight=False)
+
+
+def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None, *, finished: bool) -> None:
+    """How the rows ended, on what they were computed, what a check of some of them gave, and the files."""
+    record = sweep.record
+    console.print(f"[bold]{escape(record['title'] or 'Untitled scene')}[/]", highlight=False)
+    table = Table()
+    for heading in ("outcome", "rows", "share"):
+        table.add_column(heading, justify="left" if heading == "outcome" else "right")
+    for word, count in sweep.counts.items():
+        table.add_row(word, f"{count:,}", f"{count / len(sweep.outcomes):.1%}")
+    console.print(table)
+    console.print(_sweep_choice(record["chosen"], record["tolerance"]), highlight=False, soft_wrap=True)
+    for sentence in _sweep_check(record["checked"], record["tolerance"]):
+        console.print(sentence, highlight=False, soft_wrap=True)
+    if finished:
+        console.print(f"{escape(str(output))} holds this sweep already: nothing was computed", highlight=False)
+    for file in [*([] if finished else [output, record_file(output)]), *([] if plot is None else [plot])]:
+        console.print(f"wrote {escape(str(file))}", highlight=False, soft_wrap=True)
+
+
+def print_stopped_sweep(console: Console, plan: Plan) -> None:
+    """What a stopped sweep left."""
+    part = plan.part
+    if part is None or not part.exists():
+        console.print("Stopped before any row was solved. Nothing was written.")
+        return
+    console.print(f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.", highlight=False)
+
+
+def _sweep_choice(chosen: dict[str, Any], tolerance: float) -> str:
+    given = chosen["discretisation"]
+    if given is None:
+        return "Modes and nodes are those of the scene."
+    words = f"Modes {given['modes']}, {given['nodes']} intervals, chosen on {len(chosen['rows'])} rows"
+    if chosen["error_estimate"] is None:
+        return f"{words}, [bold red]none of which has an equilibrium.[/]"
+    some = "" if chosen["converged"] == len(chosen["rows"]) else f", {chosen['converged']} of which have an equilibrium"
+    missed = "[bold red]more than[/]" if chosen["error_estimate"] > tolerance else "within"
+    return f"{escape(words)}{some}: estimated error {chosen['error_estimate']:.1e}, {missed} {tolerance:g}."
+
+
+def _sweep_check(checked: list[dict[str, Any]], tolerance: float) -> list[str]:
+    """Sentences about the rows that were solved again."""
+    if not checked:
+        return []
+    lost = [one["row"] + 1 for one in checked if one["difference"] is None]
+    kept = [one for one in checked if one["difference"] is not None]
+    off = [one["row"] + 1 for one in kept if one["difference"] > tolerance]
+    unstable = [one["row"] + 1 for one in kept if one["stable"] is False]
+    said = []
+    if kept:
+        error, apart = (max(one[word] or 0.0 for one in kept) for word in ("error_estimate", "difference"))
+        verdict = "within" if error <= tolerance else "[bold red]more than[/]"
+        said.append(
+            f"{len(kept)} rows solved again in Python: estimated error at most {error:.1e}, {verdict} {tolerance:g}; "
+            f"poses differ by at most {apart:.1e}."
+        )
+    if lost:
+        said.append(f"[bold red]Python found no equilibrium for rows {_listed(lost)}.[/]")
+    if off:
+        said.append(f"[bold red]Python found another equilibrium for rows {_listed(off)}.[/]")
+    if unstable:
+        said.append(
+            f"[bold yellow]Of the rows solved again, {_listed(unstable)} are unstable:[/] a real rod leaves them. "
+            "The stability of other rows is not judged."
+        )
+    return said
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, numbers))
 
 
 def print_refusal(console: Console, error: SceneError | ExportError) -> None:

@@ -55,8 +55,8 @@ def commands() -> list[str]:
     return [line.split(" > ")[0] for line in lines if line.startswith(".venv/bin/cosserat ")]
 
 
-def test_there_are_nine_commands() -> None:
-    assert len(commands()) == 9
+def test_there_are_ten_commands() -> None:
+    assert len(commands()) == 10
 
 
 @pytest.mark.parametrize("line", commands())

@@ -6,6 +6,7 @@ import ctypes
 import hashlib
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -219,7 +220,9 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
-    return Compiled(_shared_object(folder, names, find_compiler(compiler)), described, names)
+    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
+    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
 
 
 def cache_folder() -> Path:
@@ -233,25 +236,20 @@ def cache_folder() -> Path:
     return base / "cosserat_casadi"
 
 
-def _shared_object(folder: Path, names: Names, compiler: str) -> Path:
-    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
-    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
-    return shared_object(names.name, sources, headers, compiler)
-
-
 def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str) -> Path:
-    """Sources, compiled unless the cache folder has them already.
+    """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
     Args:
-        name: what the object is called before its hash.
-        sources: files of C, of one folder, compiled side by side.
-        headers: what they include beside the standard library's.
+        name: what the name of the object begins with.
+        sources: files to compile.
+        headers: files beside them that they include.
         compiler: path of a C compiler.
 
     Raises:
-        ExportError: a file is missing, the compiler fails, or the cache folder cannot be written to.
+        ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
-    digest = hashlib.sha256("\0".join([compiler, *FLAGS]).encode())
+    # The cache may lie in a home folder that machines of several kinds share.
+    digest = hashlib.sha256("\0".join([compiler, *FLAGS, platform.system(), platform.machine()]).encode())
     for path in (*sources, *headers):
         digest.update(_read(path))
     target = cache_folder() / f"{name}-{digest.hexdigest()[:20]}.so"

@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
+
+import casadi as ca
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.derivatives import differentiable
@@ -13,7 +16,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
-from cosserat_casadi.codegen.names import library_names, scene_names
+from cosserat_casadi.codegen.names import Names, library_names, scene_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -76,13 +79,11 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     names = scene_names(name, model.scene)
     parts = assembled(model, names)
     functions = kernels(model, names, parts)
-    generated = sources(functions, f"{name}_kernels", "int")
     # casadi.external expects the integers that CasADi itself was built with.
     derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
-    generated[f"{name}_kernels.c"] = _prologue(names.macro) + generated[f"{name}_kernels.c"]
     files = {
         **library_sources(model, names, parts, error_estimate),
-        **generated,
+        **kernel_sources(functions, names),
         f"{name}_derivatives.c": derivatives[f"{name}_derivatives.c"],
         "scene.toml": scene_text(model.scene),
     }
@@ -92,6 +93,9 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     return files
 
 
-def _prologue(macro: str) -> str:
-    """What makes the kernels compute in float when the library does."""
-    return f"#ifdef {macro}_SINGLE\n#define casadi_real float\n#endif\n"
+def kernel_sources(functions: Sequence[ca.Function], names: Names) -> dict[str, str]:
+    """Source and header of the kernels by file name; they compute in float when the library does."""
+    stem = f"{names.name}_kernels"
+    generated = sources(functions, stem, "int")
+    prologue = f"#ifdef {names.macro}_SINGLE\n#define casadi_real float\n#endif\n"
+    return {**generated, f"{stem}.c": prologue + generated[f"{stem}.c"]}

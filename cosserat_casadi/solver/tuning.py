@@ -58,26 +58,46 @@ def tune(
         SceneError: a value or the tolerance is refused.
     """
     wanted = scene.accuracy.tolerance if tolerance is None else tolerance
-    free = _with_accuracy(scene, tolerance=wanted, modes=None, nodes=None, rotation=None)
+    free = unfixed(scene, wanted)
     done, total = 0, 2 * len(cases)
 
-    def told(solution: Solution) -> Solution:
+    def told(one: scenes.Scene, values: Values) -> Solution:
         nonlocal done
+        solution = solve_scene(one, values)
         done += 1
         if progress is not None:
             progress(done, max(done, total))
         return solution
 
-    alone = [told(solve_scene(free, values)) for values in cases]
+    alone = [told(free, values) for values in cases]
+    chosen, together = refine([(free, values) for values in cases], alone, told)
+    met = all(_error(solution) <= wanted for solution in together)
+    return Tuning(fixed(free, chosen), tuple(together), met)
+
+
+def refine(
+    cases: Sequence[tuple[scenes.Scene, Values]],
+    alone: Sequence[Solution],
+    solved: Callable[[scenes.Scene, Values], Solution] = solve_scene,
+) -> tuple[Discretisation, list[Solution]]:
+    """One discretisation for many cases: the union of what each chose alone, refined while a case misses.
+
+    Args:
+        cases: scenes that leave modes and nodes open, of one tolerance, each with inputs by name.
+        alone: solution of each case on a discretisation of its own.
+        solved: solves a scene whose discretisation is fixed.
+
+    Returns:
+        the discretisation, and the solution of every case on it.
+    """
     chosen = _union([d for s in alone for d in s.model.discretisation.values()])
     for _ in range(ROUNDS):
-        fixed = _fixed(free, chosen)
-        together = tuple(told(solve_scene(fixed, values)) for values in cases)
-        met = all(_error(solution) <= wanted for solution in together)
+        together = [solved(fixed(free, chosen), values) for free, values in cases]
+        met = all(_error(s) <= free.accuracy.tolerance for (free, _), s in zip(cases, together, strict=True))
         if met or not all(solution.converged for solution in together):
             break
         chosen = Discretisation(tuple(m + 1 for m in chosen.modes), chosen.nodes + 2, transport=chosen.transport)
-    return Tuning(fixed, together, met)
+    return chosen, together
 
 
 def _error(solution: Solution) -> float:
@@ -97,7 +117,13 @@ def _union(chosen: Sequence[Discretisation]) -> Discretisation:
     return Discretisation(modes, max(d.nodes for d in chosen), transport=order)
 
 
-def _fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
+def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
+    """The scene with its discretisation to be chosen for a tolerance."""
+    return _with_accuracy(scene, tolerance=tolerance, modes=None, nodes=None, rotation=None)
+
+
+def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
+    """The scene with all rods on one discretisation."""
     modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
     return _with_accuracy(scene, modes=modes, nodes=chosen.nodes, rotation=chosen.transport)
 

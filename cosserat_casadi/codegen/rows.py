@@ -1,0 +1,137 @@
+"""A model as C that answers rows of inputs with rows of results: what a sweep computes with."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import tempfile
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.compiled import find_compiler, shared_object
+from cosserat_casadi.codegen.export import kernel_sources
+from cosserat_casadi.codegen.kernels import kernels
+from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene import Scene
+
+NAME = "sweep"
+"""What every symbol of these libraries begins with."""
+
+JUDGED = ("outcome", "iterations", "residual")
+"""First columns of every row of results; the outcome as its number."""
+
+POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
+"""Columns of a pose: position (m), quaternion."""
+
+_LOCK = threading.Lock()
+
+
+@dataclass(frozen=True)
+class RowLibrary:
+    """C sources as text, so that any machine can compile them, once.
+
+    Attributes:
+        files: content by file name, as pairs.
+        inputs: numbers in a row of inputs.
+        results: numbers in a row of results.
+    """
+
+    files: tuple[tuple[str, str], ...]
+    inputs: int
+    results: int
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs).
+
+        Other threads run meanwhile. What a row gives depends on that row alone.
+
+        Raises:
+            ExportError: there is no C compiler, or it fails.
+        """
+        given = np.ascontiguousarray(inputs, dtype=np.float64)
+        if given.ndim != 2 or given.shape[1] != self.inputs:
+            raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
+        found = np.empty((len(given), self.results))
+        _loaded(self.files)[f"{NAME}_rows"](len(given), _pointer(given), _pointer(found))
+        return found
+
+
+def row_library(model: Model) -> RowLibrary:
+    """Sources of the solver of a model with a function for rows.
+
+    Raises:
+        ExportError: two things of the scene would have one name in C.
+    """
+    names = scene_names(NAME, model.scene)
+    parts = assembled(model, names)
+    written = {
+        **library_sources(model, names, parts, None),
+        **kernel_sources(kernels(model, names, parts), names),
+    }
+    columns = row_results(model.scene)
+    wanted = [f"{NAME}.h", f"{NAME}.c", f"{NAME}_kernels.h", f"{NAME}_kernels.c"]
+    files = [(name, written[name]) for name in wanted] + [(f"{NAME}_rows.c", _rows_source(model, names, len(columns)))]
+    return RowLibrary(tuple(files), model.inputs.size, len(columns))
+
+
+def row_results(scene: Scene) -> tuple[str, ...]:
+    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
+    posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
+    states = [f"{one.name}.{word}" for one in scene.actuators for word in _state(one.kind)]
+    return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
+
+
+def _state(kind: str) -> tuple[str, str]:
+    return ("tension", "length") if kind == "tendon" else ("pressure", "volume")
+
+
+def _rows_source(model: Model, names: Names, results: int) -> str:
+    tips = [names.function("tip", rod) for rod in names.rods]
+    bodies = [names.function("body", body) for body in names.bodies]
+    lines, place = list[str](), len(JUDGED)
+    for function in (*tips, *bodies):
+        lines.append(f"    {function}(q, given, here + {place}, here + {place + 3});")
+        place += len(POSE)
+    if names.actuators:
+        lines.append(f"    {names.name}_real slope[{names.macro}_UNKNOWNS];")
+    for actuator in names.actuators:
+        function = names.function("actuator", actuator)
+        lines.append(f"    {function}(q, given, here + {place}, here + {place + 1}, slope);")
+        place += 2
+    words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
+    template = resources.files("cosserat_casadi.codegen") / "templates" / "rows.c.in"
+    return re.sub(r"@\{(\w+)\}", lambda match: words[match[1]], template.read_text(encoding="utf-8"))
+
+
+def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    # Threads wait for the one that compiles, instead of compiling too.
+    with _LOCK:
+        return _library(files)
+
+
+@cache
+def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    return ctypes.CDLL(str(_object(dict(files), find_compiler())))
+
+
+def _object(files: Mapping[str, str], compiler: str) -> Path:
+    with tempfile.TemporaryDirectory() as folder:
+        paths: Sequence[Path] = [Path(folder) / name for name in files]
+        for path in paths:
+            path.write_text(files[path.name], encoding="utf-8")
+        sources, headers = ([path for path in paths if path.suffix == suffix] for suffix in (".c", ".h"))
+        return shared_object(NAME, sources, headers, compiler)
+
+
+def _pointer(array: FloatArray) -> ctypes.c_void_p:
+    return array.ctypes.data_as(ctypes.c_void_p)

@@ -1,0 +1,122 @@
+"""A sweep on an existing cluster of dask.distributed, which is an extra and is imported inside functions only.
+
+Sources go to the workers as text and are compiled there, once on each machine. A worker that dies loses the chunks that
+it was at, and the scheduler gives them to another: every chunk comes back, and the store keeps each but once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from importlib.metadata import version
+from types import TracebackType
+from typing import Any
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.sweep.work import Answer, Chunk, Part, solve_parts
+
+AHEAD = 256
+"""Chunks that the scheduler has at once: enough for many workers, few enough for its memory."""
+
+PATIENCE = 15
+"""Seconds in which a scheduler has to answer."""
+
+
+class ClusterError(CosseratError):
+    """The cluster cannot be used as it is."""
+
+
+class Cluster:
+    """A scheduler with its workers; results come as they are ready."""
+
+    def __init__(self, address: str) -> None:
+        self._client = _client(address)
+        self._shared: dict[int, Any] = {}
+
+    def __enter__(self) -> Cluster:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self._shared.clear()
+        self._client.close()
+
+    def run(self, tasks: Iterable[tuple[Chunk, Sequence[Part]]]) -> Iterator[tuple[Chunk, FloatArray]]:
+        """Every chunk with its results, in the order in which they are ready."""
+        from distributed import as_completed
+
+        waiting: dict[str, Chunk] = {}
+        finished = as_completed(loop=self._client.loop)
+        for chunk, parts in tasks:
+            future = self._client.submit(_solve, *self._arguments(chunk, parts), pure=False)
+            waiting[future.key] = chunk
+            finished.add(future)
+            if len(waiting) >= AHEAD:
+                yield _taken(next(finished), waiting)
+        while waiting:
+            yield _taken(next(finished), waiting)
+
+    def _arguments(self, chunk: Chunk, parts: Sequence[Part]) -> tuple[Any, ...]:
+        """Answers and inputs; a compiled library travels as the result of a task, which any worker can make anew."""
+        if not chunk.compiled:
+            return tuple(parts), None
+        (answer, inputs), (place, _) = parts[0], chunk.pieces[0]
+        if place not in self._shared:
+            self._shared = {place: self._client.submit(_same, answer, pure=False)}
+        return self._shared[place], inputs
+
+
+def _client(address: str) -> Any:
+    try:
+        from distributed import Client
+    except ImportError:
+        message = "--scheduler needs dask.distributed: install it with  pip install 'cosserat-casadi[sweep]'"
+        raise ClusterError(message) from None
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        remedy = "start one with dask scheduler, and workers with dask worker"
+        raise SceneError(Problem("--scheduler", f"no scheduler answers at {address}: {error}", remedy)) from None
+    _check_workers(client)
+    return client
+
+
+def _check_workers(client: Any) -> None:
+    """Refuse workers that would compute something else, or nothing."""
+    try:
+        client.wait_for_workers(1, timeout=PATIENCE)
+        found = client.run(_version)
+    except TimeoutError:
+        client.close()
+        raise ClusterError("the scheduler has no workers: start some with  dask worker ADDRESS") from None
+    except ImportError as error:
+        client.close()
+        raise ClusterError(f"the workers lack this package: {error}") from None
+    others = sorted({f"{address} has {one}" for address, one in found.items() if one != _version()})
+    if others:
+        client.close()
+        raise ClusterError(
+            f"the workers' versions of cosserat-casadi differ from {_version()} here: {'; '.join(others)}"
+        )
+
+
+def _version() -> str:
+    return version("cosserat-casadi")
+
+
+def _same(answer: Answer) -> Answer:
+    return answer
+
+
+def _solve(answer: Answer | tuple[Part, ...], inputs: FloatArray | None) -> FloatArray:
+    return solve_parts(answer) if isinstance(answer, tuple) else answer.solve(inputs)  # type: ignore[arg-type]
+
+
+def _taken(future: Any, waiting: dict[str, Chunk]) -> tuple[Chunk, FloatArray]:
+    from distributed import CancelledError, KilledWorker
+
+    try:
+        found: FloatArray = future.result()
+    except (CancelledError, KilledWorker, OSError) as error:
+        message = f"the cluster gave a chunk up: {error}; the same command goes on with what is not done"
+        raise ClusterError(message) from None
+    return waiting.pop(future.key), found

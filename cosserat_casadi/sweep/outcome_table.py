@@ -1,0 +1,86 @@
+"""The results of a sweep: a row for each solve with its inputs, how it ended and where it led."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.maths.typing import FloatArray
+
+LABELS = tuple(outcome.label for outcome in OUTCOMES)
+"""Words of the column ``outcome``."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Every row of a table, solved.
+
+    Attributes:
+        swept: columns of the table.
+        found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert.
+        values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
+        outcomes: how each row ended, as its place in LABELS, shape (rows,).
+        record: what was computed, how and how well, as plain data: the file beside the results.
+    """
+
+    swept: tuple[str, ...]
+    found: tuple[str, ...]
+    values: FloatArray
+    outcomes: npt.NDArray[np.int64]
+    record: dict[str, Any] = field(repr=False)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of all columns of numbers."""
+        return (*self.swept, *self.found)
+
+    @property
+    def converged(self) -> npt.NDArray[np.bool_]:
+        """Which rows hold an equilibrium, shape (rows,)."""
+        return np.asarray(self.outcomes == 0)
+
+    @property
+    def outcome(self) -> list[str]:
+        """How each row ended, in words."""
+        return [LABELS[number] for number in self.outcomes]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many rows ended in each way."""
+        counted = Counter(self.outcomes.tolist())
+        return {LABELS[number]: counted[number] for number in sorted(counted)}
+
+    @property
+    def holds(self) -> bool:
+        """Whether some row converged, and every row that was looked at is within the scene's tolerance."""
+        tolerance = self.record["tolerance"]
+        chosen = self.record["chosen"]["error_estimate"]
+        looked_at = [0.0 if chosen is None else chosen]
+        for one in self.record["checked"]:
+            looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
+        return bool(self.converged.any()) and max(looked_at) <= tolerance
+
+    def __getitem__(self, column: str) -> FloatArray:
+        """A column, shape (rows,).
+
+        Raises:
+            KeyError: there is no such column.
+        """
+        if column not in self.columns:
+            raise KeyError(f"{column!r} is no column; there are {', '.join(self.columns)}")
+        return self.values[:, self.columns.index(column)]
+
+    @property
+    def posed(self) -> list[str]:
+        """Rods and bodies whose poses are among the results."""
+        return [name.removesuffix(".qw") for name in self.found if name.endswith(".qw")]
+
+    def positions(self, name: str | None = None) -> FloatArray:
+        """Positions of a tip or a body, shape (rows, 3), m; of the first by default."""
+        chosen = self.posed[0] if name is None else name
+        return np.column_stack([self[f"{chosen}.{axis}"] for axis in "xyz"])

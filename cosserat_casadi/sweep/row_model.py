@@ -1,0 +1,51 @@
+"""Rows solved in Python: for parameters that so few rows share that compiling would take longer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from cosserat_casadi.codegen.rows import row_results
+from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.scene import parse_scene
+from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.solver.solve import solve
+
+
+@dataclass(frozen=True)
+class RowModel:
+    """A scene as text, its discretisation fixed; it answers rows as a compiled library does.
+
+    Attributes:
+        scene: text of the scene.
+    """
+
+    scene: str
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
+        model = _model(self.scene)
+        width = len(row_results(model.scene))
+        rows = [result_row(solve(model, model.inputs.unpack(row)), width) for row in inputs]
+        return np.array(rows).reshape(len(inputs), width)
+
+
+def result_row(solution: Solution, width: int) -> FloatArray:
+    """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended."""
+    row = np.full(width, np.nan)
+    row[:3] = OUTCOMES.index(solution.outcome), solution.iterations, solution.residual_norm
+    if solution.converged:
+        scene = solution.model.scene
+        poses = [*[solution.tip(rod.name) for rod in scene.rods], *[solution.body(body.name) for body in scene.bodies]]
+        states = [list(solution.actuator(one.name).values()) for one in scene.actuators]
+        row[3:] = np.concatenate([*[np.concatenate([p.position[0], p.quaternion[0]]) for p in poses], *states])
+    return row
+
+
+@lru_cache(maxsize=2)
+def _model(text: str) -> Model:
+    return build(parse_scene(text))

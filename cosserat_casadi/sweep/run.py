@@ -1,0 +1,293 @@
+"""A sweep from end to end: table ↦ scenes ↦ one discretisation ↦ chunks ↦ results, checked and written."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.codegen.rows import NAME, RowLibrary, row_library, row_results
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import check_writable
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import build
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.sweep.choice import Choice, Told, check, choose
+from cosserat_casadi.sweep.cluster import Cluster
+from cosserat_casadi.sweep.local import Cores
+from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_sweep, record_file, write_sweep
+from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweep.store import Store
+from cosserat_casadi.sweep.table import Table, read_table, table_of
+from cosserat_casadi.sweep.variants import Variants, variants
+from cosserat_casadi.sweep.work import COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS, Chunk, Part, chunks
+
+SAMPLES = 12
+"""Rows that the discretisation is chosen on, unless said otherwise."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sweep whose every input is sound; nothing has been computed or written.
+
+    Attributes:
+        scene: as it was given.
+        table: its rows.
+        found: the scenes and inputs of the rows.
+        output: file of the results, if one is wanted.
+        samples: rows that the discretisation is chosen on.
+    """
+
+    scene: Scene
+    table: Table
+    found: Variants
+    output: Path | None
+    samples: int
+
+    @property
+    def identity(self) -> str:
+        """What tells this sweep from others: the same identity gives the same results."""
+        words = [version("cosserat-casadi"), scene_text(self.scene), self.table.columns, self.samples]
+        sizes = [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS]
+        digest = hashlib.sha256(json.dumps([*words, sizes]).encode())
+        digest.update(np.ascontiguousarray(self.table.values, dtype="<f8").tobytes())
+        return digest.hexdigest()
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns of numbers that the results will have."""
+        # What is swept and found alike, such as a given tension, is in the table already.
+        found = [name for name in row_results(self.scene)[1:] if name not in self.table.columns]
+        return (*self.table.columns, *found)
+
+    @property
+    def part(self) -> Path | None:
+        """The file of what is done, until all is."""
+        return None if self.output is None else self.output.with_name(f"{self.output.name}.part")
+
+    @property
+    def finished(self) -> bool:
+        """Whether the file of results is there already, and of this sweep."""
+        if self.output is None or not self.output.exists():
+            return False
+        record = read_record(self.output)
+        return record is not None and record["sweep"] == self.identity
+
+
+def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: int = SAMPLES) -> Plan:
+    """A sweep, refused before anything is computed where it could not be done.
+
+    Args:
+        scene: a validated scene.
+        table: values of its inputs and parameters.
+        output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
+        samples: rows that the discretisation is chosen on, at least 1.
+
+    Raises:
+        SceneError: with every fault of table and output.
+        ExportError: there is no C compiler, or two things of the scene would have one name in C.
+    """
+    problems: list[Problem] = []
+    plan = None
+    if samples < 1:
+        problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
+    try:
+        plan = Plan(scene, table, variants(scene, table), output, samples)
+        problems += _clashing_columns(plan)
+    except SceneError as error:
+        problems += error.problems
+    problems += output_problems(output, plan)
+    if problems or plan is None:
+        raise SceneError(*problems)
+    scene_names(NAME, scene)
+    find_compiler()
+    return plan
+
+
+def sweep_scene(
+    scene: Scene,
+    table: Table | Mapping[str, npt.ArrayLike] | str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
+    *,
+    scheduler: str | None = None,
+    cores: int | None = None,
+    samples: int = SAMPLES,
+    progress: Told | None = None,
+) -> Sweep:
+    """Solve a scene for every row of a table of inputs and parameters.
+
+    Args:
+        scene: a validated scene.
+        table: arrays by column, such as ``{"push.force.x": [0.0, 0.1]}``; a CSV file with a header; or a grid in TOML.
+        output: file to write, ``.csv`` or ``.parquet``, with a record of what was computed beside it. What a killed or
+            interrupted run of the same sweep has done is not done again.
+        scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
+        cores: how many of them; all by default.
+        samples: rows that the discretisation is chosen on.
+        progress: told what is being done, how much of it is done, and of how much.
+
+    Raises:
+        SceneError: with every fault of table and output.
+        ExportError: there is no C compiler, or it fails.
+        ClusterError: the cluster cannot be used.
+    """
+    if isinstance(table, Mapping):
+        given = table_of(table)
+    else:
+        given = table if isinstance(table, Table) else read_table(Path(table))
+    plan = plan_sweep(scene, given, None if output is None else Path(output), samples)
+    return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
+
+
+def run_sweep(
+    plan: Plan, *, scheduler: str | None = None, cores: int | None = None, progress: Told | None = None
+) -> Sweep:
+    """Do what a plan says, or what is left of it; of a finished one, read the results.
+
+    Args:
+        plan: of :func:`plan_sweep`.
+        scheduler: as in :func:`sweep_scene`.
+        cores: as there.
+        progress: as there.
+    """
+    if plan.finished and plan.output is not None and plan.part is not None:
+        # A kill between the last two steps of the run before leaves it.
+        plan.part.unlink(missing_ok=True)
+        return read_sweep(plan.output)
+    told = progress or (lambda doing, done, total: None)
+    # A cluster that does not answer is told of before the discretisation is chosen.
+    with Cores(cores) if scheduler is None else Cluster(scheduler) as machine:
+        store = None if plan.part is None else Store(plan.part)
+        with store or nullcontext():
+            choice, done = _begun(plan, store, told)
+            work = chunks(plan.found)
+            _solve_rest(plan, choice, machine, work, done, store, told)
+            sweep = _sweep(plan, choice, work, done, told)
+            if plan.output is not None and store is not None:
+                write_sweep(sweep, plan.output)
+                store.remove()
+    return sweep
+
+
+def _begun(plan: Plan, store: Store | None, told: Told) -> tuple[Choice, dict[int, FloatArray]]:
+    """The discretisation and what is done; of a new sweep the one is chosen now, and nothing is done."""
+    head = None if store is None else store.head()
+    if store is not None and head is not None:
+        return Choice.read(head["choice"]), store.resume(len(row_results(plan.scene)))
+    choice = choose(plan.found, plan.table.values, plan.samples, told)
+    if store is not None:
+        store.start({"sweep": plan.identity, "choice": choice.plain()})
+    return choice, {}
+
+
+def _solve_rest(
+    plan: Plan,
+    choice: Choice,
+    machine: Cores | Cluster,
+    work: Sequence[Chunk],
+    done: dict[int, FloatArray],
+    store: Store | None,
+    told: Told,
+) -> None:
+    """Solve every chunk that is not done, and keep it."""
+    rest = [chunk for chunk in work if chunk.number not in done]
+    count = sum(len(chunk.rows) for chunk in work if chunk.number in done)
+    for chunk, results in machine.run(_tasks(plan.found, choice, rest, lambda: told("Compiling", 0, 0))):
+        done[chunk.number] = results
+        if store is not None:
+            store.add(chunk.number, results)
+        count += len(results)
+        told("Sweeping", count, len(plan.table.values))
+
+
+def _tasks(found: Variants, choice: Choice, rest: Sequence[Chunk], told: Any) -> Iterator[tuple[Chunk, list[Part]]]:
+    """Chunks with what solves them; sources are generated when their first chunk comes."""
+    library: tuple[int, RowLibrary] | None = None
+    for chunk in rest:
+        if not chunk.compiled:
+            yield chunk, [(RowModel(_text(found, choice, place)), found.inputs[rows]) for place, rows in chunk.pieces]
+            continue
+        ((place, rows),) = chunk.pieces
+        if library is None or library[0] != place:
+            told()
+            library = place, row_library(build(choice.scene(found.entries[place].scene)))
+        yield chunk, [(library[1], found.inputs[rows])]
+
+
+def _text(found: Variants, choice: Choice, place: int) -> str:
+    return scene_text(choice.scene(found.entries[place].scene))
+
+
+def _sweep(plan: Plan, choice: Choice, work: Sequence[Chunk], done: dict[int, FloatArray], told: Told) -> Sweep:
+    """All results in the order of the table, some of them checked."""
+    names = row_results(plan.scene)
+    results = np.full((len(plan.table.values), len(names)), np.nan)
+    for chunk in work:
+        results[chunk.rows] = done[chunk.number]
+    checked = check(plan.found, choice, results, told)
+    found = plan.columns[len(plan.table.columns) :]
+    values = np.hstack([plan.table.values, results[:, [names.index(name) for name in found]]])
+    sweep = Sweep(plan.table.columns, found, values, results[:, 0].astype(np.int64), {})
+    sweep.record.update(_record(plan, choice, sweep, checked))
+    return sweep
+
+
+def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
+    return {
+        "schema": 1,
+        "sweep": plan.identity,
+        "cosserat_casadi": version("cosserat-casadi"),
+        "title": plan.scene.title,
+        "rows": len(sweep.values),
+        "outcomes": sweep.counts,
+        "tolerance": plan.scene.accuracy.tolerance,
+        "chosen": choice.plain(),
+        "checked": checked,
+        "swept": list(sweep.swept),
+        "parameters": list(plan.found.parameters),
+        "scene": scene_text(plan.scene),
+    }
+
+
+def _clashing_columns(plan: Plan) -> Iterator[Problem]:
+    for column in plan.table.columns:
+        if column in row_results(plan.scene)[:3]:
+            yield Problem(plan.table.where, f"{column!r} is a column of the results", "rename it")
+
+
+def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
+    """Why the results cannot be written where they are wanted."""
+    if output is None:
+        return []
+    try:
+        check_writable(output, "--output")
+        check_format(output)
+    except SceneError as error:
+        return list(error.problems)
+    if plan is None or plan.part is None:
+        return []
+    problems = []
+    head = Store(plan.part).head()
+    ours = head is not None and head.get("sweep") == plan.identity
+    if plan.part.exists() and plan.part.stat().st_size > 0 and not ours:
+        problem = f"{plan.part} is of another sweep, which was not finished"
+        problems.append(Problem("--output", problem, "finish that one, remove the file, or name another output"))
+    record = read_record(output) or {}
+    taken = [file for file in (output, record_file(output)) if file.exists()]
+    if taken and record.get("sweep") != plan.identity:
+        problem = f"{taken[0]} exists, and is not of this sweep"
+        problems.append(Problem("--output", problem, "name another file, or remove it"))
+    return problems

@@ -1,0 +1,93 @@
+"""What is done of a sweep, on disc: one file that only grows, so that a kill loses no more than its last entry."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+ENTRY = struct.Struct("<qqI")
+"""Number of a chunk, bytes of its results, their checksum."""
+
+
+class Store:
+    """The unfinished results of one sweep.
+
+    The first line says what sweep it is, in JSON; every chunk follows with its number and a checksum. An entry that was
+    being written when the process was killed is cut off.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file: BinaryIO | None = None
+
+    def head(self) -> dict[str, Any] | None:
+        """What sweep the file is of; None where there is none, or where it is damaged."""
+        try:
+            with self.path.open("rb") as file:
+                found = json.loads(file.readline())
+        except (OSError, ValueError):
+            return None
+        return found if isinstance(found, dict) else None
+
+    def start(self, head: Mapping[str, Any]) -> None:
+        """Begin a sweep, over whatever the file held."""
+        self._file = self.path.open("wb")
+        self._file.write(json.dumps(head).encode() + b"\n")
+        self._file.flush()
+
+    def resume(self, width: int) -> dict[int, FloatArray]:
+        """What is done, by number of chunk, with results of this width; the file is ready for more."""
+        found, end = {}, 0
+        with self.path.open("rb") as file:
+            end = len(file.readline())
+            for number, content in _entries(file):
+                found[number] = np.frombuffer(content, dtype="<f8").reshape(-1, width)
+                end += ENTRY.size + len(content)
+        self._file = self.path.open("r+b")
+        self._file.truncate(end)
+        self._file.seek(end)
+        return found
+
+    def add(self, number: int, results: FloatArray) -> None:
+        """Keep the results of a chunk."""
+        content = np.ascontiguousarray(results, dtype="<f8").tobytes()
+        if self._file is None:
+            raise ValueError("the store is not open")
+        self._file.write(ENTRY.pack(number, len(content), zlib.crc32(content)) + content)
+        self._file.flush()
+
+    def remove(self) -> None:
+        """The sweep is finished and written."""
+        self.close()
+        self.path.unlink(missing_ok=True)
+
+    def close(self) -> None:
+        """Leave the file for a later run."""
+        if self._file is not None:
+            self._file.close()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+
+def _entries(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
+    """Whole entries; what follows a damaged one is not trusted."""
+    while len(header := file.read(ENTRY.size)) == ENTRY.size:
+        number, size, checksum = ENTRY.unpack(header)
+        content = file.read(size) if size > 0 else b""
+        # No chunk is empty: zeros are what a file system may leave after a failure of power.
+        if not content or len(content) != size or zlib.crc32(content) != checksum:
+            return
+        yield number, content

@@ -1,0 +1,87 @@
+"""The rows of a sweep: named columns of numbers, from a CSV file, a grid, or arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.load_cases import read_numbers
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.sweep.grid_file import read_grid
+
+MOST_TOLD = 20
+"""Faults of one table that are told; a file may have one in every row."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Values of inputs and parameters, a row for each solve.
+
+    Attributes:
+        columns: names such as ``push.force.x`` or ``wire.section.radius``.
+        values: shape (rows, columns), SI units.
+        where: what a refusal calls it.
+        lines: the line of each row in the file; without one rows are counted from 1.
+    """
+
+    columns: tuple[str, ...]
+    values: FloatArray
+    where: str
+    lines: tuple[int, ...] | None = None
+
+    def place(self, row: int) -> str:
+        """Where a row stands, for a refusal."""
+        return f"{self.where}, row {row + 1}" if self.lines is None else f"{self.where}, line {self.lines[row]}"
+
+
+def read_table(path: Path) -> Table:
+    """The rows of a grid (``.toml``) or of a CSV file with a header.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    if path.suffix.lower() == ".toml":
+        columns, values = read_grid(path)
+        return Table(columns, values, str(path))
+    header, values, lines, problems = read_numbers(path)
+    if problems:
+        raise SceneError(*shortened(problems, str(path)))
+    return Table(tuple(header), values, str(path), tuple(lines))
+
+
+def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
+    """The rows of arrays by column; a single number is that of every row.
+
+    Raises:
+        SceneError: there is no row, lengths differ, or a value is not a finite number.
+    """
+    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
+    lengths = {len(array) for array in arrays.values() if array.ndim == 1} or {1}
+    problems = [
+        Problem(name, f"must be a number or a list of numbers, got {array.ndim} dimensions")
+        for name, array in arrays.items()
+        if array.ndim > 1
+    ]
+    if len(lengths) > 1:
+        problems.append(Problem("table", f"has columns of {', '.join(map(str, sorted(lengths)))} rows"))
+    if not arrays or not min(lengths):
+        problems.append(Problem("table", "holds no row"))
+    problems += [
+        Problem(name, "holds what is not a finite number") for name, a in arrays.items() if not np.all(np.isfinite(a))
+    ]
+    if problems:
+        raise SceneError(*problems)
+    count = max(lengths)
+    return Table(tuple(arrays), np.column_stack([np.broadcast_to(a, count) for a in arrays.values()]), "table")
+
+
+def shortened(problems: list[Problem], where: str) -> list[Problem]:
+    """The first faults, and how many more there are."""
+    if len(problems) <= MOST_TOLD:
+        return problems
+    return [*problems[:MOST_TOLD], Problem(where, f"has {len(problems) - MOST_TOLD} more faults")]

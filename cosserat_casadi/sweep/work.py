@@ -1,0 +1,92 @@
+"""The work of a sweep in chunks: what is done at once, kept at once, and done again by nobody."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.sweep.variants import Variants
+
+COMPILED_FROM = 1000
+"""Rows of equal parameters from which a library is compiled for them.
+
+To generate and compile one took 13 s for a rod of 12 unknowns where building its model in Python took 0.07 s and a
+solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs grow with the size of the equations.
+"""
+
+COMPILED_ROWS = 512
+"""Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""
+
+MODELLED_ROWS = 16
+"""Rows of a chunk that is solved in Python."""
+
+
+class Answer(Protocol):
+    """Solves rows."""
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results for rows of inputs."""
+        ...
+
+
+Part = tuple[Answer, FloatArray]
+"""Rows of inputs, and what solves them."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Rows that are solved in one go.
+
+    Attributes:
+        number: counted from 0.
+        pieces: for each scene the chunk has rows of, its place among the variants and its rows in the table.
+        compiled: whether one compiled library solves them.
+    """
+
+    number: int
+    pieces: tuple[tuple[int, npt.NDArray[np.int64]], ...]
+    compiled: bool
+
+    @property
+    def rows(self) -> npt.NDArray[np.int64]:
+        """Rows in the table, in the order in which they are solved."""
+        return np.concatenate([rows for _, rows in self.pieces])
+
+
+def chunks(found: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk]:
+    """All work of a table; the same table gives the same chunks.
+
+    Args:
+        found: the scenes of the table.
+        compiled_from: rows of one scene from which it is compiled.
+    """
+    listed: list[Chunk] = []
+    few = []
+    for place, entry in enumerate(found.entries):
+        if len(entry.rows) < compiled_from and found.parameters:
+            few += [(place, int(row)) for row in entry.rows]
+            continue
+        for rows in _cut(entry.rows, COMPILED_ROWS):
+            listed.append(Chunk(len(listed), ((place, rows),), compiled=True))
+    for first in range(0, len(few), MODELLED_ROWS):
+        listed.append(Chunk(len(listed), tuple(_pieces(few[first : first + MODELLED_ROWS])), compiled=False))
+    return listed
+
+
+def solve_parts(parts: Sequence[Part]) -> FloatArray:
+    """Results of all rows of a chunk; they depend on these arguments alone."""
+    return np.vstack([answer.solve(inputs) for answer, inputs in parts])
+
+
+def _pieces(rows: Sequence[tuple[int, int]]) -> Iterator[tuple[int, npt.NDArray[np.int64]]]:
+    for place in dict.fromkeys(place for place, _ in rows):
+        yield place, np.array([row for other, row in rows if other == place])
+
+
+def _cut(rows: npt.NDArray[np.int64], size: int) -> list[npt.NDArray[np.int64]]:
+    return [rows[first : first + size] for first in range(0, len(rows), size)]

@@ -1,0 +1,105 @@
+"""Sweeps on a real cluster of processes on this machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from cosserat_casadi import SceneError, sweep_scene
+from cosserat_casadi.sweep.cluster import ClusterError
+from cosserat_casadi.sweep.store import Store
+from tests.sweep.conftest import PLANAR
+
+distributed = pytest.importorskip("distributed")
+
+pytestmark = [
+    pytest.mark.usefixtures("quick_compiler", "few_checked"),
+    # What dask leaves open when its processes are killed is not ours.
+    pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+@pytest.fixture(scope="module")
+def cluster(quick_compiler: None) -> Iterator[Any]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
+        ) as running:
+            yield running
+
+
+@pytest.mark.slow
+def test_a_worker_is_killed_and_every_row_comes_once(
+    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rows for compiled libraries and rows in Python; the worker dies while both work."""
+    rng = np.random.default_rng(1)
+    stiffness = np.concatenate([np.full(4000, 1.4), rng.uniform(1.0, 2.0, 32)])
+    table = {"push.force.x": rng.uniform(-2.0, 2.0, 4032), "rod.stiffness.bending_y": stiffness}
+    added: list[int] = []
+    killed: list[int] = []
+
+    def add(store: Store, number: int, results: np.ndarray) -> None:
+        kept(store, number, results)
+        added.append(number)
+        if len(added) == 3:
+            killed.append(next(iter(cluster.workers.values())).process.pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    kept = Store.add
+    monkeypatch.setattr(Store, "add", add)
+    sweep_scene(PLANAR, table, tmp_path / "cluster.csv", scheduler=cluster.scheduler_address)
+    assert killed
+    assert sorted(added) == list(range(8 + 2))
+    monkeypatch.undo()
+    monkeypatch.setattr("cosserat_casadi.sweep.choice.CHECKED", 2)
+    sweep_scene(PLANAR, table, tmp_path / "here.csv")
+    assert (tmp_path / "cluster.csv").read_bytes() == (tmp_path / "here.csv").read_bytes()
+
+
+def test_a_sweep_begun_here_ends_on_the_cluster(cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = {"push.force.x": np.linspace(-1.0, 1.0, 1500)}
+    kept = Store.add
+
+    def add(store: Store, number: int, results: np.ndarray) -> None:
+        kept(store, number, results)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(Store, "add", add)
+        sweep_scene(PLANAR, table, tmp_path / "a.csv")
+    assert (tmp_path / "a.csv.part").exists()
+    found = sweep_scene(PLANAR, table, tmp_path / "a.csv", scheduler=cluster.scheduler_address)
+    assert_array_equal(found.values, sweep_scene(PLANAR, table).values)
+
+
+def test_schedulers_that_do_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cosserat_casadi.sweep.cluster.PATIENCE", 1)
+    for address in ("tcp://127.0.0.1:9", "nowhere"):
+        with pytest.raises(SceneError, match="no scheduler answers"):
+            sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=address)
+
+
+def test_other_versions_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cosserat_casadi.sweep.cluster.version", lambda name: "0.0.1")
+    with pytest.raises(ClusterError, match=r"differ from 0\.0\.1 here"):
+        sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=cluster.scheduler_address)
+
+
+def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cosserat_casadi.sweep.cluster.PATIENCE", 2)
+    with (
+        distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as empty,
+        pytest.raises(ClusterError, match="no workers"),
+    ):
+        sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=empty.scheduler_address)

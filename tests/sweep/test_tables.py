@@ -1,0 +1,181 @@
+"""Tables of a sweep: grids, random samples, CSV files, what their columns are, what is refused."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import SceneError
+from cosserat_casadi.sweep.grid_file import grid
+from cosserat_casadi.sweep.sampling import representative_rows
+from cosserat_casadi.sweep.table import read_table, table_of
+from cosserat_casadi.sweep.variants import Variants, variants
+from tests.scenes import push, rod, scene
+from tests.sweep.conftest import PLANAR
+
+
+def grid_of(text: str) -> tuple[tuple[str, ...], np.ndarray]:
+    return grid(tomllib.loads(text), "grid.toml")
+
+
+def refusals(text: str) -> str:
+    with pytest.raises(SceneError) as refused:
+        grid_of(text)
+    return str(refused.value)
+
+
+def test_every_combination_the_last_column_fastest() -> None:
+    columns, rows = grid_of('"a.b" = { from = -1, to = 1, count = 3 }\nc.d = [5, 7]\ne = 2')
+    assert columns == ("a.b", "c.d", "e")
+    assert_allclose(rows, [[-1, 5, 2], [-1, 7, 2], [0, 5, 2], [0, 7, 2], [1, 5, 2], [1, 7, 2]], rtol=0, atol=1e-15)
+
+
+def test_draws_stand_beside_every_combination() -> None:
+    text = "samples = 4000\nseed = {}\na.u = {{ uniform = [2, 4] }}\nb.c = [1, 2]\nd.n = {{ normal = [10, 0.5] }}"
+    columns, rows = grid_of(text.format(3))
+    assert columns == ("a.u", "b.c", "d.n")
+    assert rows.shape == (8000, 3)
+    assert_allclose(rows[0::2, [0, 2]], rows[1::2, [0, 2]], rtol=0, atol=0)
+    assert_allclose(rows[:, 1], np.tile([1.0, 2.0], 4000), rtol=0, atol=0)
+    drawn = rows[0::2]
+    assert drawn[:, 0].min() >= 2
+    assert drawn[:, 0].max() <= 4
+    # Four deviations of the mean of 4000 draws; the variance of a uniform one is a twelfth of its range squared.
+    assert_allclose(drawn[:, 0].mean(), 3.0, rtol=0, atol=4 * 2 / np.sqrt(12 * 4000))
+    assert_allclose(drawn[:, 2].mean(), 10.0, rtol=0, atol=4 * 0.5 / np.sqrt(4000))
+    assert_allclose(drawn[:, 2].std(), 0.5, rtol=0.05, atol=0)
+    assert abs(np.corrcoef(drawn[:, 0], drawn[:, 2])[0, 1]) < 0.07
+    assert_allclose(grid_of(text.format(3))[1], rows, rtol=0, atol=0)
+    assert not np.allclose(grid_of(text.format(4))[1], rows)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "names no column"),
+        ("a.b = []", "empty list"),
+        ("a.b = 'x'", "finite number, got 'x'"),
+        ("a.b = [1, nan]", "finite number"),
+        ("a.b = true", "finite number"),
+        ("a.b = { from = 1, to = 2 }", "lacks count"),
+        ("a.b = { from = 1, to = 2, count = 3, step = 1 }", "does not know step"),
+        ("a.b = { from = 1, to = 2, count = 0 }", "count must be a whole number >= 1"),
+        ("a.b = { from = 1, to = 2, count = 1 }", "one value between two ends"),
+        ("a.b = { from = 1, to = 2, count = 900_000_000 }", "at most 20,000,000"),
+        ("a.b = { from = 1, to = 2, count = 9000 }\nc.d = { from = 1, to = 2, count = 9000 }", "81,000,000 rows"),
+        ("samples = 2\nseed = 1\na.b = { uniform = [2, 1] }", "no range"),
+        ("samples = 2\nseed = 1\na.b = { normal = [2, 0] }", "no range"),
+        ("samples = 2\nseed = 1\na.b = { normal = 2 }", "a list of mean and deviation"),
+        ("samples = 2\nseed = 1\na.b = { normal = [1, 2], from = 1 }", "mixes from, normal"),
+        ("a.b = { uniform = [1, 2] }", "samples: is missing"),
+        ("samples = 2\na.b = { uniform = [1, 2] }", "seed: is missing"),
+        ("samples = 2\nseed = 1\na.b = [1]", "samples: stands without random columns"),
+        ("samples = 0\nseed = 1\na.b = { uniform = [1, 2] }", "samples must be a whole number >= 1"),
+        ('a.b = 1\n"a.b" = 2', "twice"),
+    ],
+)
+def test_faults_of_a_grid(text: str, said: str) -> None:
+    assert said in refusals(text)
+
+
+def test_every_fault_of_a_grid_is_told_at_once() -> None:
+    said = refusals("samples = -1\na.b = []\nc.d = { from = 1 }\ne.f = 'x'")
+    for words in ("samples", "grid.toml, a.b", "grid.toml, c.d", "grid.toml, e.f"):
+        assert words in said
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    (tmp_path / "bad.toml").write_text("a = [")
+    for name, said in (("none.toml", "cannot be read"), ("bad.toml", "is not TOML"), ("none.csv", "cannot be read")):
+        with pytest.raises(SceneError, match=said):
+            read_table(tmp_path / name)
+
+
+def test_faults_of_a_csv_name_line_and_column(tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
+    file.write_text("push.force.x,push.force.z\n1,2\n\nnan,x\n1\n")
+    with pytest.raises(SceneError) as refused:
+        read_table(file)
+    said = str(refused.value)
+    for words in ("line 4: push.force.x", "line 4: push.force.z", "line 5: has 1 values for 2 columns"):
+        assert words in said
+    file.write_text("push.force.x\n" + "x\n" * 100)
+    with pytest.raises(SceneError, match="has 80 more faults"):
+        read_table(file)
+
+
+def test_arrays_that_are_no_table() -> None:
+    for columns, said in (
+        ({}, "holds no row"),
+        ({"a": []}, "holds no row"),
+        ({"a": [1, 2], "b": [1, 2, 3]}, "2, 3 rows"),
+        ({"a": [[1]]}, "2 dimensions"),
+        ({"a": [np.inf]}, "not a finite number"),
+    ):
+        with pytest.raises(SceneError, match=said):
+            table_of(columns)
+    assert_allclose(table_of({"a": 1, "b": [1, 2]}).values, [[1, 1], [1, 2]], rtol=0, atol=0)
+
+
+# Columns
+
+
+def seen(**columns: object) -> Variants:
+    return variants(PLANAR, table_of({name.replace("__", "."): value for name, value in columns.items()}))  # type: ignore[misc]
+
+
+def test_what_may_be_an_input_is_one_and_nothing_else() -> None:
+    found = seen(rod__length=[0.5, 0.6], push__force__x=[1.0, 2.0], rod__stiffness__bending_y=[2.0, 2.0])
+    assert found.layout.names == ("rod.length", "push.force")
+    assert found.parameters == ("rod.stiffness.bending_y",)
+    assert_allclose(found.inputs, [[0.5, 1.0, 0.0, -0.4], [0.6, 2.0, 0.0, -0.4]], rtol=0, atol=0)
+    (entry,) = found.entries
+    assert entry.scene.rods[0].stiffness is not None
+    assert entry.scene.rods[0].stiffness.bending_y == 2.0
+
+
+def test_rows_of_equal_parameters_share_a_scene() -> None:
+    found = seen(rod__stiffness__bending_y=[3.0, 2.0, 3.0, 1.0, 2.0])
+    assert [entry.rows.tolist() for entry in found.entries] == [[0, 2], [1, 4], [3]]
+    assert [entry.scene.rods[0].stiffness.bending_y for entry in found.entries] == [3.0, 2.0, 1.0]  # type: ignore[union-attr]
+    assert found.of_row(4) is found.entries[1]
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        ({"pull.force.x": [1.0]}, "named 'pull'"),
+        ({"push.forc.x": [1.0]}, "push.forc"),
+        ({"push.force.w": [1.0]}, "no 'w' to set"),
+        ({"rod.length": [1.0, -1.0]}, "table, row 2, rod.length: must be > 0"),
+        ({"rod.stiffness.bending_y": [1.0, 0.0]}, "table, row 2, rod.stiffness.bending_y"),
+        ({"accuracy.modes": [3]}, "'accuracy.modes' cannot be swept"),
+        ({"title": [3]}, "'title' cannot be swept"),
+    ],
+)
+def test_columns_that_are_refused(columns: dict[str, list[float]], said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        variants(PLANAR, table_of(columns))
+    assert said in str(refused.value)
+
+
+def test_a_tension_below_zero_is_refused() -> None:
+    tendon = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
+    given = scene(push(), rods=[rod()], actuators=[tendon])
+    with pytest.raises(SceneError, match=r"table, row 2, pull\.tension: must be >= 0"):
+        variants(given, table_of({"pull.tension": [0.0, -1e-3, 2.0]}))
+
+
+def test_corners_are_among_the_rows_that_stand_for_all() -> None:
+    _, rows = grid_of("a = { from = 0, to = 1, count = 9 }\nb = { from = -5, to = 5, count = 11 }\nc = 4")
+    chosen = representative_rows(rows, 12)
+    assert len(chosen) == 12
+    corners = {(x, y) for x in (0.0, 1.0) for y in (-5.0, 5.0)}
+    assert corners <= {(float(rows[i, 0]), float(rows[i, 1])) for i in chosen}
+    assert representative_rows(rows, 12) == chosen
+    assert representative_rows(rows[:1], 12) == [0]
+    assert representative_rows(rows, 1) != []
