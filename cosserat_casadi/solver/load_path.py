@@ -10,6 +10,9 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import Path
 from cosserat_casadi.solver.secant import Jacobian
 
+FORCE_SHARE = 0.1
+"""Bending by a multiplier or tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
+
 
 def load_path(model: Model, inputs: FloatArray) -> Path:
     """From the unloaded scene to the scene, all loads growing together."""
@@ -20,6 +23,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
         rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
+        shares=_shares(model),
     )
 
 
@@ -36,7 +40,13 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
         jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
         rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
         start=start,
+        shares=_shares(model),
     )
+
+
+def _shares(model: Model) -> FloatArray:
+    """How much the unknowns count in the length of a step: strains and poses whole, forces as they bend a rod."""
+    return np.where(model.frame.forces, FORCE_SHARE, 1.0)
 
 
 def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
