@@ -20,7 +20,7 @@ from cosserat_casadi.model.system import Frame
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import MOST_BENT, ContinuationSettings
 from cosserat_casadi.solver.judgement import NEAR
-from cosserat_casadi.solver.load_path import FORCE_SHARE
+from cosserat_casadi.solver.load_path import FORCE_SHARE, first_step
 from cosserat_casadi.solver.secant import SINGULAR
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
@@ -67,6 +67,7 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
         **_sizes(model, names),
         **_solver_constants(),
         "is_force": _is_force(model.frame),
+        "first": first_step(model),
         **_texts(),
         **_input_words(model, names),
         **_unknown_words(model),

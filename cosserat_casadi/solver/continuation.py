@@ -16,7 +16,7 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.solver.newton import Equations, NewtonResult, NewtonSettings, length_of, newton
 from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.secant import Jacobian, newton_step
+from cosserat_casadi.solver.secant import Jacobian, Secant
 
 MOST_BENT = 0.5
 """Most that the cubic may differ from the tangent, relative to it."""
@@ -36,6 +36,7 @@ class Path:
         start: unknowns at or near the equilibrium at t = 0, shape (n,).
         tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
         shares: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
+        first: longest first step in t.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
@@ -44,6 +45,7 @@ class Path:
     start: FloatArray
     tangent: FloatArray | None = None
     shares: FloatArray | None = None
+    first: float = 1.0
 
     def length(self, step: FloatArray) -> float:
         """How far a change of x, shape (n,), goes."""
@@ -109,11 +111,13 @@ class _Point:
         x: unknowns, shape (n,).
         t: where on the path.
         tangent: dx/dt, shape (n,).
+        found: the correction that led there.
     """
 
     x: FloatArray
     t: float
     tangent: FloatArray
+    found: NewtonResult
 
 
 def follow(
@@ -128,18 +132,21 @@ def follow(
     """
     limits = settings or ContinuationSettings()
     found, tangent = _depart(path, limits)
-    iterations, step = found.iterations, 1.0
+    iterations, step = found.iterations, path.first
     if found.outcome is Outcome.CONVERGED and not np.isfinite(length_of(tangent)):
         found = replace(found, outcome=Outcome.NOT_FINITE)
     if found.outcome is not Outcome.CONVERGED:
         return ContinuationResult(found.x, found.outcome, found.residual_norm, iterations, 0.0)
-    here, before = _Point(found.x, 0.0, tangent), None
+    here, before = _Point(found.x, 0.0, tangent, found), None
     for _ in range(limits.steps):
         step = min(step, 1.0 - here.t, limits.longest / max(path.length(here.tangent), 1e-12))
         if step < min(limits.shortest, 1.0 - here.t):
             break
         target = 1.0 if here.t + step > 1.0 - 1e-12 else here.t + step
         predicted = _predicted(path, here, before, step)
+        if not _promising(path, here, predicted, target):
+            iterations, step = iterations + 1, step / 2
+            continue
         trial = newton(path.at(target), here.x + predicted, limits.correction(target))
         iterations += trial.iterations
         if not _trusted(path, trial, here.x, predicted):
@@ -149,7 +156,8 @@ def follow(
             progress(target)
         if target == 1.0:
             return ContinuationResult(trial.x, Outcome.CONVERGED, trial.residual_norm, iterations, 1.0)
-        here, before = _Point(trial.x, target, _tangent(path, trial, target)), here
+        trial = _linearised(path, trial, target)
+        here, before = _Point(trial.x, target, _tangent(path, trial, target), trial), here
         step *= 2.0 if trial.jacobians <= limits.quick else 1.0
     return _stalled(path, here, limits, iterations)
 
@@ -158,8 +166,13 @@ def _depart(path: Path, limits: ContinuationSettings) -> tuple[NewtonResult, Flo
     if path.tangent is not None:
         rest = NewtonResult(path.start, Outcome.CONVERGED, 0.0, 0, 0, False, np.zeros_like(path.start), None)
         return rest, path.tangent
-    here = newton(path.at(0.0), path.start, limits.newton)
+    here = _linearised(path, newton(path.at(0.0), path.start, limits.newton), 0.0)
     return here, _tangent(path, here, 0.0)
+
+
+def _linearised(path: Path, found: NewtonResult, t: float) -> NewtonResult:
+    """A corrected point with a Jacobian, where the correction needed none."""
+    return found if found.secant is not None else replace(found, secant=Secant(path.jacobian(found.x, t)))
 
 
 def _predicted(path: Path, here: _Point, before: _Point | None, step: float) -> FloatArray:
@@ -173,21 +186,29 @@ def _predicted(path: Path, here: _Point, before: _Point | None, step: float) -> 
     return straight + bent if path.length(bent) <= MOST_BENT * path.length(straight) else straight
 
 
+def _promising(path: Path, here: _Point, predicted: FloatArray, target: float) -> bool:
+    """Whether the Jacobian at hand foresees a correction that can be trusted; a new one costs far more than to ask."""
+    if here.found.secant is None:
+        return True
+    residual = path.residual(here.x + predicted, target)
+    foreseen = here.found.secant.response(residual, here.found.residual)
+    return foreseen is None or _small(path, foreseen, predicted)
+
+
 def _trusted(path: Path, trial: NewtonResult, x: FloatArray, predicted: FloatArray) -> bool:
     """Whether a corrected point lies on the path and not on some other."""
     if trial.outcome is not Outcome.CONVERGED or trial.damped:
         return False
-    correction = path.length(trial.x - x - predicted)
-    return correction <= 0.3 + 0.5 * path.length(predicted)
+    return _small(path, trial.x - x - predicted, predicted)
+
+
+def _small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool:
+    return path.length(correction) <= 0.3 + 0.5 * path.length(predicted)
 
 
 def _tangent(path: Path, here: NewtonResult, t: float) -> FloatArray:
     """The dx/dt of the path, with the Jacobian that the correction has left."""
-    rate = path.rate(here.x, t)
-    if here.secant is None:
-        tangent = newton_step(path.jacobian(here.x, t), rate)
-    else:
-        tangent = here.secant.response(rate, here.residual)
+    tangent = None if here.secant is None else here.secant.response(path.rate(here.x, t), here.residual)
     return np.zeros_like(here.x) if tangent is None else tangent
 
 

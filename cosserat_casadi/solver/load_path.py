@@ -14,6 +14,10 @@ FORCE_SHARE = 0.1
 """Bending by a multiplier or tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
 
 
+FIRST = 0.25
+"""Longest first step where frames move: the springs have fallen to (3/4)³ then."""
+
+
 def load_path(model: Model, inputs: FloatArray) -> Path:
     """From the unloaded scene to the scene, all loads growing together."""
     none = np.zeros(model.inputs.size)
@@ -24,6 +28,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
         shares=_shares(model),
+        first=first_step(model),
     )
 
 
@@ -42,6 +47,11 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
         start=start,
         shares=_shares(model),
     )
+
+
+def first_step(model: Model) -> float:
+    """Longest first step of the load path: where rods need not fit, the springs (1 − t)³ are no straight line."""
+    return FIRST if model.frame.couplings.moving else 1.0
 
 
 def _shares(model: Model) -> FloatArray:
