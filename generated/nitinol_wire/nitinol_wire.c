@@ -352,7 +352,7 @@ typedef struct {
 
 /* dq/dt of a path at an equilibrium on it, with the Jacobian that Newton has left there; zero where there is none. */
 static void tangent_at(const path *way, station *here, correction *found, secant *kept) {
-  real rate[N], inputs_rate[INPUT_ROOM];
+  real rate[N], inputs_rate[INPUT_ROOM] = {0};
   point at;
   int i, sound;
   point_on(way, here->t, &at);
