@@ -16,9 +16,11 @@ from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entr
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.system import Frame
 from cosserat_casadi.solver import newton
-from cosserat_casadi.solver.continuation import ContinuationSettings
+from cosserat_casadi.solver.continuation import MOST_BENT, ContinuationSettings
 from cosserat_casadi.solver.judgement import NEAR
+from cosserat_casadi.solver.load_path import FORCE_SHARE, first_step
 from cosserat_casadi.solver.secant import SINGULAR
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
@@ -64,6 +66,8 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
     return {
         **_sizes(model, names),
         **_solver_constants(),
+        "is_force": _is_force(model.frame),
+        "first": first_step(model),
         **_texts(),
         **_input_words(model, names),
         **_unknown_words(model),
@@ -108,6 +112,9 @@ def _solver_constants() -> dict[str, Any]:
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "longest": limits.longest,
+        "rough": limits.rough,
+        "most_bent": MOST_BENT,
+        "force_share": FORCE_SHARE,
         "steps": limits.steps,
         "quick": limits.quick,
         "slow": limits.slow,
@@ -119,6 +126,13 @@ def _solver_constants() -> dict[str, Any]:
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
         **SINGLE,
     }
+
+
+def _is_force(frame: Frame) -> str:
+    """Whether the i-th unknown is a multiplier or a tension, as a C expression."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], frame.forces, [0]])))
+    spans = [f"(i >= {first} && i < {last})" for first, last in edges.reshape(-1, 2)]
+    return " || ".join(spans) or "0"
 
 
 def _texts() -> dict[str, str]:

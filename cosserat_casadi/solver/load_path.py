@@ -10,6 +10,13 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.solver.continuation import Path
 from cosserat_casadi.solver.secant import Jacobian
 
+FORCE_SHARE = 0.1
+"""Bending by a multiplier or tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
+
+
+FIRST = 0.25
+"""Longest first step where frames move: the springs have fallen to (3/4)³ then."""
+
 
 def load_path(model: Model, inputs: FloatArray) -> Path:
     """From the unloaded scene to the scene, all loads growing together."""
@@ -20,6 +27,8 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
         rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
+        shares=_shares(model),
+        first=first_step(model),
     )
 
 
@@ -36,7 +45,18 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
         jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
         rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
         start=start,
+        shares=_shares(model),
     )
+
+
+def first_step(model: Model) -> float:
+    """Longest first step of the load path: where rods need not fit, the springs (1 − t)³ are no straight line."""
+    return FIRST if model.frame.couplings.moving else 1.0
+
+
+def _shares(model: Model) -> FloatArray:
+    """How much the unknowns count in the length of a step: strains and poses whole, forces as they bend a rod."""
+    return np.where(model.frame.forces, FORCE_SHARE, 1.0)
 
 
 def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:

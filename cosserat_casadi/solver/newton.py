@@ -47,11 +47,17 @@ class NewtonSettings:
         tolerance: bound on the residual norm, see :func:`relative_norm`.
         aim: residual norm at which to stop; between it and the tolerance full steps go on while they help.
         iterations: most steps tried.
+        rough: length of the step that would come next, as the last one foretells it, at which to stop; 0 for never.
+        jacobians: most Jacobians factorised.
+        damping: whether a step may be shortened.
     """
 
     tolerance: float = 1e-11
     aim: float = 1e-13
     iterations: int = 60
+    rough: float = 0.0
+    jacobians: int = 60
+    damping: bool = True
 
 
 @dataclass(frozen=True)
@@ -65,6 +71,8 @@ class NewtonResult:
         iterations: steps tried.
         jacobians: Jacobians factorised.
         damped: whether any step had to be shortened.
+        residual: residual at x, shape (n,).
+        secant: the last Jacobian with the steps since; None where none was asked for.
     """
 
     x: FloatArray
@@ -73,6 +81,8 @@ class NewtonResult:
     iterations: int
     jacobians: int
     damped: bool
+    residual: FloatArray
+    secant: Secant | None
 
 
 def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) -> NewtonResult:
@@ -83,12 +93,13 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         start: first iterate, shape (n,).
         settings: limits.
     """
-    x, damped, jacobians, keep = start, False, 0, False
+    x, damped, jacobians, keep, rough = start, False, 0, False, False
     residual, secant = equations.residual(x), Secant(np.zeros((0, 0)))
     norm = length_of(residual)
 
     def end(outcome: Outcome, iterations: int) -> NewtonResult:
-        return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped)
+        kept = secant if jacobians else None
+        return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped, residual, kept)
 
     iteration = -1
     while True:
@@ -96,15 +107,16 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         # Beside unknowns without a finite norm every residual would be small.
         if not np.isfinite(norm) or not np.isfinite(_size(x)):
             return end(Outcome.NOT_FINITE, iteration)
-        done = norm <= settings.tolerance * _size(x)
-        if norm <= settings.aim * _size(x) or iteration == settings.iterations:
+        done = rough or norm <= settings.tolerance * _size(x)
+        spent = iteration == settings.iterations or (jacobians == settings.jacobians and not keep)
+        if rough or norm <= settings.aim * _size(x) or spent:
             return end(Outcome.CONVERGED if done else Outcome.MAX_ITERATIONS, iteration)
         if not keep:
             secant, jacobians, keep = Secant(equations.jacobian(x)), jacobians + 1, False
             if not secant.finite:
                 return end(Outcome.NOT_FINITE, iteration)
-        step = secant.step(residual)
-        found = None if step is None else _search(equations, x, step, norm, 1.0 if keep or done else SHORTEST_STEP)
+        step, whole = secant.step(residual), keep or done or not settings.damping
+        found = None if step is None else _search(equations, x, step, norm, 1.0 if whole else SHORTEST_STEP)
         if step is None or found is None:
             if done or not keep:
                 return end(Outcome.CONVERGED if done else Outcome.SINGULAR, iteration + 1)
@@ -115,6 +127,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         damped = damped or length < 1.0
         if length == 1.0:
             secant.steps.append(step)
+            rough = length_of(step) * norm <= settings.rough * before
         keep = length == 1.0 and norm <= KEPT_DECREASE * before and len(secant.steps) < KEPT_STEPS
 
 

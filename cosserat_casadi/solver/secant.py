@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TypeAlias
 
 import casadi as ca
@@ -43,15 +45,36 @@ class Secant:
 
     def step(self, residual: FloatArray) -> FloatArray | None:
         """Minus the inverse of the updated Jacobian times a vector of shape (n,); None where it is not finite."""
-        z = newton_step(self.jacobian, residual)
+        z = self._through(residual, self.steps)
         if z is None or not self.steps:
             return z
-        for before, after in zip(self.steps, self.steps[1:], strict=False):
-            z = z + after * ((before @ z) / (before @ before))
         last = self.steps[-1]
         with np.errstate(all="ignore"):
             z = z / (1.0 - (last @ z) / (last @ last))
         return z if np.all(np.isfinite(z)) else None
+
+    def response(self, rate: FloatArray, residual: FloatArray) -> FloatArray | None:
+        """Minus the inverse times any vector of shape (n,); None where it is not finite.
+
+        The update that belongs to the last step takes the step that would follow it.
+
+        Args:
+            rate: the vector.
+            residual: residual at the iterate.
+        """
+        following = self.step(residual) if self.steps else None
+        steps = self.steps if following is None else [*self.steps, following]
+        found = self._through(rate, steps)
+        return None if found is None or not np.all(np.isfinite(found)) else found
+
+    def _through(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
+        """Minus the inverse times a vector, updated by each step and its follower."""
+        z = newton_step(self.jacobian, vector)
+        if z is None:
+            return None
+        for before, after in pairwise(steps):
+            z = z + after * ((before @ z) / (before @ before))
+        return z
 
 
 def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:

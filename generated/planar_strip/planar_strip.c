@@ -27,6 +27,10 @@ enum { ITERATIONS = 60, STEPS = 400, QUICK = 2, SLOW = 4, KEPT_STEPS = 12, HALVI
 static const real SUFFICIENT_DECREASE = (real)0.0001;
 static const real KEPT_DECREASE = (real)0.5;
 static const real LONGEST = (real)4.0;
+static const real ROUGH = (real)0.01;
+static const real MOST_BENT = (real)0.5;
+static const real FIRST = (real)1.0;
+static const real FORCE_SHARE = (real)0.1;
 static const real NEAR = (real)0.5;
 
 /* Calls of generated kernels: arguments, results, and room as the kernel asks for. */
@@ -72,6 +76,15 @@ typedef struct {
   int damped;
   real norm;
 } correction;
+
+/* Where Newton gives up, and the length of the step to come at which it may stop. */
+typedef struct {
+  int jacobians;
+  int halvings;
+  real rough;
+} limits;
+
+static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0};
 
 static void whole_load(const real *inputs, point *at) {
   if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
@@ -123,6 +136,17 @@ static real distance(const real *a, const real *b) {
   real sum = 0;
   int i;
   for (i = 0; i < N; i++) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return (real)sqrt((double)sum);
+}
+
+/* How far a step goes: strains and poses count whole, forces as they bend a rod. */
+static real step_length(const real *step) {
+  real sum = 0;
+  int i;
+  for (i = 0; i < N; i++) {
+    const real counted = (0) ? FORCE_SHARE * step[i] : step[i];
+    sum += counted * counted;
+  }
   return (real)sqrt((double)sum);
 }
 
@@ -195,21 +219,40 @@ static int linearise(const real *q, const point *at, secant *kept) {
   return 1;
 }
 
-/* Minus the inverse of the updated Jacobian times a vector; zero where that is not finite. */
-static int step_for(const secant *kept, const real *residual, real *step) {
+/* Minus the inverse of the Jacobian times a vector, updated by each step and its follower. */
+static void through(const secant *kept, const real *vector, real *result) {
   int i, j;
-  for (i = 0; i < N; i++) step[i] = -residual[i];
-  substitute(kept->factors, kept->pivots, step);
+  for (i = 0; i < N; i++) result[i] = -vector[i];
+  substitute(kept->factors, kept->pivots, result);
   for (j = 0; j + 1 < kept->count; j++) {
-    const real share = dot(kept->steps[j], step) / kept->squares[j];
-    for (i = 0; i < N; i++) step[i] += kept->steps[j + 1][i] * share;
+    const real share = dot(kept->steps[j], result) / kept->squares[j];
+    for (i = 0; i < N; i++) result[i] += kept->steps[j + 1][i] * share;
   }
+}
+
+/* The step at an iterate with this residual; zero where it is not finite. */
+static int step_for(const secant *kept, const real *residual, real *step) {
+  int i;
+  through(kept, residual, step);
   if (kept->count > 0) {
     const int last = kept->count - 1;
     const real share = 1 - dot(kept->steps[last], step) / kept->squares[last];
     for (i = 0; i < N; i++) step[i] /= share;
   }
   return all_finite(step, N);
+}
+
+/* Minus the inverse times any vector: the update that belongs to the last step takes the one that would follow it. */
+static int response(const secant *kept, const real *residual, const real *vector, real *result) {
+  real next[N];
+  int i;
+  through(kept, vector, result);
+  if (kept->count > 0 && step_for(kept, residual, next)) {
+    const int last = kept->count - 1;
+    const real share = dot(kept->steps[last], result) / kept->squares[last];
+    for (i = 0; i < N; i++) result[i] += next[i] * share;
+  }
+  return all_finite(result, N);
 }
 
 /* Halve the step until the residual falls; the length that served, or zero. q, residual and norm move on then. */
@@ -232,13 +275,11 @@ static real search(const point *at, const real *step, int halvings, real *q, rea
   return 0;
 }
 
-/* Newton at one point of a path, from q. */
-static correction newton(const point *at, real *q) {
+/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian where it took one. */
+static correction newton(const point *at, const limits *most, real *q, secant *kept, real *residual) {
   correction end = {PLANAR_STRIP_MAX_ITERATIONS, 0, 0, 0, 0};
-  secant kept;
-  real residual[N], step[N], norm;
+  real step[N], norm;
   int keep = 0;
-  residual_at(q, at, residual);
   norm = norm_of(residual);
   for (;;) {
     const real before = norm, size = 1 + norm_of(q);
@@ -252,14 +293,15 @@ static correction newton(const point *at, real *q) {
     if (norm <= TOLERANCE * size) end.status = PLANAR_STRIP_CONVERGED;
     if (end.status == PLANAR_STRIP_CONVERGED || end.iterations == ITERATIONS) return end;
     if (!keep) {
+      if (end.jacobians == most->jacobians) return end;
       end.jacobians++;
-      if (!linearise(q, at, &kept)) {
+      if (!linearise(q, at, kept)) {
         end.status = PLANAR_STRIP_NOT_FINITE;
         return end;
       }
     }
     end.iterations++;
-    if (step_for(&kept, residual, step)) length = search(at, step, keep ? 0 : HALVINGS, q, residual, &norm);
+    if (step_for(kept, residual, step)) length = search(at, step, keep ? 0 : most->halvings, q, residual, &norm);
     if (length == 0) {
       if (!keep) {
         end.status = PLANAR_STRIP_SINGULAR;
@@ -269,12 +311,14 @@ static correction newton(const point *at, real *q) {
       continue;
     }
     if (length < 1) end.damped = 1;
-    keep = length == 1 && norm <= KEPT_DECREASE * before && kept.count + 1 < KEPT_STEPS;
-    if (keep) {
-      memcpy(kept.steps[kept.count], step, sizeof step);
-      kept.squares[kept.count] = dot(step, step);
-      kept.count++;
+    if (length == 1) {
+      const real square = dot(step, step);
+      memcpy(kept->steps[kept->count], step, sizeof step);
+      kept->squares[kept->count] = square;
+      kept->count++;
+      if ((real)sqrt((double)square) * norm <= most->rough * before) end.status = PLANAR_STRIP_CONVERGED;
     }
+    keep = length == 1 && norm <= KEPT_DECREASE * before && kept->count < KEPT_STEPS;
   }
 }
 
@@ -285,81 +329,149 @@ static void point_on(const path *way, real t, point *at) {
   at->factor = way->from ? 1 : t;
 }
 
-/* dq/dt of a path at an equilibrium on it; zero where there is none to be had. */
-static void tangent_at(const path *way, real t, const real *q, real *tangent) {
-  real rate[N], inputs_rate[INPUT_ROOM];
-  secant here;
+/* Whether a correction leaves a point on the path and not on some other. */
+static int is_small(const real *correction, const real *predicted) {
+  return step_length(correction) <= (real)0.3 + (real)0.5 * step_length(predicted);
+}
+
+static int trusted(const correction *end, const real *trial, const real *q, const real *predicted) {
+  real change[N];
+  int i;
+  if (end->status != PLANAR_STRIP_CONVERGED || end->damped) return 0;
+  for (i = 0; i < N; i++) change[i] = trial[i] - q[i] - predicted[i];
+  return is_small(change, predicted);
+}
+
+/* A point of a path. */
+typedef struct {
+  real q[N];
+  real residual[N];
+  real tangent[N];
+  real t;
+} station;
+
+/* dq/dt of a path at an equilibrium on it, with the Jacobian that Newton has left there; zero where there is none. */
+static void tangent_at(const path *way, station *here, correction *found, secant *kept) {
+  real rate[N], inputs_rate[INPUT_ROOM] = {0};
   point at;
   int i, sound;
-  point_on(way, t, &at);
+  point_on(way, here->t, &at);
   for (i = 0; i < INPUTS; i++) inputs_rate[i] = way->from ? way->to[i] - way->from[i] : 0;
-  rate_at(q, &at, inputs_rate, way->from ? 0 : 1, rate);
-  sound = all_finite(rate, N) && linearise(q, &at, &here) && step_for(&here, rate, tangent);
-  if (!sound) memset(tangent, 0, N * sizeof *tangent);
+  rate_at(here->q, &at, inputs_rate, way->from ? 0 : 1, rate);
+  sound = all_finite(rate, N);
+  if (sound && found->jacobians == 0) {
+    found->jacobians++;
+    sound = linearise(here->q, &at, kept);
+  }
+  if (!sound || !response(kept, here->residual, rate, here->tangent)) memset(here->tangent, 0, sizeof here->tangent);
 }
 
-/* Whether a corrected point lies on the path and not on some other. */
-static int trusted(const correction *end, const real *trial, const real *predicted, real predicted_length) {
-  if (end->status != PLANAR_STRIP_CONVERGED || end->jacobians > SLOW || end->damped) return 0;
-  return distance(trial, predicted) <= (real)0.3 + (real)0.5 * predicted_length;
+/* Change of q by the cubic through two points; by the tangent where there is one point, or the two differ much. */
+static void predict(const station *here, const station *before, real step, real *predicted) {
+  real bent[N];
+  int i;
+  for (i = 0; i < N; i++) predicted[i] = step * here->tangent[i];
+  if (before) {
+    const real way = here->t - before->t, share = step / way;
+    for (i = 0; i < N; i++) {
+      const real moved = here->q[i] - before->q[i];
+      const real cubic = way * (here->tangent[i] + before->tangent[i]) - 2 * moved;
+      bent[i] = share * share * (cubic + way * here->tangent[i] - moved) + share * share * share * cubic;
+    }
+    if (step_length(bent) <= MOST_BENT * step_length(predicted)) {
+      for (i = 0; i < N; i++) predicted[i] += bent[i];
+    }
+  }
 }
 
-/* Follow a path from t = 0 to 1; q is the equilibrium at 0, tangent its dq/dt, and info has been begun. */
-static void follow(const path *way, real *q, real *tangent, planar_strip_info *info) {
-  real t = 0, step = 1;
-  int k, i;
-  info->status = PLANAR_STRIP_LOAD_STALLED;
+/* Follow a path from t = 0 to 1; the first station is the equilibrium at 0, and info has been begun. The last Jacobian
+   at a station, known or not at the first, foresees the next correction: a new one costs far more than to ask it.
+   Corrections before the end are rough: where the way ends before it, the last one is completed. */
+static void follow(const path *way, station *first, secant *kept, int known, real *q, planar_strip_info *info) {
+  const limits rough = {SLOW, 0, ROUGH}, whole = {SLOW, 0, 0};
+  station others[2], *here = first, *before = others, *next = others + 1, *free_station;
+  secant other, *spare = &other, *free_secant;
+  correction end;
+  point at;
+  real step = way->from ? 1 : FIRST;
+  int k, i, taken = 0;
   for (k = 0; k < STEPS; k++) {
-    real trial[N], predicted[N], target, length = norm_of(tangent);
-    correction end;
-    point at;
-    if (step > 1 - t) step = 1 - t;
+    real predicted[N], foreseen[N], length = step_length(here->tangent);
+    if (step > 1 - here->t) step = 1 - here->t;
     if (step * length > LONGEST) step = LONGEST / length;
-    if (step < SHORTEST && step < 1 - t) return;
-    target = t + step > 1 - (real)1e-12 ? 1 : t + step;
-    for (i = 0; i < N; i++) predicted[i] = trial[i] = q[i] + step * tangent[i];
-    point_on(way, target, &at);
-    end = newton(&at, trial);
-    info->iterations += end.iterations;
-    info->jacobians += end.jacobians;
-    if (!trusted(&end, trial, predicted, step * length)) {
+    if (step < SHORTEST && step < 1 - here->t) break;
+    next->t = here->t + step > 1 - (real)1e-12 ? 1 : here->t + step;
+    predict(here, taken ? before : 0, step, predicted);
+    for (i = 0; i < N; i++) next->q[i] = here->q[i] + predicted[i];
+    point_on(way, next->t, &at);
+    residual_at(next->q, &at, next->residual);
+    if (known && response(kept, here->residual, next->residual, foreseen) && !is_small(foreseen, predicted)) {
+      info->iterations++;
       step /= 2;
       continue;
     }
-    memcpy(q, trial, sizeof trial);
-    t = target;
-    info->load_factor = t;
-    info->residual_norm = end.norm;
-    if (t == 1) {
-      info->status = PLANAR_STRIP_CONVERGED;
-      return;
+    end = newton(&at, next->t == 1 ? &whole : &rough, next->q, spare, next->residual);
+    info->iterations += end.iterations;
+    info->jacobians += end.jacobians;
+    if (!trusted(&end, next->q, here->q, predicted)) {
+      step /= 2;
+      continue;
     }
-    if (end.jacobians <= QUICK) step *= 2;
-    tangent_at(way, t, q, tangent);
-    info->jacobians++;
+    if (next->t < 1) {
+      if (end.jacobians <= QUICK) step *= 2;
+      info->jacobians -= end.jacobians;
+      tangent_at(way, next, &end, spare);
+      info->jacobians += end.jacobians;
+    }
+    free_station = before;
+    before = here;
+    here = next;
+    next = free_station;
+    free_secant = kept;
+    kept = spare;
+    spare = free_secant;
+    known = taken = 1;
+    if (here->t == 1) {
+      info->status = PLANAR_STRIP_CONVERGED;
+      info->residual_norm = end.norm;
+      break;
+    }
+  }
+  memcpy(q, here->q, sizeof here->q);
+  info->load_factor = here->t;
+  if (here->t < 1) {
+    point_on(way, here->t, &at);
+    end = newton(&at, &ANYWHERE, q, spare, here->residual);
+    info->status = PLANAR_STRIP_LOAD_STALLED;
+    info->iterations += end.iterations;
+    info->jacobians += end.jacobians;
+    info->residual_norm = end.norm;
   }
 }
 
 static void solve_cold(const real *inputs, real *q, planar_strip_info *info) {
   const path way = {0, inputs};
-  real tangent[N];
+  station rest = {{0}, {0}, {0}, 0};
+  secant none;
   memset(q, 0, N * sizeof *q);
-  unloaded_tangent(inputs, tangent);
-  if (!isfinite(norm_of(tangent))) {
+  unloaded_tangent(inputs, rest.tangent);
+  if (!isfinite(norm_of(rest.tangent))) {
     info->status = PLANAR_STRIP_NOT_FINITE;
     return;
   }
-  follow(&way, q, tangent, info);
+  follow(&way, &rest, &none, 0, q, info);
 }
 
 /* Newton at the full load from q; zero, and q as it was, where that strays so far that it may be another branch. */
 static int solve_near(const real *inputs, real *q, planar_strip_info *info) {
-  real trial[N];
+  real trial[N], residual[N];
+  secant kept;
   correction end;
   point at;
   memcpy(trial, q, sizeof trial);
   whole_load(inputs, &at);
-  end = newton(&at, trial);
+  residual_at(trial, &at, residual);
+  end = newton(&at, &ANYWHERE, trial, &kept, residual);
   info->iterations += end.iterations;
   info->jacobians += end.jacobians;
   if (end.status != PLANAR_STRIP_CONVERGED || end.damped || distance(trial, q) > NEAR) return 0;
@@ -396,22 +508,24 @@ outcome planar_strip_solve(const real *inputs, real *q, planar_strip_info *info)
 outcome planar_strip_follow(const real *from, const real *inputs, real *q, planar_strip_info *info) {
   planar_strip_info found = {PLANAR_STRIP_NOT_FINITE, 0, 0, 0, 0};
   const path way = {from, inputs};
-  real trial[N], tangent[N];
+  station first;
+  secant kept;
   correction end;
   point at;
   if (!all_finite(from, INPUTS) || !all_finite(inputs, INPUTS) || !all_finite(q, N)) return finish(q, inputs, &found, info);
-  memcpy(trial, q, sizeof trial);
+  memcpy(first.q, q, sizeof first.q);
+  first.t = 0;
   point_on(&way, 0, &at);
-  end = newton(&at, trial);
+  residual_at(first.q, &at, first.residual);
+  end = newton(&at, &ANYWHERE, first.q, &kept, first.residual);
   found.status = end.status;
   found.iterations = end.iterations;
   found.jacobians = end.jacobians;
   found.residual_norm = end.norm;
   if (end.status != PLANAR_STRIP_CONVERGED) return finish(q, inputs, &found, info);
-  memcpy(q, trial, sizeof trial);
-  tangent_at(&way, 0, q, tangent);
-  found.jacobians++;
-  follow(&way, q, tangent, &found);
+  tangent_at(&way, &first, &end, &kept);
+  found.jacobians = end.jacobians;
+  follow(&way, &first, &kept, 1, q, &found);
   return finish(q, inputs, &found, info);
 }
 

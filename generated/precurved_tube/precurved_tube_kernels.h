@@ -34,7 +34,7 @@ int precurved_tube_k_residual_work_bytes(casadi_int *sz_arg, casadi_int* sz_res,
 #define precurved_tube_k_residual_SZ_ARG 8
 #define precurved_tube_k_residual_SZ_RES 4
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 50
+#define precurved_tube_k_residual_SZ_W 62
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_jacobian_checkout(void);
 void precurved_tube_k_jacobian_release(int mem);
@@ -52,7 +52,7 @@ int precurved_tube_k_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_res,
 #define precurved_tube_k_jacobian_SZ_ARG 8
 #define precurved_tube_k_jacobian_SZ_RES 4
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 96
+#define precurved_tube_k_jacobian_SZ_W 190
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_rate_checkout(void);
 void precurved_tube_k_rate_release(int mem);
@@ -70,7 +70,7 @@ int precurved_tube_k_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, cas
 #define precurved_tube_k_rate_SZ_ARG 16
 #define precurved_tube_k_rate_SZ_RES 4
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 92
+#define precurved_tube_k_rate_SZ_W 115
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_tangent_checkout(void);
 void precurved_tube_k_tangent_release(int mem);
@@ -124,7 +124,7 @@ int precurved_tube_k_igm_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casa
 #define precurved_tube_k_igm_SZ_ARG 9
 #define precurved_tube_k_igm_SZ_RES 6
 #define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 50
+#define precurved_tube_k_igm_SZ_W 62
 int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_tip_checkout(void);
 void precurved_tube_k_tip_release(int mem);
@@ -142,7 +142,7 @@ int precurved_tube_k_tip_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casa
 #define precurved_tube_k_tip_SZ_ARG 3
 #define precurved_tube_k_tip_SZ_RES 5
 #define precurved_tube_k_tip_SZ_IW 0
-#define precurved_tube_k_tip_SZ_W 30
+#define precurved_tube_k_tip_SZ_W 38
 int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_tip_jacobian_checkout(void);
 void precurved_tube_k_tip_jacobian_release(int mem);
@@ -160,7 +160,7 @@ int precurved_tube_k_tip_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_
 #define precurved_tube_k_tip_jacobian_SZ_ARG 7
 #define precurved_tube_k_tip_jacobian_SZ_RES 5
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 96
+#define precurved_tube_k_tip_jacobian_SZ_W 190
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 int precurved_tube_k_shape_checkout(void);
 void precurved_tube_k_shape_release(int mem);
@@ -178,7 +178,7 @@ int precurved_tube_k_shape_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, ca
 #define precurved_tube_k_shape_SZ_ARG 4
 #define precurved_tube_k_shape_SZ_RES 5
 #define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 30
+#define precurved_tube_k_shape_SZ_W 38
 void precurved_tube_kernels_casadi_version(int* major, int* minor, int* patch);
 int precurved_tube_kernels_casadi_int_size(void);
 int precurved_tube_kernels_casadi_real_size(void);

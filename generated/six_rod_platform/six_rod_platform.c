@@ -27,6 +27,10 @@ enum { ITERATIONS = 60, STEPS = 400, QUICK = 2, SLOW = 4, KEPT_STEPS = 12, HALVI
 static const real SUFFICIENT_DECREASE = (real)0.0001;
 static const real KEPT_DECREASE = (real)0.5;
 static const real LONGEST = (real)4.0;
+static const real ROUGH = (real)0.01;
+static const real MOST_BENT = (real)0.5;
+static const real FIRST = (real)0.25;
+static const real FORCE_SHARE = (real)0.1;
 static const real NEAR = (real)0.5;
 
 /* Calls of generated kernels: arguments, results, and room as the kernel asks for. */
@@ -74,6 +78,15 @@ typedef struct {
   int damped;
   real norm;
 } correction;
+
+/* Where Newton gives up, and the length of the step to come at which it may stop. */
+typedef struct {
+  int jacobians;
+  int halvings;
+  real rough;
+} limits;
+
+static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0};
 
 static void whole_load(const real *inputs, point *at) {
   if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
@@ -1094,6 +1107,17 @@ static real distance(const real *a, const real *b) {
   return (real)sqrt((double)sum);
 }
 
+/* How far a step goes: strains and poses count whole, forces as they bend a rod. */
+static real step_length(const real *step) {
+  real sum = 0;
+  int i;
+  for (i = 0; i < N; i++) {
+    const real counted = ((i >= 96 && i < 132)) ? FORCE_SHARE * step[i] : step[i];
+    sum += counted * counted;
+  }
+  return (real)sqrt((double)sum);
+}
+
 static int all_finite(const real *a, int count) {
   int i;
   for (i = 0; i < count; i++) {
@@ -1102,60 +1126,77 @@ static int all_finite(const real *a, int count) {
   return 1;
 }
 
-/* Gaussian elimination of the first columns of a matrix, in place, column after column, with partial pivoting among as
-   many rows. A pivot at rounding becomes zero; whether there was none. */
-static int eliminate(real *a, int order, int count, real tiny, int *pivots) {
-  int i, j, k, regular = 1;
-  for (k = 0; k < count; k++) {
-    real *column = a + k * order;
-    int best = k;
-    for (i = k + 1; i < count; i++) {
-      if (fabs((double)column[i]) > fabs((double)column[best])) best = i;
-    }
-    pivots[k] = best;
-    if (best != k) {
-      for (j = 0; j < order; j++) {
-        const real kept = a[j * order + k];
-        a[j * order + k] = a[j * order + best];
-        a[j * order + best] = kept;
-      }
-    }
-    if (fabs((double)column[k]) <= (double)tiny) {
-      for (i = k; i < order; i++) column[i] = 0;
-      regular = 0;
-      continue;
-    }
-    for (i = k + 1; i < order; i++) column[i] /= column[k];
-    for (j = k + 1; j < order; j++) {
-      real *target = a + j * order;
-      const real share = target[k];
-      if (share == 0) continue;
-      for (i = k + 1; i < order; i++) target[i] -= column[i] * share;
-    }
+/* Columns of a matrix times shares, taken off some rows of a vector; four at a time keep the vector in registers. */
+static void subtract(const real *a, int order, const real *shares, int count, int from, int to, real *b) {
+  int i, k;
+  for (k = 0; k + 4 <= count; k += 4) {
+    const real *one = a + k * order, *two = one + order, *three = two + order, *four = three + order;
+    const real s = shares[k], t = shares[k + 1], u = shares[k + 2], v = shares[k + 3];
+    if (s == 0 && t == 0 && u == 0 && v == 0) continue;
+    for (i = from; i < to; i++) b[i] -= one[i] * s + two[i] * t + (three[i] * u + four[i] * v);
   }
-  return regular;
+  for (; k < count; k++) {
+    const real *column = a + k * order, share = shares[k];
+    if (share == 0) continue;
+    for (i = from; i < to; i++) b[i] -= column[i] * share;
+  }
 }
 
-/* The right-hand side on its way through the first columns. */
+/* A right-hand side on its way through the first columns. */
 static void descend(const real *a, int order, int count, const int *pivots, real *b) {
-  int i, k;
+  int i, k, m;
   for (k = 0; k < count; k++) {
     const real kept = b[pivots[k]];
     b[pivots[k]] = b[k];
     b[k] = kept;
   }
-  for (k = 0; k < count; k++) {
-    for (i = k + 1; i < order; i++) b[i] -= a[k * order + i] * b[k];
+  for (k = 0; k < count; k += 4) {
+    const int next = k + 4 < count ? k + 4 : count;
+    for (m = k; m < next; m++) {
+      for (i = m + 1; i < next; i++) b[i] -= a[m * order + i] * b[m];
+    }
+    subtract(a + k * order, order, b + k, next - k, next, order, b);
   }
 }
 
 /* And back, the unknowns of the other columns known; an unknown without a pivot is left at zero. */
 static void ascend(const real *a, int order, int count, real *b) {
-  int i, k;
-  for (k = order - 1; k >= 0; k--) {
-    if (k < count) b[k] = a[k * order + k] == 0 ? 0 : b[k] / a[k * order + k];
-    for (i = 0; i < (k < count ? k : count); i++) b[i] -= a[k * order + i] * b[k];
+  int i, k, m;
+  subtract(a + count * order, order, b + count, order - count, 0, count, b);
+  for (k = count; k > 0; k -= 4) {
+    const int next = k > 4 ? k - 4 : 0;
+    for (m = k - 1; m >= next; m--) {
+      b[m] *= a[m * order + m];
+      for (i = next; i < m; i++) b[i] -= a[m * order + i] * b[m];
+    }
+    subtract(a + next * order, order, b + next, k - next, 0, next, b);
   }
+}
+
+/* Gaussian elimination of the first columns of a matrix, in place, column after column, with partial pivoting among as
+   many rows. The diagonal holds inverse pivots, zero for one at rounding; whether there was none. */
+static int eliminate(real *a, int order, int count, real tiny, int *pivots) {
+  int i, j, k, regular = 1;
+  for (k = 0; k < order; k++) {
+    real *column = a + k * order, inverse;
+    int best = k;
+    descend(a, order, k < count ? k : count, pivots, column);
+    if (k >= count) continue;
+    for (i = k + 1; i < count; i++) {
+      if (fabs((double)column[i]) > fabs((double)column[best])) best = i;
+    }
+    pivots[k] = best;
+    for (j = 0; best != k && j <= k; j++) {
+      const real kept = a[j * order + k];
+      a[j * order + k] = a[j * order + best];
+      a[j * order + best] = kept;
+    }
+    if (fabs((double)column[k]) <= (double)tiny) regular = 0;
+    inverse = fabs((double)column[k]) <= (double)tiny ? 0 : 1 / column[k];
+    column[k] = inverse;
+    for (i = k + 1; i < order; i++) column[i] *= inverse;
+  }
+  return regular;
 }
 
 /* Rod after rod, then the border with what the rods have left of it; zero where some pivot is at rounding. */
@@ -1182,9 +1223,10 @@ static void substitute_fronts(const real *a, const int *pivots, real *b) {
   for (i = 0; i < BORDER; i++) border[i] = b[BORDER_MEMBERS[i]];
   for (k = 0; k < RODS; k++) {
     const front *rod = FRONT_LIST + k;
-    for (i = 0; i < rod->size; i++) rods[k][i] = b[rod->members[i]];
+    int none = 1;
+    for (i = 0; i < rod->size; i++) none &= (rods[k][i] = b[rod->members[i]]) == 0;
     for (i = 0; i < rod->edge_count; i++) rods[k][rod->size + i] = 0;
-    descend(a + rod->first, rod->size + rod->edge_count, rod->size, pivots, rods[k]);
+    if (!none) descend(a + rod->first, rod->size + rod->edge_count, rod->size, pivots, rods[k]);
     for (i = 0; i < rod->edge_count; i++) border[rod->edges[i]] += rods[k][rod->size + i];
     pivots += rod->size;
   }
@@ -1231,21 +1273,40 @@ static int linearise(const real *q, const point *at, secant *kept) {
   return 1;
 }
 
-/* Minus the inverse of the updated Jacobian times a vector; zero where that is not finite. */
-static int step_for(const secant *kept, const real *residual, real *step) {
+/* Minus the inverse of the Jacobian times a vector, updated by each step and its follower. */
+static void through(const secant *kept, const real *vector, real *result) {
   int i, j;
-  for (i = 0; i < N; i++) step[i] = -residual[i];
-  substitute(kept, step);
+  for (i = 0; i < N; i++) result[i] = -vector[i];
+  substitute(kept, result);
   for (j = 0; j + 1 < kept->count; j++) {
-    const real share = dot(kept->steps[j], step) / kept->squares[j];
-    for (i = 0; i < N; i++) step[i] += kept->steps[j + 1][i] * share;
+    const real share = dot(kept->steps[j], result) / kept->squares[j];
+    for (i = 0; i < N; i++) result[i] += kept->steps[j + 1][i] * share;
   }
+}
+
+/* The step at an iterate with this residual; zero where it is not finite. */
+static int step_for(const secant *kept, const real *residual, real *step) {
+  int i;
+  through(kept, residual, step);
   if (kept->count > 0) {
     const int last = kept->count - 1;
     const real share = 1 - dot(kept->steps[last], step) / kept->squares[last];
     for (i = 0; i < N; i++) step[i] /= share;
   }
   return all_finite(step, N);
+}
+
+/* Minus the inverse times any vector: the update that belongs to the last step takes the one that would follow it. */
+static int response(const secant *kept, const real *residual, const real *vector, real *result) {
+  real next[N];
+  int i;
+  through(kept, vector, result);
+  if (kept->count > 0 && step_for(kept, residual, next)) {
+    const int last = kept->count - 1;
+    const real share = dot(kept->steps[last], result) / kept->squares[last];
+    for (i = 0; i < N; i++) result[i] += next[i] * share;
+  }
+  return all_finite(result, N);
 }
 
 /* Halve the step until the residual falls; the length that served, or zero. q, residual and norm move on then. */
@@ -1268,13 +1329,11 @@ static real search(const point *at, const real *step, int halvings, real *q, rea
   return 0;
 }
 
-/* Newton at one point of a path, from q. */
-static correction newton(const point *at, real *q) {
+/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian where it took one. */
+static correction newton(const point *at, const limits *most, real *q, secant *kept, real *residual) {
   correction end = {SIX_ROD_PLATFORM_MAX_ITERATIONS, 0, 0, 0, 0};
-  secant kept;
-  real residual[N], step[N], norm;
+  real step[N], norm;
   int keep = 0;
-  residual_at(q, at, residual);
   norm = norm_of(residual);
   for (;;) {
     const real before = norm, size = 1 + norm_of(q);
@@ -1288,14 +1347,15 @@ static correction newton(const point *at, real *q) {
     if (norm <= TOLERANCE * size) end.status = SIX_ROD_PLATFORM_CONVERGED;
     if (end.status == SIX_ROD_PLATFORM_CONVERGED || end.iterations == ITERATIONS) return end;
     if (!keep) {
+      if (end.jacobians == most->jacobians) return end;
       end.jacobians++;
-      if (!linearise(q, at, &kept)) {
+      if (!linearise(q, at, kept)) {
         end.status = SIX_ROD_PLATFORM_NOT_FINITE;
         return end;
       }
     }
     end.iterations++;
-    if (step_for(&kept, residual, step)) length = search(at, step, keep ? 0 : HALVINGS, q, residual, &norm);
+    if (step_for(kept, residual, step)) length = search(at, step, keep ? 0 : most->halvings, q, residual, &norm);
     if (length == 0) {
       if (!keep) {
         end.status = SIX_ROD_PLATFORM_SINGULAR;
@@ -1305,12 +1365,14 @@ static correction newton(const point *at, real *q) {
       continue;
     }
     if (length < 1) end.damped = 1;
-    keep = length == 1 && norm <= KEPT_DECREASE * before && kept.count + 1 < KEPT_STEPS;
-    if (keep) {
-      memcpy(kept.steps[kept.count], step, sizeof step);
-      kept.squares[kept.count] = dot(step, step);
-      kept.count++;
+    if (length == 1) {
+      const real square = dot(step, step);
+      memcpy(kept->steps[kept->count], step, sizeof step);
+      kept->squares[kept->count] = square;
+      kept->count++;
+      if ((real)sqrt((double)square) * norm <= most->rough * before) end.status = SIX_ROD_PLATFORM_CONVERGED;
     }
+    keep = length == 1 && norm <= KEPT_DECREASE * before && kept->count < KEPT_STEPS;
   }
 }
 
@@ -1321,81 +1383,149 @@ static void point_on(const path *way, real t, point *at) {
   at->factor = way->from ? 1 : t;
 }
 
-/* dq/dt of a path at an equilibrium on it; zero where there is none to be had. */
-static void tangent_at(const path *way, real t, const real *q, real *tangent) {
-  real rate[N], inputs_rate[INPUT_ROOM];
-  secant here;
+/* Whether a correction leaves a point on the path and not on some other. */
+static int is_small(const real *correction, const real *predicted) {
+  return step_length(correction) <= (real)0.3 + (real)0.5 * step_length(predicted);
+}
+
+static int trusted(const correction *end, const real *trial, const real *q, const real *predicted) {
+  real change[N];
+  int i;
+  if (end->status != SIX_ROD_PLATFORM_CONVERGED || end->damped) return 0;
+  for (i = 0; i < N; i++) change[i] = trial[i] - q[i] - predicted[i];
+  return is_small(change, predicted);
+}
+
+/* A point of a path. */
+typedef struct {
+  real q[N];
+  real residual[N];
+  real tangent[N];
+  real t;
+} station;
+
+/* dq/dt of a path at an equilibrium on it, with the Jacobian that Newton has left there; zero where there is none. */
+static void tangent_at(const path *way, station *here, correction *found, secant *kept) {
+  real rate[N], inputs_rate[INPUT_ROOM] = {0};
   point at;
   int i, sound;
-  point_on(way, t, &at);
+  point_on(way, here->t, &at);
   for (i = 0; i < INPUTS; i++) inputs_rate[i] = way->from ? way->to[i] - way->from[i] : 0;
-  rate_at(q, &at, inputs_rate, way->from ? 0 : 1, rate);
-  sound = all_finite(rate, N) && linearise(q, &at, &here) && step_for(&here, rate, tangent);
-  if (!sound) memset(tangent, 0, N * sizeof *tangent);
+  rate_at(here->q, &at, inputs_rate, way->from ? 0 : 1, rate);
+  sound = all_finite(rate, N);
+  if (sound && found->jacobians == 0) {
+    found->jacobians++;
+    sound = linearise(here->q, &at, kept);
+  }
+  if (!sound || !response(kept, here->residual, rate, here->tangent)) memset(here->tangent, 0, sizeof here->tangent);
 }
 
-/* Whether a corrected point lies on the path and not on some other. */
-static int trusted(const correction *end, const real *trial, const real *predicted, real predicted_length) {
-  if (end->status != SIX_ROD_PLATFORM_CONVERGED || end->jacobians > SLOW || end->damped) return 0;
-  return distance(trial, predicted) <= (real)0.3 + (real)0.5 * predicted_length;
+/* Change of q by the cubic through two points; by the tangent where there is one point, or the two differ much. */
+static void predict(const station *here, const station *before, real step, real *predicted) {
+  real bent[N];
+  int i;
+  for (i = 0; i < N; i++) predicted[i] = step * here->tangent[i];
+  if (before) {
+    const real way = here->t - before->t, share = step / way;
+    for (i = 0; i < N; i++) {
+      const real moved = here->q[i] - before->q[i];
+      const real cubic = way * (here->tangent[i] + before->tangent[i]) - 2 * moved;
+      bent[i] = share * share * (cubic + way * here->tangent[i] - moved) + share * share * share * cubic;
+    }
+    if (step_length(bent) <= MOST_BENT * step_length(predicted)) {
+      for (i = 0; i < N; i++) predicted[i] += bent[i];
+    }
+  }
 }
 
-/* Follow a path from t = 0 to 1; q is the equilibrium at 0, tangent its dq/dt, and info has been begun. */
-static void follow(const path *way, real *q, real *tangent, six_rod_platform_info *info) {
-  real t = 0, step = 1;
-  int k, i;
-  info->status = SIX_ROD_PLATFORM_LOAD_STALLED;
+/* Follow a path from t = 0 to 1; the first station is the equilibrium at 0, and info has been begun. The last Jacobian
+   at a station, known or not at the first, foresees the next correction: a new one costs far more than to ask it.
+   Corrections before the end are rough: where the way ends before it, the last one is completed. */
+static void follow(const path *way, station *first, secant *kept, int known, real *q, six_rod_platform_info *info) {
+  const limits rough = {SLOW, 0, ROUGH}, whole = {SLOW, 0, 0};
+  station others[2], *here = first, *before = others, *next = others + 1, *free_station;
+  secant other, *spare = &other, *free_secant;
+  correction end;
+  point at;
+  real step = way->from ? 1 : FIRST;
+  int k, i, taken = 0;
   for (k = 0; k < STEPS; k++) {
-    real trial[N], predicted[N], target, length = norm_of(tangent);
-    correction end;
-    point at;
-    if (step > 1 - t) step = 1 - t;
+    real predicted[N], foreseen[N], length = step_length(here->tangent);
+    if (step > 1 - here->t) step = 1 - here->t;
     if (step * length > LONGEST) step = LONGEST / length;
-    if (step < SHORTEST && step < 1 - t) return;
-    target = t + step > 1 - (real)1e-12 ? 1 : t + step;
-    for (i = 0; i < N; i++) predicted[i] = trial[i] = q[i] + step * tangent[i];
-    point_on(way, target, &at);
-    end = newton(&at, trial);
-    info->iterations += end.iterations;
-    info->jacobians += end.jacobians;
-    if (!trusted(&end, trial, predicted, step * length)) {
+    if (step < SHORTEST && step < 1 - here->t) break;
+    next->t = here->t + step > 1 - (real)1e-12 ? 1 : here->t + step;
+    predict(here, taken ? before : 0, step, predicted);
+    for (i = 0; i < N; i++) next->q[i] = here->q[i] + predicted[i];
+    point_on(way, next->t, &at);
+    residual_at(next->q, &at, next->residual);
+    if (known && response(kept, here->residual, next->residual, foreseen) && !is_small(foreseen, predicted)) {
+      info->iterations++;
       step /= 2;
       continue;
     }
-    memcpy(q, trial, sizeof trial);
-    t = target;
-    info->load_factor = t;
-    info->residual_norm = end.norm;
-    if (t == 1) {
-      info->status = SIX_ROD_PLATFORM_CONVERGED;
-      return;
+    end = newton(&at, next->t == 1 ? &whole : &rough, next->q, spare, next->residual);
+    info->iterations += end.iterations;
+    info->jacobians += end.jacobians;
+    if (!trusted(&end, next->q, here->q, predicted)) {
+      step /= 2;
+      continue;
     }
-    if (end.jacobians <= QUICK) step *= 2;
-    tangent_at(way, t, q, tangent);
-    info->jacobians++;
+    if (next->t < 1) {
+      if (end.jacobians <= QUICK) step *= 2;
+      info->jacobians -= end.jacobians;
+      tangent_at(way, next, &end, spare);
+      info->jacobians += end.jacobians;
+    }
+    free_station = before;
+    before = here;
+    here = next;
+    next = free_station;
+    free_secant = kept;
+    kept = spare;
+    spare = free_secant;
+    known = taken = 1;
+    if (here->t == 1) {
+      info->status = SIX_ROD_PLATFORM_CONVERGED;
+      info->residual_norm = end.norm;
+      break;
+    }
+  }
+  memcpy(q, here->q, sizeof here->q);
+  info->load_factor = here->t;
+  if (here->t < 1) {
+    point_on(way, here->t, &at);
+    end = newton(&at, &ANYWHERE, q, spare, here->residual);
+    info->status = SIX_ROD_PLATFORM_LOAD_STALLED;
+    info->iterations += end.iterations;
+    info->jacobians += end.jacobians;
+    info->residual_norm = end.norm;
   }
 }
 
 static void solve_cold(const real *inputs, real *q, six_rod_platform_info *info) {
   const path way = {0, inputs};
-  real tangent[N];
+  station rest = {{0}, {0}, {0}, 0};
+  secant none;
   memset(q, 0, N * sizeof *q);
-  unloaded_tangent(inputs, tangent);
-  if (!isfinite(norm_of(tangent))) {
+  unloaded_tangent(inputs, rest.tangent);
+  if (!isfinite(norm_of(rest.tangent))) {
     info->status = SIX_ROD_PLATFORM_NOT_FINITE;
     return;
   }
-  follow(&way, q, tangent, info);
+  follow(&way, &rest, &none, 0, q, info);
 }
 
 /* Newton at the full load from q; zero, and q as it was, where that strays so far that it may be another branch. */
 static int solve_near(const real *inputs, real *q, six_rod_platform_info *info) {
-  real trial[N];
+  real trial[N], residual[N];
+  secant kept;
   correction end;
   point at;
   memcpy(trial, q, sizeof trial);
   whole_load(inputs, &at);
-  end = newton(&at, trial);
+  residual_at(trial, &at, residual);
+  end = newton(&at, &ANYWHERE, trial, &kept, residual);
   info->iterations += end.iterations;
   info->jacobians += end.jacobians;
   if (end.status != SIX_ROD_PLATFORM_CONVERGED || end.damped || distance(trial, q) > NEAR) return 0;
@@ -1432,22 +1562,24 @@ outcome six_rod_platform_solve(const real *inputs, real *q, six_rod_platform_inf
 outcome six_rod_platform_follow(const real *from, const real *inputs, real *q, six_rod_platform_info *info) {
   six_rod_platform_info found = {SIX_ROD_PLATFORM_NOT_FINITE, 0, 0, 0, 0};
   const path way = {from, inputs};
-  real trial[N], tangent[N];
+  station first;
+  secant kept;
   correction end;
   point at;
   if (!all_finite(from, INPUTS) || !all_finite(inputs, INPUTS) || !all_finite(q, N)) return finish(q, inputs, &found, info);
-  memcpy(trial, q, sizeof trial);
+  memcpy(first.q, q, sizeof first.q);
+  first.t = 0;
   point_on(&way, 0, &at);
-  end = newton(&at, trial);
+  residual_at(first.q, &at, first.residual);
+  end = newton(&at, &ANYWHERE, first.q, &kept, first.residual);
   found.status = end.status;
   found.iterations = end.iterations;
   found.jacobians = end.jacobians;
   found.residual_norm = end.norm;
   if (end.status != SIX_ROD_PLATFORM_CONVERGED) return finish(q, inputs, &found, info);
-  memcpy(q, trial, sizeof trial);
-  tangent_at(&way, 0, q, tangent);
-  found.jacobians++;
-  follow(&way, q, tangent, &found);
+  tangent_at(&way, &first, &end, &kept);
+  found.jacobians = end.jacobians;
+  follow(&way, &first, &kept, 1, q, &found);
   return finish(q, inputs, &found, info);
 }
 

@@ -173,7 +173,7 @@ def test_batch_goes_on_after_a_case_that_fails(library: Library) -> None:
     assert_allclose(batch[4].q, made.compiled.solve(cases[4]).q, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize("force", [-3000.0, 3000.0])
+@pytest.mark.parametrize("force", [-1e4, 1e4])
 def test_load_that_stalls_vs_python(library: Library, force: float) -> None:
     """An arch whose keystone is pushed beyond what can be followed: the last equilibrium on the way, and where."""
     made = library("arch")
