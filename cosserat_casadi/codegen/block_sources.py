@@ -13,7 +13,7 @@ from cosserat_casadi.codegen.parts import Parted
 Render = Callable[[str, dict[str, Any]], str]
 
 DENSE_IRREGULAR = """  for (i = 0; i < N; i++) {{
-    if (here.factors[i * N + i] == 0) return {macro}_SINGULAR;
+    if (kept->own.factors[i * N + i] == 0) return {macro}_SINGULAR;
   }}
 """
 
@@ -25,9 +25,8 @@ def dense_words(render: Render, basics: dict[str, Any]) -> dict[str, Any]:
         "factors": render("dense_factors.c.in", basics),
         "public_equations": render("dense_public.c.in", basics),
         "product": render("dense_product.c.in", basics),
-        "factor_fields": "  real factors[N * N];\n  int pivots[N];\n",
-        "kept_factors": "kept->factors, kept->pivots",
-        "here_factors": "here.factors, here.pivots",
+        "factor_fields": _fields(basics, f"{basics['MACRO']}_UNKNOWNS * {basics['MACRO']}_UNKNOWNS"),
+        "kept_factors": "kept->own.factors, kept->own.pivots",
         "irregular": DENSE_IRREGULAR.format(macro=basics["MACRO"]),
     }
 
@@ -58,11 +57,15 @@ def block_words(render: Render, basics: dict[str, Any], found: Assembled) -> dic
         "factors": render("block_factors.c.in", words),
         "public_equations": render("block_public.c.in", words),
         "product": render("block_product.c.in", basics),
-        "factor_fields": f"  real factors[{room}];\n  int pivots[N];\n  int dense;\n  int regular;\n",
+        "factor_fields": _fields(basics, str(room)) + "  int dense;\n  int regular;\n",
         "kept_factors": "kept",
-        "here_factors": "&here",
-        "irregular": f"  if (!here.regular) return {basics['MACRO']}_SINGULAR;\n",
+        "irregular": f"  if (!kept->own.regular) return {basics['MACRO']}_SINGULAR;\n",
     }
+
+
+def _fields(basics: dict[str, Any], room: str) -> str:
+    """Members of a struct: a factorised matrix."""
+    return f"  {basics['name']}_real factors[{room}];\n  int pivots[{basics['MACRO']}_UNKNOWNS];\n"
 
 
 def _functions(render: Render, parted: Parted) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from importlib import resources
 from importlib.metadata import version
+from itertools import pairwise
 from typing import Any
 
 import casadi as ca
@@ -15,12 +16,12 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.system import Frame
 from cosserat_casadi.solver import newton
 from cosserat_casadi.solver.continuation import MOST_BENT, ContinuationSettings
 from cosserat_casadi.solver.judgement import NEAR
-from cosserat_casadi.solver.load_path import FORCE_SHARE, first_step
+from cosserat_casadi.solver.load_path import first_step, step_shares
 from cosserat_casadi.solver.secant import SINGULAR
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
@@ -66,7 +67,7 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
     return {
         **_sizes(model, names),
         **_solver_constants(),
-        "is_force": _is_force(model.frame),
+        "step_share": _step_share(step_shares(model)),
         "first": first_step(model),
         **_texts(),
         **_input_words(model, names),
@@ -114,7 +115,6 @@ def _solver_constants() -> dict[str, Any]:
         "longest": limits.longest,
         "rough": limits.rough,
         "most_bent": MOST_BENT,
-        "force_share": FORCE_SHARE,
         "steps": limits.steps,
         "quick": limits.quick,
         "slow": limits.slow,
@@ -128,11 +128,11 @@ def _solver_constants() -> dict[str, Any]:
     }
 
 
-def _is_force(frame: Frame) -> str:
-    """Whether the i-th unknown is a multiplier or a tension, as a C expression."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], frame.forces, [0]])))
-    spans = [f"(i >= {first} && i < {last})" for first, last in edges.reshape(-1, 2)]
-    return " || ".join(spans) or "0"
+def _step_share(shares: FloatArray) -> str:
+    """How much the i-th unknown counts in the length of a step, as a C expression."""
+    starts = [0, *(np.flatnonzero(np.diff(shares)) + 1)]
+    spans = [f"i < {end} ? (real){float(shares[start])!r} : " for start, end in pairwise(starts)]
+    return "".join(spans) + f"(real){float(shares[starts[-1]])!r}"
 
 
 def _texts() -> dict[str, str]:

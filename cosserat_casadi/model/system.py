@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.effects.chamber import PRESSED, volume_rates
@@ -119,14 +118,6 @@ class Frame:
         """Number of unknowns."""
         moving = MovingFrame.SIZE * len(self.couplings.moving)
         return self.strain_size + self.multiplier_size + moving + len(self.cables)
-
-    @cached_property
-    def forces(self) -> npt.NDArray[np.bool_]:
-        """Which unknowns are multipliers or tensions, shape (size,)."""
-        found = np.zeros(self.size, dtype=bool)
-        found[self.strain_size : self.strain_size + self.multiplier_size] = True
-        found[self.size - len(self.cables) :] = True
-        return found
 
     @cached_property
     def cables(self) -> list[tuple[scenes.Tendon, Course]]:

@@ -11,8 +11,10 @@ from cosserat_casadi.solver.continuation import Path
 from cosserat_casadi.solver.secant import Jacobian
 
 FORCE_SHARE = 0.1
-"""Bending by a multiplier or tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
+"""Bending by a joint's multiplier or a tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
 
+SUPPORT_SHARE = 2.0
+"""The same for multipliers of supports: a rod that is drawn to a place has many equilibria there, near each other."""
 
 FIRST = 0.25
 """Longest first step where frames move: the springs have fallen to (3/4)³ then."""
@@ -27,7 +29,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
         rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
-        shares=_shares(model),
+        shares=step_shares(model),
         first=first_step(model),
     )
 
@@ -45,7 +47,7 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
         jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
         rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
         start=start,
-        shares=_shares(model),
+        shares=step_shares(model),
     )
 
 
@@ -54,9 +56,14 @@ def first_step(model: Model) -> float:
     return FIRST if model.frame.couplings.moving else 1.0
 
 
-def _shares(model: Model) -> FloatArray:
-    """How much the unknowns count in the length of a step: strains and poses whole, forces as they bend a rod."""
-    return np.where(model.frame.forces, FORCE_SHARE, 1.0)
+def step_shares(model: Model) -> FloatArray:
+    """How much each unknown counts in the length of a step, shape (size,); forces by a share."""
+    frame, shares = model.frame, np.ones(model.size)
+    forces = [*frame.tie_slices.values(), *frame.tension_slices]
+    for share, places in ((SUPPORT_SHARE, frame.hold_slices), (FORCE_SHARE, forces)):
+        for place in places:
+            shares[place] = share
+    return shares
 
 
 def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:

@@ -55,6 +55,13 @@ typedef struct {
   follower_reissner_real load_factor;     /* share of the load that q carries; 1 where converged */
 } follower_reissner_info;
 
+/* What follower_reissner_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  follower_reissner_real factors[FOLLOWER_REISSNER_UNKNOWNS * FOLLOWER_REISSNER_UNKNOWNS];
+  int pivots[FOLLOWER_REISSNER_UNKNOWNS];
+  int known;
+} follower_reissner_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *follower_reissner_status_text(follower_reissner_status status);
 
@@ -79,6 +86,12 @@ int follower_reissner_solve_batch(int count, const follower_reissner_real *input
    or bifurcation point; nothing is written then. */
 follower_reissner_status follower_reissner_solve_sensitivity(const follower_reissner_real *inputs, const follower_reissner_real *q,
                                          follower_reissner_real *d_q_d_inputs, follower_reissner_real *d_tip_d_inputs);
+
+/* One turn of a control loop: follower_reissner_solve from q, then follower_reissner_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+follower_reissner_status follower_reissner_track(const follower_reissner_real *inputs, follower_reissner_real *q, follower_reissner_memory *memory,
+                             follower_reissner_real *d_q_d_inputs, follower_reissner_real *d_tip_d_inputs, follower_reissner_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void follower_reissner_residual(const follower_reissner_real *q, const follower_reissner_real *inputs, follower_reissner_real *residual);

@@ -52,6 +52,13 @@ typedef struct {
   nitinol_wire_real load_factor;     /* share of the load that q carries; 1 where converged */
 } nitinol_wire_info;
 
+/* What nitinol_wire_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  nitinol_wire_real factors[NITINOL_WIRE_UNKNOWNS * NITINOL_WIRE_UNKNOWNS];
+  int pivots[NITINOL_WIRE_UNKNOWNS];
+  int known;
+} nitinol_wire_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *nitinol_wire_status_text(nitinol_wire_status status);
 
@@ -76,6 +83,12 @@ int nitinol_wire_solve_batch(int count, const nitinol_wire_real *inputs, nitinol
    or bifurcation point; nothing is written then. */
 nitinol_wire_status nitinol_wire_solve_sensitivity(const nitinol_wire_real *inputs, const nitinol_wire_real *q,
                                          nitinol_wire_real *d_q_d_inputs, nitinol_wire_real *d_tip_d_inputs);
+
+/* One turn of a control loop: nitinol_wire_solve from q, then nitinol_wire_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+nitinol_wire_status nitinol_wire_track(const nitinol_wire_real *inputs, nitinol_wire_real *q, nitinol_wire_memory *memory,
+                             nitinol_wire_real *d_q_d_inputs, nitinol_wire_real *d_tip_d_inputs, nitinol_wire_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void nitinol_wire_residual(const nitinol_wire_real *q, const nitinol_wire_real *inputs, nitinol_wire_real *residual);

@@ -30,7 +30,6 @@ static const real LONGEST = (real)4.0;
 static const real ROUGH = (real)0.01;
 static const real MOST_BENT = (real)0.5;
 static const real FIRST = (real)1.0;
-static const real FORCE_SHARE = (real)0.1;
 static const real NEAR = (real)0.5;
 
 /* Calls of generated kernels: arguments, results, and room as the kernel asks for. */
@@ -62,8 +61,7 @@ typedef struct {
 
 /* A factorised Jacobian and the full steps taken since it was formed: Broyden's inverse by steps alone. */
 typedef struct {
-  real factors[N * N];
-  int pivots[N];
+  planar_strip_memory own;
   real steps[KEPT_STEPS][N];
   real squares[KEPT_STEPS];
   int count;
@@ -77,14 +75,15 @@ typedef struct {
   real norm;
 } correction;
 
-/* Where Newton gives up, and the length of the step to come at which it may stop. */
+/* Where Newton gives up, the length of the step to come at which it may stop, whether it begins with a Jacobian at hand. */
 typedef struct {
   int jacobians;
   int halvings;
   real rough;
+  int keep;
 } limits;
 
-static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0};
+static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0, 0}, ON_TRACK = {ITERATIONS, HALVINGS, 0, 1};
 
 static void whole_load(const real *inputs, point *at) {
   if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
@@ -139,12 +138,12 @@ static real distance(const real *a, const real *b) {
   return (real)sqrt((double)sum);
 }
 
-/* How far a step goes: strains and poses count whole, forces as they bend a rod. */
+/* How far a step goes: strains and poses count whole, forces by a share. */
 static real step_length(const real *step) {
   real sum = 0;
   int i;
   for (i = 0; i < N; i++) {
-    const real counted = (0) ? FORCE_SHARE * step[i] : step[i];
+    const real counted = step[i] * ((real)1.0);
     sum += counted * counted;
   }
   return (real)sqrt((double)sum);
@@ -212,9 +211,9 @@ static void substitute(const real *a, const int *pivots, real *b) {
 
 /* Factorised Jacobian at q; zero where it is not finite. */
 static int linearise(const real *q, const point *at, secant *kept) {
-  jacobian_at(q, at, kept->factors);
-  if (!all_finite(kept->factors, N * N)) return 0;
-  factorise(kept->factors, kept->pivots);
+  jacobian_at(q, at, kept->own.factors);
+  if (!all_finite(kept->own.factors, N * N)) return 0;
+  factorise(kept->own.factors, kept->own.pivots);
   kept->count = 0;
   return 1;
 }
@@ -223,7 +222,7 @@ static int linearise(const real *q, const point *at, secant *kept) {
 static void through(const secant *kept, const real *vector, real *result) {
   int i, j;
   for (i = 0; i < N; i++) result[i] = -vector[i];
-  substitute(kept->factors, kept->pivots, result);
+  substitute(kept->own.factors, kept->own.pivots, result);
   for (j = 0; j + 1 < kept->count; j++) {
     const real share = dot(kept->steps[j], result) / kept->squares[j];
     for (i = 0; i < N; i++) result[i] += kept->steps[j + 1][i] * share;
@@ -275,11 +274,11 @@ static real search(const point *at, const real *step, int halvings, real *q, rea
   return 0;
 }
 
-/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian where it took one. */
+/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian. */
 static correction newton(const point *at, const limits *most, real *q, secant *kept, real *residual) {
   correction end = {PLANAR_STRIP_MAX_ITERATIONS, 0, 0, 0, 0};
   real step[N], norm;
-  int keep = 0;
+  int keep = most->keep;
   norm = norm_of(residual);
   for (;;) {
     const real before = norm, size = 1 + norm_of(q);
@@ -388,7 +387,7 @@ static void predict(const station *here, const station *before, real step, real 
    at a station, known or not at the first, foresees the next correction: a new one costs far more than to ask it.
    Corrections before the end are rough: where the way ends before it, the last one is completed. */
 static void follow(const path *way, station *first, secant *kept, int known, real *q, planar_strip_info *info) {
-  const limits rough = {SLOW, 0, ROUGH}, whole = {SLOW, 0, 0};
+  const limits rough = {SLOW, 0, ROUGH, 0}, whole = {SLOW, 0, 0, 0};
   station others[2], *here = first, *before = others, *next = others + 1, *free_station;
   secant other, *spare = &other, *free_secant;
   correction end;
@@ -463,15 +462,14 @@ static void solve_cold(const real *inputs, real *q, planar_strip_info *info) {
 }
 
 /* Newton at the full load from q; zero, and q as it was, where that strays so far that it may be another branch. */
-static int solve_near(const real *inputs, real *q, planar_strip_info *info) {
+static int solve_near(const limits *most, secant *kept, const real *inputs, real *q, planar_strip_info *info) {
   real trial[N], residual[N];
-  secant kept;
   correction end;
   point at;
   memcpy(trial, q, sizeof trial);
   whole_load(inputs, &at);
   residual_at(trial, &at, residual);
-  end = newton(&at, &ANYWHERE, trial, &kept, residual);
+  end = newton(&at, most, trial, kept, residual);
   info->iterations += end.iterations;
   info->jacobians += end.jacobians;
   if (end.status != PLANAR_STRIP_CONVERGED || end.damped || distance(trial, q) > NEAR) return 0;
@@ -497,12 +495,17 @@ static outcome finish(const real *q, const real *inputs, planar_strip_info *foun
   return found->status;
 }
 
-outcome planar_strip_solve(const real *inputs, real *q, planar_strip_info *info) {
+static outcome solve_from(const limits *most, secant *kept, const real *inputs, real *q, planar_strip_info *info) {
   planar_strip_info found = {PLANAR_STRIP_NOT_FINITE, 0, 0, 0, 0};
   const int warm = all_finite(q, N) && !is_zero(q);
   if (!all_finite(inputs, INPUTS)) return finish(q, inputs, &found, info);
-  if (!warm || !solve_near(inputs, q, &found)) solve_cold(inputs, q, &found);
+  if (!warm || !solve_near(most, kept, inputs, q, &found)) solve_cold(inputs, q, &found);
   return finish(q, inputs, &found, info);
+}
+
+outcome planar_strip_solve(const real *inputs, real *q, planar_strip_info *info) {
+  secant none;
+  return solve_from(&ANYWHERE, &none, inputs, q, info);
 }
 
 outcome planar_strip_follow(const real *from, const real *inputs, real *q, planar_strip_info *info) {
@@ -619,23 +622,20 @@ static void add_product(const real *d_pose_d_q, const real *d_q_d_inputs, real *
   }
 }
 
-outcome planar_strip_solve_sensitivity(const real *inputs, const real *q, real *d_q_d_inputs, real *d_tip_d_inputs) {
-  real residual[N], columns[N * INPUT_ROOM], tips[RODS * 7 * INPUT_ROOM], d_pose_d_q[7 * N];
-  secant here;
+/* Derivatives of the solution, and the Jacobian that they were taken with. */
+static outcome derivatives(const real *inputs, const real *q, secant *kept, real *d_q_d_inputs, real *d_tip_d_inputs) {
+  real columns[N * INPUT_ROOM], tips[RODS * 7 * INPUT_ROOM], d_pose_d_q[7 * N];
   point at;
   int i, j;
-  if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return PLANAR_STRIP_NOT_FINITE;
   whole_load(inputs, &at);
-  residual_at(q, &at, residual);
-  if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return PLANAR_STRIP_NOT_IN_EQUILIBRIUM;
-  if (!linearise(q, &at, &here)) return PLANAR_STRIP_NOT_FINITE;
+  if (!linearise(q, &at, kept)) return PLANAR_STRIP_NOT_FINITE;
   for (i = 0; i < N; i++) {
-    if (here.factors[i * N + i] == 0) return PLANAR_STRIP_SINGULAR;
+    if (kept->own.factors[i * N + i] == 0) return PLANAR_STRIP_SINGULAR;
   }
   planar_strip_input_jacobian(q, inputs, columns);
   for (j = 0; j < INPUTS; j++) {
     for (i = 0; i < N; i++) columns[j * N + i] = -columns[j * N + i];
-    substitute(here.factors, here.pivots, columns + j * N);
+    substitute(kept->own.factors, kept->own.pivots, columns + j * N);
   }
   if (!all_finite(columns, N * INPUTS)) return PLANAR_STRIP_SINGULAR;
   for (i = 0; i < RODS; i++) {
@@ -645,6 +645,33 @@ outcome planar_strip_solve_sensitivity(const real *inputs, const real *q, real *
   if (d_q_d_inputs) memcpy(d_q_d_inputs, columns, (size_t)N * INPUTS * sizeof *columns);
   if (d_tip_d_inputs) memcpy(d_tip_d_inputs, tips, (size_t)RODS * 7 * INPUTS * sizeof *tips);
   return PLANAR_STRIP_CONVERGED;
+}
+
+outcome planar_strip_solve_sensitivity(const real *inputs, const real *q, real *d_q_d_inputs, real *d_tip_d_inputs) {
+  real residual[N];
+  secant here;
+  point at;
+  if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return PLANAR_STRIP_NOT_FINITE;
+  whole_load(inputs, &at);
+  residual_at(q, &at, residual);
+  if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return PLANAR_STRIP_NOT_IN_EQUILIBRIUM;
+  return derivatives(inputs, q, &here, d_q_d_inputs, d_tip_d_inputs);
+}
+
+outcome planar_strip_track(const real *inputs, real *q, planar_strip_memory *memory, real *d_q_d_inputs, real *d_tip_d_inputs,
+                      planar_strip_info *info) {
+  secant kept;
+  outcome end;
+  kept.own = *memory;
+  kept.count = 0;
+  end = solve_from(memory->known ? &ON_TRACK : &ANYWHERE, &kept, inputs, q, info);
+  memory->known = 0;
+  if (end == PLANAR_STRIP_CONVERGED) end = derivatives(inputs, q, &kept, d_q_d_inputs, d_tip_d_inputs);
+  if (end == PLANAR_STRIP_CONVERGED) {
+    *memory = kept.own;
+    memory->known = 1;
+  }
+  return end;
 }
 
 const char *planar_strip_status_text(outcome status) {

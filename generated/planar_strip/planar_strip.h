@@ -50,6 +50,13 @@ typedef struct {
   planar_strip_real load_factor;     /* share of the load that q carries; 1 where converged */
 } planar_strip_info;
 
+/* What planar_strip_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  planar_strip_real factors[PLANAR_STRIP_UNKNOWNS * PLANAR_STRIP_UNKNOWNS];
+  int pivots[PLANAR_STRIP_UNKNOWNS];
+  int known;
+} planar_strip_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *planar_strip_status_text(planar_strip_status status);
 
@@ -74,6 +81,12 @@ int planar_strip_solve_batch(int count, const planar_strip_real *inputs, planar_
    or bifurcation point; nothing is written then. */
 planar_strip_status planar_strip_solve_sensitivity(const planar_strip_real *inputs, const planar_strip_real *q,
                                          planar_strip_real *d_q_d_inputs, planar_strip_real *d_tip_d_inputs);
+
+/* One turn of a control loop: planar_strip_solve from q, then planar_strip_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+planar_strip_status planar_strip_track(const planar_strip_real *inputs, planar_strip_real *q, planar_strip_memory *memory,
+                             planar_strip_real *d_q_d_inputs, planar_strip_real *d_tip_d_inputs, planar_strip_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void planar_strip_residual(const planar_strip_real *q, const planar_strip_real *inputs, planar_strip_real *residual);

@@ -52,6 +52,13 @@ typedef struct {
   precurved_tube_real load_factor;     /* share of the load that q carries; 1 where converged */
 } precurved_tube_info;
 
+/* What precurved_tube_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  precurved_tube_real factors[PRECURVED_TUBE_UNKNOWNS * PRECURVED_TUBE_UNKNOWNS];
+  int pivots[PRECURVED_TUBE_UNKNOWNS];
+  int known;
+} precurved_tube_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *precurved_tube_status_text(precurved_tube_status status);
 
@@ -76,6 +83,12 @@ int precurved_tube_solve_batch(int count, const precurved_tube_real *inputs, pre
    or bifurcation point; nothing is written then. */
 precurved_tube_status precurved_tube_solve_sensitivity(const precurved_tube_real *inputs, const precurved_tube_real *q,
                                          precurved_tube_real *d_q_d_inputs, precurved_tube_real *d_tip_d_inputs);
+
+/* One turn of a control loop: precurved_tube_solve from q, then precurved_tube_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+precurved_tube_status precurved_tube_track(const precurved_tube_real *inputs, precurved_tube_real *q, precurved_tube_memory *memory,
+                             precurved_tube_real *d_q_d_inputs, precurved_tube_real *d_tip_d_inputs, precurved_tube_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void precurved_tube_residual(const precurved_tube_real *q, const precurved_tube_real *inputs, precurved_tube_real *residual);

@@ -30,7 +30,6 @@ static const real LONGEST = (real)4.0;
 static const real ROUGH = (real)0.01;
 static const real MOST_BENT = (real)0.5;
 static const real FIRST = (real)0.25;
-static const real FORCE_SHARE = (real)0.1;
 static const real NEAR = (real)0.5;
 
 /* Calls of generated kernels: arguments, results, and room as the kernel asks for. */
@@ -62,10 +61,7 @@ typedef struct {
 
 /* A factorised Jacobian and the full steps taken since it was formed: Broyden's inverse by steps alone. */
 typedef struct {
-  real factors[19321];
-  int pivots[N];
-  int dense;
-  int regular;
+  six_rod_platform_memory own;
   real steps[KEPT_STEPS][N];
   real squares[KEPT_STEPS];
   int count;
@@ -79,14 +75,15 @@ typedef struct {
   real norm;
 } correction;
 
-/* Where Newton gives up, and the length of the step to come at which it may stop. */
+/* Where Newton gives up, the length of the step to come at which it may stop, whether it begins with a Jacobian at hand. */
 typedef struct {
   int jacobians;
   int halvings;
   real rough;
+  int keep;
 } limits;
 
-static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0};
+static const limits ANYWHERE = {ITERATIONS, HALVINGS, 0, 0}, ON_TRACK = {ITERATIONS, HALVINGS, 0, 1};
 
 static void whole_load(const real *inputs, point *at) {
   if (INPUTS > 0) memcpy(at->inputs, inputs, INPUTS * sizeof *inputs);
@@ -1107,12 +1104,12 @@ static real distance(const real *a, const real *b) {
   return (real)sqrt((double)sum);
 }
 
-/* How far a step goes: strains and poses count whole, forces as they bend a rod. */
+/* How far a step goes: strains and poses count whole, forces by a share. */
 static real step_length(const real *step) {
   real sum = 0;
   int i;
   for (i = 0; i < N; i++) {
-    const real counted = ((i >= 96 && i < 132)) ? FORCE_SHARE * step[i] : step[i];
+    const real counted = step[i] * (i < 96 ? (real)1.0 : i < 132 ? (real)0.1 : (real)1.0);
     sum += counted * counted;
   }
   return (real)sqrt((double)sum);
@@ -1243,11 +1240,11 @@ static void substitute_fronts(const real *a, const int *pivots, real *b) {
 
 /* Solve with the factors, in place; an unknown without a pivot is left at zero. */
 static void substitute(const secant *kept, real *b) {
-  if (kept->dense) {
-    descend(kept->factors, N, N, kept->pivots, b);
-    ascend(kept->factors, N, N, b);
+  if (kept->own.dense) {
+    descend(kept->own.factors, N, N, kept->own.pivots, b);
+    ascend(kept->own.factors, N, N, b);
   } else {
-    substitute_fronts(kept->factors, kept->pivots, b);
+    substitute_fronts(kept->own.factors, kept->own.pivots, b);
   }
 }
 
@@ -1261,14 +1258,14 @@ static int linearise(const real *q, const point *at, secant *kept) {
   for (i = 0; i < ENTRIES; i++) tiny = fabs((double)entries[i]) > (double)tiny ? (real)fabs((double)entries[i]) : tiny;
   tiny *= SINGULAR;
   kept->count = 0;
-  kept->regular = 1;
-  memset(kept->factors, 0, FRONTS * sizeof *kept->factors);
-  for (i = 0; i < ENTRIES; i++) kept->factors[FRONT_PLACES[i]] = entries[i];
-  kept->dense = !eliminate_fronts(kept->factors, tiny, kept->pivots);
-  if (kept->dense) {
-    memset(kept->factors, 0, N * N * sizeof *kept->factors);
-    for (i = 0; i < ENTRIES; i++) kept->factors[DENSE_PLACES[i]] = entries[i];
-    kept->regular = eliminate(kept->factors, N, N, tiny, kept->pivots);
+  kept->own.regular = 1;
+  memset(kept->own.factors, 0, FRONTS * sizeof *kept->own.factors);
+  for (i = 0; i < ENTRIES; i++) kept->own.factors[FRONT_PLACES[i]] = entries[i];
+  kept->own.dense = !eliminate_fronts(kept->own.factors, tiny, kept->own.pivots);
+  if (kept->own.dense) {
+    memset(kept->own.factors, 0, N * N * sizeof *kept->own.factors);
+    for (i = 0; i < ENTRIES; i++) kept->own.factors[DENSE_PLACES[i]] = entries[i];
+    kept->own.regular = eliminate(kept->own.factors, N, N, tiny, kept->own.pivots);
   }
   return 1;
 }
@@ -1329,11 +1326,11 @@ static real search(const point *at, const real *step, int halvings, real *q, rea
   return 0;
 }
 
-/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian where it took one. */
+/* Newton at one point of a path, from q and the residual there. Leaves both, and the last Jacobian. */
 static correction newton(const point *at, const limits *most, real *q, secant *kept, real *residual) {
   correction end = {SIX_ROD_PLATFORM_MAX_ITERATIONS, 0, 0, 0, 0};
   real step[N], norm;
-  int keep = 0;
+  int keep = most->keep;
   norm = norm_of(residual);
   for (;;) {
     const real before = norm, size = 1 + norm_of(q);
@@ -1442,7 +1439,7 @@ static void predict(const station *here, const station *before, real step, real 
    at a station, known or not at the first, foresees the next correction: a new one costs far more than to ask it.
    Corrections before the end are rough: where the way ends before it, the last one is completed. */
 static void follow(const path *way, station *first, secant *kept, int known, real *q, six_rod_platform_info *info) {
-  const limits rough = {SLOW, 0, ROUGH}, whole = {SLOW, 0, 0};
+  const limits rough = {SLOW, 0, ROUGH, 0}, whole = {SLOW, 0, 0, 0};
   station others[2], *here = first, *before = others, *next = others + 1, *free_station;
   secant other, *spare = &other, *free_secant;
   correction end;
@@ -1517,15 +1514,14 @@ static void solve_cold(const real *inputs, real *q, six_rod_platform_info *info)
 }
 
 /* Newton at the full load from q; zero, and q as it was, where that strays so far that it may be another branch. */
-static int solve_near(const real *inputs, real *q, six_rod_platform_info *info) {
+static int solve_near(const limits *most, secant *kept, const real *inputs, real *q, six_rod_platform_info *info) {
   real trial[N], residual[N];
-  secant kept;
   correction end;
   point at;
   memcpy(trial, q, sizeof trial);
   whole_load(inputs, &at);
   residual_at(trial, &at, residual);
-  end = newton(&at, &ANYWHERE, trial, &kept, residual);
+  end = newton(&at, most, trial, kept, residual);
   info->iterations += end.iterations;
   info->jacobians += end.jacobians;
   if (end.status != SIX_ROD_PLATFORM_CONVERGED || end.damped || distance(trial, q) > NEAR) return 0;
@@ -1551,12 +1547,17 @@ static outcome finish(const real *q, const real *inputs, six_rod_platform_info *
   return found->status;
 }
 
-outcome six_rod_platform_solve(const real *inputs, real *q, six_rod_platform_info *info) {
+static outcome solve_from(const limits *most, secant *kept, const real *inputs, real *q, six_rod_platform_info *info) {
   six_rod_platform_info found = {SIX_ROD_PLATFORM_NOT_FINITE, 0, 0, 0, 0};
   const int warm = all_finite(q, N) && !is_zero(q);
   if (!all_finite(inputs, INPUTS)) return finish(q, inputs, &found, info);
-  if (!warm || !solve_near(inputs, q, &found)) solve_cold(inputs, q, &found);
+  if (!warm || !solve_near(most, kept, inputs, q, &found)) solve_cold(inputs, q, &found);
   return finish(q, inputs, &found, info);
+}
+
+outcome six_rod_platform_solve(const real *inputs, real *q, six_rod_platform_info *info) {
+  secant none;
+  return solve_from(&ANYWHERE, &none, inputs, q, info);
 }
 
 outcome six_rod_platform_follow(const real *from, const real *inputs, real *q, six_rod_platform_info *info) {
@@ -1811,21 +1812,18 @@ static void add_product(const real *d_pose_d_q, const real *d_q_d_inputs, real *
   }
 }
 
-outcome six_rod_platform_solve_sensitivity(const real *inputs, const real *q, real *d_q_d_inputs, real *d_tip_d_inputs) {
-  real residual[N], columns[N * INPUT_ROOM], tips[POSES * 7 * INPUT_ROOM], d_pose_d_q[7 * N];
-  secant here;
+/* Derivatives of the solution, and the Jacobian that they were taken with. */
+static outcome derivatives(const real *inputs, const real *q, secant *kept, real *d_q_d_inputs, real *d_tip_d_inputs) {
+  real columns[N * INPUT_ROOM], tips[POSES * 7 * INPUT_ROOM], d_pose_d_q[7 * N];
   point at;
   int i, j;
-  if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return SIX_ROD_PLATFORM_NOT_FINITE;
   whole_load(inputs, &at);
-  residual_at(q, &at, residual);
-  if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM;
-  if (!linearise(q, &at, &here)) return SIX_ROD_PLATFORM_NOT_FINITE;
-  if (!here.regular) return SIX_ROD_PLATFORM_SINGULAR;
+  if (!linearise(q, &at, kept)) return SIX_ROD_PLATFORM_NOT_FINITE;
+  if (!kept->own.regular) return SIX_ROD_PLATFORM_SINGULAR;
   six_rod_platform_input_jacobian(q, inputs, columns);
   for (j = 0; j < INPUTS; j++) {
     for (i = 0; i < N; i++) columns[j * N + i] = -columns[j * N + i];
-    substitute(&here, columns + j * N);
+    substitute(kept, columns + j * N);
   }
   if (!all_finite(columns, N * INPUTS)) return SIX_ROD_PLATFORM_SINGULAR;
   for (i = 0; i < POSES; i++) {
@@ -1835,6 +1833,33 @@ outcome six_rod_platform_solve_sensitivity(const real *inputs, const real *q, re
   if (d_q_d_inputs) memcpy(d_q_d_inputs, columns, (size_t)N * INPUTS * sizeof *columns);
   if (d_tip_d_inputs) memcpy(d_tip_d_inputs, tips, (size_t)POSES * 7 * INPUTS * sizeof *tips);
   return SIX_ROD_PLATFORM_CONVERGED;
+}
+
+outcome six_rod_platform_solve_sensitivity(const real *inputs, const real *q, real *d_q_d_inputs, real *d_tip_d_inputs) {
+  real residual[N];
+  secant here;
+  point at;
+  if (!all_finite(inputs, INPUTS) || !isfinite(norm_of(q))) return SIX_ROD_PLATFORM_NOT_FINITE;
+  whole_load(inputs, &at);
+  residual_at(q, &at, residual);
+  if (!(norm_of(residual) <= 10 * TOLERANCE * (1 + norm_of(q)))) return SIX_ROD_PLATFORM_NOT_IN_EQUILIBRIUM;
+  return derivatives(inputs, q, &here, d_q_d_inputs, d_tip_d_inputs);
+}
+
+outcome six_rod_platform_track(const real *inputs, real *q, six_rod_platform_memory *memory, real *d_q_d_inputs, real *d_tip_d_inputs,
+                      six_rod_platform_info *info) {
+  secant kept;
+  outcome end;
+  kept.own = *memory;
+  kept.count = 0;
+  end = solve_from(memory->known ? &ON_TRACK : &ANYWHERE, &kept, inputs, q, info);
+  memory->known = 0;
+  if (end == SIX_ROD_PLATFORM_CONVERGED) end = derivatives(inputs, q, &kept, d_q_d_inputs, d_tip_d_inputs);
+  if (end == SIX_ROD_PLATFORM_CONVERGED) {
+    *memory = kept.own;
+    memory->known = 1;
+  }
+  return end;
 }
 
 const char *six_rod_platform_status_text(outcome status) {

@@ -99,6 +99,15 @@ typedef struct {
   six_rod_platform_real load_factor;     /* share of the load that q carries; 1 where converged */
 } six_rod_platform_info;
 
+/* What six_rod_platform_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  six_rod_platform_real factors[19321];
+  int pivots[SIX_ROD_PLATFORM_UNKNOWNS];
+  int dense;
+  int regular;
+  int known;
+} six_rod_platform_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *six_rod_platform_status_text(six_rod_platform_status status);
 
@@ -124,6 +133,12 @@ int six_rod_platform_solve_batch(int count, const six_rod_platform_real *inputs,
    or bifurcation point; nothing is written then. */
 six_rod_platform_status six_rod_platform_solve_sensitivity(const six_rod_platform_real *inputs, const six_rod_platform_real *q,
                                          six_rod_platform_real *d_q_d_inputs, six_rod_platform_real *d_tip_d_inputs);
+
+/* One turn of a control loop: six_rod_platform_solve from q, then six_rod_platform_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+six_rod_platform_status six_rod_platform_track(const six_rod_platform_real *inputs, six_rod_platform_real *q, six_rod_platform_memory *memory,
+                             six_rod_platform_real *d_q_d_inputs, six_rod_platform_real *d_tip_d_inputs, six_rod_platform_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void six_rod_platform_residual(const six_rod_platform_real *q, const six_rod_platform_real *inputs, six_rod_platform_real *residual);

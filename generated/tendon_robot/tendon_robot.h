@@ -56,6 +56,13 @@ typedef struct {
   tendon_robot_real load_factor;     /* share of the load that q carries; 1 where converged */
 } tendon_robot_info;
 
+/* What tendon_robot_track keeps from one call to the next. Fill it with zeros before the first. */
+typedef struct {
+  tendon_robot_real factors[TENDON_ROBOT_UNKNOWNS * TENDON_ROBOT_UNKNOWNS];
+  int pivots[TENDON_ROBOT_UNKNOWNS];
+  int known;
+} tendon_robot_memory;
+
 /* A sentence for the user. Never a null pointer. */
 const char *tendon_robot_status_text(tendon_robot_status status);
 
@@ -80,6 +87,12 @@ int tendon_robot_solve_batch(int count, const tendon_robot_real *inputs, tendon_
    or bifurcation point; nothing is written then. */
 tendon_robot_status tendon_robot_solve_sensitivity(const tendon_robot_real *inputs, const tendon_robot_real *q,
                                          tendon_robot_real *d_q_d_inputs, tendon_robot_real *d_tip_d_inputs);
+
+/* One turn of a control loop: tendon_robot_solve from q, then tendon_robot_solve_sensitivity, at less than the cost of both. The solve
+   starts with the Jacobian that the derivatives of the turn before were taken with. SINGULAR with info->status
+   CONVERGED: q is the solution, at a limit or bifurcation point, and has no derivatives. */
+tendon_robot_status tendon_robot_track(const tendon_robot_real *inputs, tendon_robot_real *q, tendon_robot_memory *memory,
+                             tendon_robot_real *d_q_d_inputs, tendon_robot_real *d_tip_d_inputs, tendon_robot_info *info);
 
 /* residual (UNKNOWNS): zero in equilibrium. */
 void tendon_robot_residual(const tendon_robot_real *q, const tendon_robot_real *inputs, tendon_robot_real *residual);
