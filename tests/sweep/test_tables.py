@@ -76,6 +76,12 @@ def test_draws_stand_beside_every_combination() -> None:
         ("samples = 2\nseed = 1\na.b = [1]", "samples: stands without random columns"),
         ("samples = 0\nseed = 1\na.b = { uniform = [1, 2] }", "samples must be a whole number >= 1"),
         ('a.b = 1\n"a.b" = 2', "twice"),
+        ("samples = 2\nseed = {}\na.b = { uniform = [1, 2] }", "seed must be a whole number >= 0, got a table"),
+        ("samples.x = 2\nseed = 1\na.b = { uniform = [1, 2] }", "samples must be a whole number >= 1, got a table"),
+        (f"a.b = 1{400 * '0'}", "finite number"),
+        ("a.b = { from = -1.7e308, to = 1.7e308, count = 3 }", "beyond the largest number"),
+        ("samples = 2\nseed = 1\na.b = { uniform = [-1.7e308, 1.7e308] }", "beyond the largest number"),
+        ("samples = 2\nseed = 1\na.b = { normal = [0, 1.7e308] }", "beyond the largest number"),
     ],
 )
 def test_faults_of_a_grid(text: str, said: str) -> None:
@@ -90,8 +96,12 @@ def test_every_fault_of_a_grid_is_told_at_once() -> None:
 
 def test_files_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_text("a = [")
-    for name, said in (("none.toml", "cannot be read"), ("bad.toml", "is not TOML"), ("none.csv", "cannot be read")):
-        with pytest.raises(SceneError, match=said):
+    (tmp_path / "long.toml").write_text(f"a = 1{5000 * '0'}")
+    for name in ("none.toml", "none.csv"):
+        with pytest.raises(SceneError, match="cannot be read"):
+            read_table(tmp_path / name)
+    for name in ("bad.toml", "long.toml"):
+        with pytest.raises(SceneError, match="is not TOML"):
             read_table(tmp_path / name)
 
 
