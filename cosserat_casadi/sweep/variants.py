@@ -8,7 +8,9 @@ of equal parameters share a scene.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +20,7 @@ from cosserat_casadi.load_cases import column_places
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.scene import Scene, scene_from_dict
+from cosserat_casadi.scene.reading import place_of
 from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweep.table import Table, shortened
 
@@ -72,11 +75,12 @@ def variants(scene: Scene, table: Table) -> Variants:
     others = [k for k in range(len(table.columns)) if k not in chosen]
     inputs = np.tile(layout.pack(), (len(table.values), 1))
     inputs[:, [places[table.columns[k]] for k in chosen]] = table.values[:, chosen]
-    problems = [*_refused_inputs(free, layout, inputs, table)]
+    parameters = tuple(table.columns[k] for k in others)
+    problems = [*_set_twice(free, [*layout.names, *parameters], table), *_refused_inputs(free, layout, inputs, table)]
     entries = list(_entries(free, table, others, problems))
     if problems:
         raise SceneError(*shortened(problems, table.where))
-    return Variants(tuple(entries), inputs, layout, tuple(table.columns[k] for k in others))
+    return Variants(tuple(entries), inputs, layout, parameters)
 
 
 def _freed(scene: Scene, columns: Sequence[str]) -> Scene:
@@ -96,6 +100,21 @@ def _input_name(column: str) -> str:
     """``push.force`` of ``push.force.x.1``, ``leg.base.position`` of ``leg.base.position.x``."""
     words = column.split(".")
     return ".".join(words[: 3 if words[1:2] == ["base"] else 2])
+
+
+def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Problem]:
+    """Names of inputs and parameters that set one thing: one of them would count for nothing."""
+    tables, places = scene_tables(scene), dict[str, tuple[str | int, ...]]()
+    for name in names:
+        # What is not there to be set is told with the row that would set it.
+        with suppress(SceneError):
+            # A tangent is one more way to give the orientation.
+            places[name] = place_of(tables, name.replace(".base.tangent", ".base.quaternion"))
+    for (one, first), (other, second) in combinations(places.items(), 2):
+        shared = min(len(first), len(second))
+        if first[:shared] == second[:shared]:
+            remedy = "name what is swept in one way: push.force.x, wire.section.radius"
+            yield Problem(table.where, f"{other!r} sets what {one!r} sets", remedy)
 
 
 def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: list[Problem]) -> Iterator[Variant]:

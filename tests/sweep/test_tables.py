@@ -173,6 +173,26 @@ def test_columns_that_are_refused(columns: dict[str, list[float]], said: str) ->
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize(
+    "columns",
+    [
+        ("push.force.x", "push.force[1]"),
+        ("push.force.x", "loads[0].force[0]"),
+        ("rod.length", "rods.rod.length"),
+        ("rod.base.quaternion.w", "rod.base.tangent[0]"),
+        ("rod.stiffness.bending_y", "rods[0].stiffness.bending_y"),
+    ],
+)
+def test_two_names_of_one_thing_are_refused(columns: tuple[str, str]) -> None:
+    with pytest.raises(SceneError, match=r"sets what '.*' sets"):
+        variants(PLANAR, table_of({name: [0.1, 0.2] for name in columns}))
+
+
+def test_entries_of_one_vector_may_be_parameters() -> None:
+    found = variants(PLANAR, table_of({"push.force[0]": [0.1, 0.2], "push.force[1]": [0.3, 0.3]}))
+    assert [entry.scene.loads[0].force for entry in found.entries] == [(0.1, 0.3, -0.4), (0.2, 0.3, -0.4)]  # type: ignore[union-attr]
+
+
 def test_a_tension_below_zero_is_refused() -> None:
     tendon = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
     given = scene(push(), rods=[rod()], actuators=[tendon])
