@@ -8,11 +8,12 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import (
     BarColumn,
     Progress,
@@ -56,7 +57,7 @@ from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import tune as tune_scene
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
-from cosserat_casadi.sweep.table import read_table
+from cosserat_casadi.sweep.table import Table, read_table
 
 REFUSED = 2
 """Exit code: the input is refused, nothing was written."""
@@ -314,10 +315,10 @@ def run(command: Callable[..., object]) -> int:
         report.print_refusal(console, error)
         return REFUSED
     except NoReferenceError as error:
-        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        console.print(f"[bold red]Error:[/] {escape(str(error))}", highlight=False)
         return NOT_FOUND
     except CosseratError as error:
-        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        console.print(f"[bold red]Error:[/] {escape(str(error))}", highlight=False)
         return REFUSED
     except KeyboardInterrupt:
         console.print("Stopped. Files that were not finished were not written.")
@@ -328,7 +329,7 @@ def run(command: Callable[..., object]) -> int:
         return INTERRUPTED
     except Exception as error:
         if hasattr(error, "format_message") and hasattr(error, "exit_code"):
-            console.print(f"[bold red]Error:[/] {error.format_message()}", highlight=False)
+            console.print(f"[bold red]Error:[/] {escape(error.format_message())}", highlight=False)
             return int(error.exit_code)
         raise
     return outcome if isinstance(outcome, int) else 0
@@ -360,25 +361,22 @@ def _check_path(
         SceneError: with every fault of the scene, the options and the places to write to.
     """
     problems: list[Problem] = []
-
-    def tried(check: Callable[[], object]) -> object:
-        try:
-            return check()
-        except SceneError as error:
-            problems.extend(error.problems)
-            return None
-
     if bifurcation == 0:
         problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
     for option, file in outputs.items():
-        if file is not None:
-            tried(lambda option=option, file=file: check_writable(file, option))  # type: ignore[misc]
-    tried(lambda: _check_outputs(None, plot))
-    value = tried(lambda: _vector(to))
-    read = tried(lambda: read_scene(scene, settings))
-    if isinstance(read, Scene):
-        tried(lambda: _check_input(read, name, value))
-    if problems or not isinstance(read, Scene):
+        with _collected(problems):
+            if file is not None:
+                check_writable(file, option)
+    value: FloatArray | None = None
+    read: Scene | None = None
+    with _collected(problems):
+        _check_outputs(None, plot)
+    with _collected(problems):
+        value = _vector(to)
+    with _collected(problems):
+        read = read_scene(scene, settings)
+        _check_input(read, name, value)
+    if problems or read is None:
         raise SceneError(*problems)
     return read, np.asarray(value)
 
@@ -395,30 +393,46 @@ def _check_sweep(
     """The sweep that is asked for.
 
     Raises:
-        SceneError: with every fault of the scene, the table and the places to write to.
+        SceneError: with every fault of the scene, the table, the options and the places to write to.
     """
     problems: list[Problem] = []
-    found: list[Any] = []
-    steps: list[Callable[[], object]] = [
-        lambda: _check_outputs(None, plot),
-        lambda: read_scene(scene, settings),
-        lambda: read_table(over),
-    ]
-    for step in steps:
-        try:
-            found.append(step())
-        except SceneError as error:
-            problems.extend(error.problems)
-    if len(found) < len(steps):
-        # Without scene or table the output is all that can still be looked at.
-        problems += output_problems(output, None)
+    read: Scene | None = None
+    table: Table | None = None
+    plan: Plan | None = None
+    with _collected(problems):
+        _check_outputs(None, plot)
+    with _collected(problems):
+        read = read_scene(scene, settings)
+    with _collected(problems):
+        table = read_table(over)
+    with _collected(problems):
+        if read is None or table is None:
+            # Without them the output is all that can still be looked at.
+            problems += output_problems(output, None)
+        else:
+            plan = plan_sweep(read, table, output, samples)
+    problems += _colour_problems(colour, plot, plan)
+    if problems or plan is None:
         raise SceneError(*problems)
-    plan = plan_sweep(found[1], found[2], output, samples)
-    if colour is not None:
-        known = ("outcome", *plan.columns)
-        if colour not in known:
-            raise SceneError(Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(known)}"))
     return plan
+
+
+def _colour_problems(colour: str | None, plot: Path | None, plan: Plan | None) -> Iterator[Problem]:
+    """Why a figure cannot be coloured so."""
+    if colour is not None and plot is None:
+        yield Problem("--colour", "is for a figure", "name its file with --plot")
+    known = () if plan is None else ("outcome", *plan.columns)
+    if colour is not None and known and colour not in known:
+        yield Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(known)}")
+
+
+@contextmanager
+def _collected(problems: list[Problem]) -> Iterator[None]:
+    """Faults that are told together with others: what is refused inside is kept, and the check goes on."""
+    try:
+        yield
+    except SceneError as error:
+        problems.extend(error.problems)
 
 
 def _check_input(scene: Scene, name: str, value: object) -> None:
