@@ -69,7 +69,7 @@ class Plan:
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of numbers that the results will have."""
-        # What is swept and found alike, such as a given tension, is in the table already.
+        # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
         found = [name for name in row_results(self.scene)[1:] if name not in self.table.columns]
         return (*self.table.columns, *found)
 
