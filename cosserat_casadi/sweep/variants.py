@@ -7,10 +7,11 @@ of equal parameters share a scene.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.load_cases import column_places
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.reading import place_of
@@ -26,6 +28,10 @@ from cosserat_casadi.sweep.table import Table, shortened
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds")
 """Tables of a scene that are no property of what is computed."""
+
+
+STIFFNESS = ("material", "section", "stiffness", "linear_density")
+"""Tables and numbers of a rod that say how it yields, not where it is."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +125,10 @@ def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Pro
 
 def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: list[Problem]) -> Iterator[Variant]:
     if not parameters:
+        try:
+            check_constraints(scene)
+        except SceneError as error:
+            problems += error.problems
         yield Variant(scene, np.arange(len(table.values)))
         return
     columns = [table.columns[k] for k in parameters]
@@ -127,16 +137,29 @@ def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: li
     if reserved:
         return
     tables = scene_tables(scene)
-    seen = set[str]()
+    seen, moved = set[str](), any(_moves_joints(tables, column) for column in columns)
     for values, rows in _groups(table.values[:, list(parameters)]):
         overrides = [f"{column}={float(value)!r}" for column, value in zip(columns, values, strict=True)]
         try:
-            yield Variant(scene_from_dict(tables, overrides), rows)
+            variant = Variant(scene_from_dict(tables, overrides), rows)
+            # Building a model would find it too, but in a worker; it takes as long as that.
+            if moved or rows[0] == 0:
+                check_constraints(variant.scene)
+            yield variant
         except SceneError as error:
             for problem in error.problems:
                 if str(problem) not in seen:
                     seen.add(str(problem))
                     problems.append(_told(problem, table, int(rows[0])))
+
+
+def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:
+    """Whether what joints hold may depend on a parameter."""
+    try:
+        table, *_, field = place_of(tables, column)[:3]
+    except SceneError:
+        return False
+    return table != "actuators" and field not in STIFFNESS
 
 
 def _groups(values: FloatArray) -> Iterator[tuple[FloatArray, npt.NDArray[np.int64]]]:

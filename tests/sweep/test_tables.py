@@ -125,6 +125,8 @@ def test_arrays_that_are_no_table() -> None:
         ({"a": [1, 2], "b": [1, 2, 3]}, "2, 3 rows"),
         ({"a": [[1]]}, "2 dimensions"),
         ({"a": [np.inf]}, "not a finite number"),
+        ({"a": ["x"]}, "a: must be a number"),
+        ({"a": [1, [2, 3]]}, "a: must be a number"),
     ):
         with pytest.raises(SceneError, match=said):
             table_of(columns)
@@ -191,6 +193,23 @@ def test_two_names_of_one_thing_are_refused(columns: tuple[str, str]) -> None:
 def test_entries_of_one_vector_may_be_parameters() -> None:
     found = variants(PLANAR, table_of({"push.force[0]": [0.1, 0.2], "push.force[1]": [0.3, 0.3]}))
     assert [entry.scene.loads[0].force for entry in found.entries] == [(0.1, 0.3, -0.4), (0.2, 0.3, -0.4)]  # type: ignore[union-attr]
+
+
+def test_joints_that_hold_too_little_are_refused_with_their_row() -> None:
+    """A plate on three spherical joints: in the second row they lie on one line."""
+    rods = [
+        rod("kirchhoff", name=name, base={"position": [x, 0, 0]}) for name, x in (("a", 0.0), ("b", 0.1), ("c", 0.2))
+    ]
+    joints = [
+        {"body": "plate", "rod": name, "kind": "spherical", "position": [x, y, 0]}
+        for name, x, y in (("a", 0.0, 0.0), ("b", 0.1, 0.0), ("c", 0.2, 0.1))
+    ]
+    given = scene(rods=rods, bodies=[{"name": "plate"}], joints=joints)
+    with pytest.raises(SceneError, match=r"table, row 2, bodies\[0\]: nothing holds the orientation of 'plate'"):
+        variants(given, table_of({"joints[2].position[1]": [0.1, 0.0]}))
+    joints[2]["position"] = [0.2, 0.0, 0.0]
+    with pytest.raises(SceneError, match=r"^bodies\[0\]: nothing holds the orientation of 'plate'"):
+        variants(scene(rods=rods, bodies=[{"name": "plate"}], joints=joints), table_of({"a.length": [0.8]}))
 
 
 def test_a_tension_below_zero_is_refused() -> None:
