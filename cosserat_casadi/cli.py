@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
@@ -191,8 +192,8 @@ def sweep(
     plan = _check_sweep(scene, tuple(settings or ()), over, output, samples, plot, colour)
     finished = plan.finished
     try:
-        with _progress(Rate()) as bar:
-            found = run_sweep(plan, scheduler=scheduler, cores=cores, progress=_stages(bar))
+        with _progress(Rate()) as bar, _interrupts() as stop:
+            found = run_sweep(plan, scheduler=scheduler, cores=cores, progress=_stages(bar, stop))
     except KeyboardInterrupt:
         report.print_stopped_sweep(Console(stderr=True), plan)
         raise typer.Exit(INTERRUPTED) from None
@@ -498,13 +499,37 @@ class Rate(ProgressColumn):
         return Text(f"{task.speed:,.0f}/s" if task.speed else "")
 
 
-def _stages(bar: Progress) -> Callable[[str, int, int], None]:
-    """Shows one stage after the other; each has its own rate."""
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], None]]:
+    """What raises an interrupt again that has been lost.
+
+    CasADi calls Python to look at its arguments, and takes whatever that raises for a refusal of the argument.
+    """
+    seen: list[int] = []
+
+    def interrupt(number: int, frame: object) -> None:
+        seen.append(number)
+        raise KeyboardInterrupt
+
+    def stop() -> None:
+        if seen:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _stages(bar: Progress, stop: Callable[[], None]) -> Callable[[str, int, int], None]:
+    """Shows one stage after the other, each with its own rate, unless all is to stop."""
     task = bar.add_task("Reading the table", total=None)
     doing = ""
 
     def told(stage: str, done: int, total: int) -> None:
         nonlocal doing
+        stop()
         if stage == doing:
             bar.update(task, completed=done, total=total or None)
         else:
@@ -523,9 +548,20 @@ def _reporter(bar: Progress) -> Callable[[str, int, int], None]:
 @contextmanager
 def _told(doing: str) -> Iterator[tuple[Told, Report]]:
     """A bar on standard error: who is told the share that is done, and who is told the stage."""
-    with _progress() as bar:
+    with _progress() as bar, _interrupts() as stop:
         task = bar.add_task("Building the model", total=1.0)
-        yield (
-            lambda share: bar.update(task, completed=share),
-            lambda stage: bar.update(task, description=f"{doing}: {stage}", completed=0.0),
-        )
+
+        def told(share: float) -> None:
+            stop()
+            bar.update(task, completed=share)
+
+        def said(stage: str) -> None:
+            stop()
+            bar.update(task, description=f"{doing}: {stage}", completed=0.0)
+
+        try:
+            yield told, said
+        except KeyboardInterrupt:
+            # Typer would end without a word.
+            bar.console.print("Stopped. Nothing was written.")
+            raise typer.Exit(INTERRUPTED) from None

@@ -121,6 +121,7 @@ def check(found: Variants, choice: Choice, results: FloatArray, told: Told) -> l
             difference = pose_difference(results[row], solution)
             words |= {"error_estimate": solution.error_estimate, "difference": difference, "stable": solution.stable}
         judged.append(words)
+    told("Checking rows", len(spread), len(spread))
     return judged
 
 

@@ -1,14 +1,18 @@
-"""Options of the command that are refused, before anything is computed or written."""
+"""The command as a whole: options that are refused before anything is computed or written, and interrupts."""
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from cosserat_casadi import SceneError, sweep_scene
-from cosserat_casadi.cli import REFUSED, app, run
+from cosserat_casadi import SceneError, Solution, solve_scene, sweep_scene
+from cosserat_casadi.cli import INTERRUPTED, REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import rod, scene
 from tests.sweep.conftest import PLANAR
@@ -71,3 +75,31 @@ def test_a_body_named_as_a_rod_is_refused() -> None:
     given = scene(rods=[rod()], bodies=[{"name": "rod", "mass": 0.1}], joints=[joint])
     with pytest.raises(SceneError, match=r"bodies\[0\]\.name: 'rod' is the name of a rod too"):
         sweep_scene(given, {"rod.length": [0.5]})
+
+
+@pytest.mark.usefixtures("quick_compiler")
+@pytest.mark.parametrize("command", ["sweep", "solve"])
+def test_an_interrupt_that_is_lost_stops_the_command(
+    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As CasADi loses what is raised while it looks at its arguments."""
+
+    def lose(*given: Any, **more: Any) -> Solution:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+        except KeyboardInterrupt:
+            lost.append(True)
+        return solve_scene(*given, **more)
+
+    lost: list[bool] = []
+    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.cli.solve_scene", lose)
+    words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
+    monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words, "--output", "out.csv"])
+    before = signal.getsignal(signal.SIGINT)
+    assert run(app) == INTERRUPTED
+    assert lost == [True]
+    assert signal.getsignal(signal.SIGINT) is before
+    assert not (folder / "out.csv").exists()
+    assert "Stopped" in capsys.readouterr().err
