@@ -192,7 +192,8 @@ def _sweep_check(checked: list[dict[str, Any]], tolerance: float) -> list[str]:
     unstable = [one["row"] + 1 for one in kept if one["stable"] is False]
     said = []
     if kept:
-        error, apart = (max(one[word] for one in kept) for word in ("error_estimate", "difference"))
+        error = max(np.inf if one["error_estimate"] is None else one["error_estimate"] for one in kept)
+        apart = max(one["difference"] for one in kept)
         verdict = "within" if error <= tolerance else "[bold red]more than[/]"
         said.append(
             f"{_rows(len(kept))} solved again in Python: estimated error at most {error:.1e}, {verdict} {tolerance:g}; "

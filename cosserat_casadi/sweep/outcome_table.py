@@ -68,7 +68,7 @@ class Sweep:
         looked_at = [0.0 if chosen is None else chosen]
         for one in self.record["checked"]:
             looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
-        return bool(self.converged.any()) and max(looked_at) <= tolerance
+        return bool(self.converged.any()) and all(error <= tolerance for error in looked_at)
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).

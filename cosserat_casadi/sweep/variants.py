@@ -131,12 +131,18 @@ def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: li
             problems += error.problems
         yield Variant(scene, np.arange(len(table.values)))
         return
-    columns = [table.columns[k] for k in parameters]
-    reserved = [c for c in columns if c.replace("[", ".").split(".")[0] in NOT_PARAMETERS]
+    names = [table.columns[k] for k in parameters]
+    reserved = [c for c in names if c.replace("[", ".").split(".")[0] in NOT_PARAMETERS]
     problems += [Problem(table.where, f"{c!r} cannot be swept", "change it with --set for all rows") for c in reserved]
-    if reserved:
-        return
-    tables = scene_tables(scene)
+    if not reserved:
+        yield from _scenes(scene_tables(scene), table, parameters, problems)
+
+
+def _scenes(
+    tables: Mapping[str, Any], table: Table, parameters: Sequence[int], problems: list[Problem]
+) -> Iterator[Variant]:
+    """A scene for each set of parameters; a fault is told once, with the first row that has it."""
+    columns = [table.columns[k] for k in parameters]
     seen, moved = set[str](), any(_moves_joints(tables, column) for column in columns)
     for values, rows in _groups(table.values[:, list(parameters)]):
         overrides = [f"{column}={float(value)!r}" for column, value in zip(columns, values, strict=True)]
