@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+import signal
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import (
     BarColumn,
     Progress,
@@ -56,7 +58,7 @@ from cosserat_casadi.solver.solution import Solution
 from cosserat_casadi.solver.tuning import tune as tune_scene
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
-from cosserat_casadi.sweep.table import read_table
+from cosserat_casadi.sweep.table import Table, read_table
 
 REFUSED = 2
 """Exit code: the input is refused, nothing was written."""
@@ -190,8 +192,8 @@ def sweep(
     plan = _check_sweep(scene, tuple(settings or ()), over, output, samples, plot, colour)
     finished = plan.finished
     try:
-        with _progress(Rate()) as bar:
-            found = run_sweep(plan, scheduler=scheduler, cores=cores, progress=_stages(bar))
+        with _progress(Rate()) as bar, _interrupts() as stop:
+            found = run_sweep(plan, scheduler=scheduler, cores=cores, progress=_stages(bar, stop))
     except KeyboardInterrupt:
         report.print_stopped_sweep(Console(stderr=True), plan)
         raise typer.Exit(INTERRUPTED) from None
@@ -314,10 +316,10 @@ def run(command: Callable[..., object]) -> int:
         report.print_refusal(console, error)
         return REFUSED
     except NoReferenceError as error:
-        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        console.print(f"[bold red]Error:[/] {escape(str(error))}", highlight=False)
         return NOT_FOUND
     except CosseratError as error:
-        console.print(f"[bold red]Error:[/] {error}", highlight=False)
+        console.print(f"[bold red]Error:[/] {escape(str(error))}", highlight=False)
         return REFUSED
     except KeyboardInterrupt:
         console.print("Stopped. Files that were not finished were not written.")
@@ -328,7 +330,7 @@ def run(command: Callable[..., object]) -> int:
         return INTERRUPTED
     except Exception as error:
         if hasattr(error, "format_message") and hasattr(error, "exit_code"):
-            console.print(f"[bold red]Error:[/] {error.format_message()}", highlight=False)
+            console.print(f"[bold red]Error:[/] {escape(error.format_message())}", highlight=False)
             return int(error.exit_code)
         raise
     return outcome if isinstance(outcome, int) else 0
@@ -360,25 +362,22 @@ def _check_path(
         SceneError: with every fault of the scene, the options and the places to write to.
     """
     problems: list[Problem] = []
-
-    def tried(check: Callable[[], object]) -> object:
-        try:
-            return check()
-        except SceneError as error:
-            problems.extend(error.problems)
-            return None
-
     if bifurcation == 0:
         problems.append(Problem("--bifurcation", "must not be 0", "count from 1; -1 is the other half of that branch"))
     for option, file in outputs.items():
-        if file is not None:
-            tried(lambda option=option, file=file: check_writable(file, option))  # type: ignore[misc]
-    tried(lambda: _check_outputs(None, plot))
-    value = tried(lambda: _vector(to))
-    read = tried(lambda: read_scene(scene, settings))
-    if isinstance(read, Scene):
-        tried(lambda: _check_input(read, name, value))
-    if problems or not isinstance(read, Scene):
+        with _collected(problems):
+            if file is not None:
+                check_writable(file, option)
+    value: FloatArray | None = None
+    read: Scene | None = None
+    with _collected(problems):
+        _check_outputs(None, plot)
+    with _collected(problems):
+        value = _vector(to)
+    with _collected(problems):
+        read = read_scene(scene, settings)
+        _check_input(read, name, value)
+    if problems or read is None:
         raise SceneError(*problems)
     return read, np.asarray(value)
 
@@ -395,30 +394,46 @@ def _check_sweep(
     """The sweep that is asked for.
 
     Raises:
-        SceneError: with every fault of the scene, the table and the places to write to.
+        SceneError: with every fault of the scene, the table, the options and the places to write to.
     """
     problems: list[Problem] = []
-    found: list[Any] = []
-    steps: list[Callable[[], object]] = [
-        lambda: _check_outputs(None, plot),
-        lambda: read_scene(scene, settings),
-        lambda: read_table(over),
-    ]
-    for step in steps:
-        try:
-            found.append(step())
-        except SceneError as error:
-            problems.extend(error.problems)
-    if len(found) < len(steps):
-        # Without scene or table the output is all that can still be looked at.
-        problems += output_problems(output, None)
+    read: Scene | None = None
+    table: Table | None = None
+    plan: Plan | None = None
+    with _collected(problems):
+        _check_outputs(None, plot)
+    with _collected(problems):
+        read = read_scene(scene, settings)
+    with _collected(problems):
+        table = read_table(over)
+    with _collected(problems):
+        if read is None or table is None:
+            # Without them the output is all that can still be looked at.
+            problems += output_problems(output, None)
+        else:
+            plan = plan_sweep(read, table, output, samples)
+    problems += _colour_problems(colour, plot, plan)
+    if problems or plan is None:
         raise SceneError(*problems)
-    plan = plan_sweep(found[1], found[2], output, samples)
-    if colour is not None:
-        known = ("outcome", *plan.columns)
-        if colour not in known:
-            raise SceneError(Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(known)}"))
     return plan
+
+
+def _colour_problems(colour: str | None, plot: Path | None, plan: Plan | None) -> Iterator[Problem]:
+    """Why a figure cannot be coloured so."""
+    if colour is not None and plot is None:
+        yield Problem("--colour", "is for a figure", "name its file with --plot")
+    known = () if plan is None else ("outcome", *plan.columns)
+    if colour is not None and known and colour not in known:
+        yield Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(known)}")
+
+
+@contextmanager
+def _collected(problems: list[Problem]) -> Iterator[None]:
+    """Faults that are told together with others: what is refused inside is kept, and the check goes on."""
+    try:
+        yield
+    except SceneError as error:
+        problems.extend(error.problems)
 
 
 def _check_input(scene: Scene, name: str, value: object) -> None:
@@ -484,13 +499,37 @@ class Rate(ProgressColumn):
         return Text(f"{task.speed:,.0f}/s" if task.speed else "")
 
 
-def _stages(bar: Progress) -> Callable[[str, int, int], None]:
-    """Shows one stage after the other; each has its own rate."""
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], None]]:
+    """What raises an interrupt again that has been lost.
+
+    CasADi calls Python to look at its arguments, and takes whatever that raises for a refusal of the argument.
+    """
+    seen: list[int] = []
+
+    def interrupt(number: int, frame: object) -> None:
+        seen.append(number)
+        raise KeyboardInterrupt
+
+    def stop() -> None:
+        if seen:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _stages(bar: Progress, stop: Callable[[], None]) -> Callable[[str, int, int], None]:
+    """Shows one stage after the other, each with its own rate, unless all is to stop."""
     task = bar.add_task("Reading the table", total=None)
     doing = ""
 
     def told(stage: str, done: int, total: int) -> None:
         nonlocal doing
+        stop()
         if stage == doing:
             bar.update(task, completed=done, total=total or None)
         else:
@@ -509,9 +548,20 @@ def _reporter(bar: Progress) -> Callable[[str, int, int], None]:
 @contextmanager
 def _told(doing: str) -> Iterator[tuple[Told, Report]]:
     """A bar on standard error: who is told the share that is done, and who is told the stage."""
-    with _progress() as bar:
+    with _progress() as bar, _interrupts() as stop:
         task = bar.add_task("Building the model", total=1.0)
-        yield (
-            lambda share: bar.update(task, completed=share),
-            lambda stage: bar.update(task, description=f"{doing}: {stage}", completed=0.0),
-        )
+
+        def told(share: float) -> None:
+            stop()
+            bar.update(task, completed=share)
+
+        def said(stage: str) -> None:
+            stop()
+            bar.update(task, description=f"{doing}: {stage}", completed=0.0)
+
+        try:
+            yield told, said
+        except KeyboardInterrupt:
+            # Typer would end without a word.
+            bar.console.print("Stopped. Nothing was written.")
+            raise typer.Exit(INTERRUPTED) from None

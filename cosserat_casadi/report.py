@@ -173,10 +173,10 @@ def print_stopped_sweep(console: Console, plan: Plan) -> None:
 def _sweep_choice(chosen: dict[str, Any], tolerance: float) -> str:
     given = chosen["discretisation"]
     if given is None:
-        return "Modes and nodes are those of the scene."
-    words = f"Modes {given['modes']}, {given['nodes']} intervals, chosen on {len(chosen['rows'])} rows"
+        return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
+    words = f"Modes {given['modes']}, {given['nodes']} intervals, chosen on {_rows(len(chosen['rows']))}"
     if chosen["error_estimate"] is None:
-        return f"{words}, [bold red]none of which has an equilibrium.[/]"
+        return f"{escape(words)}, [bold red]none of which has an equilibrium.[/]"
     some = "" if chosen["converged"] == len(chosen["rows"]) else f", {chosen['converged']} of which have an equilibrium"
     missed = "[bold red]more than[/]" if chosen["error_estimate"] > tolerance else "within"
     return f"{escape(words)}{some}: estimated error {chosen['error_estimate']:.1e}, {missed} {tolerance:g}."
@@ -192,26 +192,31 @@ def _sweep_check(checked: list[dict[str, Any]], tolerance: float) -> list[str]:
     unstable = [one["row"] + 1 for one in kept if one["stable"] is False]
     said = []
     if kept:
-        error, apart = (max(one[word] or 0.0 for one in kept) for word in ("error_estimate", "difference"))
+        error = max(np.inf if one["error_estimate"] is None else one["error_estimate"] for one in kept)
+        apart = max(one["difference"] for one in kept)
         verdict = "within" if error <= tolerance else "[bold red]more than[/]"
         said.append(
-            f"{len(kept)} rows solved again in Python: estimated error at most {error:.1e}, {verdict} {tolerance:g}; "
+            f"{_rows(len(kept))} solved again in Python: estimated error at most {error:.1e}, {verdict} {tolerance:g}; "
             f"poses differ by at most {apart:.1e}."
         )
     if lost:
-        said.append(f"[bold red]Python found no equilibrium for rows {_listed(lost)}.[/]")
+        said.append(f"[bold red]Python found no equilibrium for {_listed(lost)}.[/]")
     if off:
-        said.append(f"[bold red]Python found another equilibrium for rows {_listed(off)}.[/]")
+        said.append(f"[bold red]Python found another equilibrium for {_listed(off)}.[/]")
     if unstable:
         said.append(
-            f"[bold yellow]Of the rows solved again, {_listed(unstable)} are unstable:[/] a real rod leaves them. "
+            f"[bold yellow]Unstable among these: {_listed(unstable)}.[/] A real rod leaves such an equilibrium. "
             "The stability of other rows is not judged."
         )
     return said
 
 
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count:,} rows"
+
+
 def _listed(numbers: Sequence[int]) -> str:
-    return ", ".join(map(str, numbers))
+    return f"row{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
 
 
 def print_refusal(console: Console, error: SceneError | ExportError) -> None:

@@ -30,7 +30,9 @@ COLOURS = ("#4477aa", "#ccbb44", "#aa3377", "#ee6677", "#cc3311", "#ee7733")
 
 
 def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -> None:
-    """Draw the workspace of a sweep into a file, whole or not at all; the same sweep gives the same bytes.
+    """Draw where the last rod or body of a sweep can be into a file, whole or not at all.
+
+    The same sweep gives the same bytes.
 
     Args:
         sweep: results.
@@ -140,7 +142,7 @@ def _plane(points: FloatArray) -> tuple[int, int] | None:
 def _thinned(chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
     """Places of the chosen rows; of very many every so many."""
     rows = np.flatnonzero(chosen)
-    return rows[:: 1 + len(rows) // MOST_POINTS]
+    return rows[:: max(1, -(-len(rows) // MOST_POINTS))]
 
 
 def _subtitle(sweep: Sweep) -> str:

@@ -248,7 +248,7 @@ def simulate(known: Solution, robot: Model, stage: ca.Function, solver: str, ste
             tensions = np.clip(controller.next_tensions(plan), LEAST, LARGEST)
         state = move(robot, tensions, HEAVIER if k >= steps // 2 else PAYLOAD, state)
         tip = state.tip().position[0]
-        predicted = solve(known.model, dict(zip(TENSIONS, tensions, strict=True)), start=known)
+        predicted = solve(known.model, dict(zip(TENSIONS, tensions, strict=True)), start=known, raise_on_failure=True)
         offset = tip - predicted.tip().position[0]
         wanted.append(ahead[0])
         tips.append(tip)

@@ -61,12 +61,12 @@ def check_scalar(model: Model) -> None:
     """Refuse a model that cannot be written as scalar instructions.
 
     Raises:
-        ExportError: a rod has the literal transport.
+        ExportError: the rotation of a rod is integrated by the literal linear system.
     """
     literal = [rod for rod, chosen in model.discretisation.items() if chosen.transport == "permuted"]
     if literal:
-        problem = "the literal transport is solved with pivoting, which has no scalar form"
-        raise ExportError(*[Problem(f"rods.{rod}", problem, "leave transport out") for rod in literal])
+        problem = "the literal linear system of the rotation is solved with pivoting, which has no scalar form"
+        raise ExportError(*[Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal])
 
 
 def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Function]:

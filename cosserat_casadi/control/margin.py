@@ -42,10 +42,10 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
 
     Raises:
         SceneError: the loads have no potential, or a cable may go slack.
-        ValueError: the width is not positive.
+        ValueError: the width is not positive, or not finite.
     """
-    if not width > 0.0:
-        raise ValueError(f"the width of a soft minimum is positive, got {width}")
+    if not 0.0 < width < np.inf:
+        raise ValueError(f"the width of a soft minimum is positive and finite, got {width}")
     check_potential(model, model.pack())
     _refuse_slack(model)
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)

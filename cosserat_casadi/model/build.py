@@ -205,7 +205,7 @@ def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | No
             :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
 
     Raises:
-        SceneError: joints over-constrain.
+        SceneError: joints over-constrain, or leave a body free to turn.
     """
     check_constraints(scene)
     chosen = discretise(scene) if discretisation is None else discretisation

@@ -111,6 +111,22 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
         raise SceneError(Problem("", "is nested too deeply for a scene")) from None
 
 
+def place_of(mapping: Mapping[str, Any], key: str) -> FaultPath:
+    """Path of what an override with this key sets: two keys of one path set the same.
+
+    Args:
+        mapping: tables of a scene.
+        key: left side of an override, such as ``push.force`` or ``loads[0].force``.
+
+    Raises:
+        SceneError: there is nothing of that name to set.
+    """
+    try:
+        return _assign(_copy(mapping), key, 0.0).leaf
+    except _Refused as error:
+        raise SceneError(Problem(key, *error.args)) from None
+
+
 def _validated(tables: Any, overrides: Sequence[str]) -> Scene:
     if not isinstance(tables, dict):
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))

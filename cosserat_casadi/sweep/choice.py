@@ -33,7 +33,7 @@ class Choice:
     Attributes:
         discretisation: of all rods; None where the scene fixes it itself.
         rows: rows of the table that it was chosen on.
-        converged: how many of them have an equilibrium.
+        converged: how many of them have an equilibrium on it.
         error_estimate: the largest of them on this discretisation; None where the scene chose, or none converged.
     """
 
@@ -90,8 +90,9 @@ def choose(found: Variants, values: FloatArray, samples: int, told: Told) -> Cho
     kept = [i for i, solution in enumerate(alone) if solution.converged]
     used = kept or list(range(len(cases)))
     chosen, together = refine([cases[i] for i in used], [alone[i] for i in used], solved)  # type: ignore[arg-type]
-    estimates = [s.error_estimate for s in together if s.converged and s.error_estimate is not None]
-    return Choice(chosen, tuple(rows), len(kept), max(estimates, default=None))
+    reached = [solution for solution in together if solution.converged]
+    estimates = [s.error_estimate for s in reached if s.error_estimate is not None]
+    return Choice(chosen, tuple(rows), len(reached), max(estimates, default=None))
 
 
 def check(found: Variants, choice: Choice, results: FloatArray, told: Told) -> list[dict[str, Any]]:
@@ -120,6 +121,7 @@ def check(found: Variants, choice: Choice, results: FloatArray, told: Told) -> l
             difference = pose_difference(results[row], solution)
             words |= {"error_estimate": solution.error_estimate, "difference": difference, "stable": solution.stable}
         judged.append(words)
+    told("Checking rows", len(spread), len(spread))
     return judged
 
 

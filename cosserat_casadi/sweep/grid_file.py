@@ -9,6 +9,7 @@ one rod drawn is met under all loads.
 from __future__ import annotations
 
 import math
+import sys
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ MOST_ROWS = 20_000_000
 
 RANGE = ("from", "to", "count")
 RANDOM = {"uniform": "low and high", "normal": "mean and deviation"}
+BEYOND = "leads beyond the largest number"
 REMEDY = "write { from = -1, to = 1, count = 21 }, a list of numbers, { uniform = [0, 1] } or { normal = [0, 1] }"
 
 
@@ -51,7 +53,7 @@ def read_grid(path: Path) -> tuple[tuple[str, ...], FloatArray]:
         tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(Problem(str(path), f"cannot be read: {error}")) from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise SceneError(Problem(str(path), f"is not TOML: {error}")) from None
     return grid(tables, str(path))
 
@@ -112,6 +114,8 @@ def _range(given: Mapping[str, Any]) -> FloatArray:
     if count > MOST_ROWS:
         raise _Refused(f"asks for {count:,} values", f"at most {MOST_ROWS:,}")
     ends = _number(given["from"]), _number(given["to"])
+    if not math.isfinite(ends[1] - ends[0]):
+        raise _Refused(BEYOND, REMEDY)
     if count == 1 and ends[0] != ends[1]:
         raise _Refused("has one value between two ends", "count at least 2, or a number")
     return np.linspace(*ends, count)
@@ -127,13 +131,16 @@ def _random(given: Mapping[str, Any]) -> _Random:
     first, second = map(_number, numbers)
     if (kind == "uniform" and not first < second) or (kind == "normal" and not second > 0):
         raise _Refused(f"{kind} = {numbers} is no range", "low < high; a deviation is > 0")
+    # No draw lies a hundred deviations off.
+    if not math.isfinite(second - first if kind == "uniform" else abs(first) + 100 * second):
+        raise _Refused(BEYOND, REMEDY)
     return _Random(kind, (first, second))
 
 
 def _samples(tables: Mapping[str, Any], where: str, random: bool, problems: list[Problem]) -> int:
     """How often random columns are drawn; faults of ``samples`` and ``seed`` go to the problems."""
     for key, least in (("samples", 1), ("seed", 0)):
-        if key in tables and not isinstance(tables[key], dict):
+        if key in tables:
             try:
                 _whole(tables[key], key, least)
             except _Refused as error:
@@ -162,7 +169,7 @@ def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int) 
 
 
 def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise _Refused(f"must be a finite number, got {shown(value)}", REMEDY)
     return float(value)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from types import TracebackType
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep.work import Chunk, Part, solve_parts
 from cosserat_casadi.sweep.worker import Worker
@@ -17,9 +18,15 @@ AHEAD = 4
 
 
 class Cores:
-    """So many chunks at once; results come as they are ready."""
+    """So many chunks at once; results come as they are ready.
+
+    Raises:
+        SceneError: there is no core to work.
+    """
 
     def __init__(self, count: int | None = None) -> None:
+        if count is not None and count < 1:
+            raise SceneError(Problem("--cores", f"must be at least 1, got {count}"))
         self.count = count or available_cores()
         self._pool = ThreadPoolExecutor(self.count)
         self._own = threading.local()

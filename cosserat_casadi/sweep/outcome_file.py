@@ -75,7 +75,7 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
 
 
 def read_sweep(path: str | Path) -> Sweep:
-    """Read results that were written, with their record.
+    """Read results that were written, with their record where that lies beside them.
 
     Raises:
         SceneError: the file cannot be read, or is not of a sweep.

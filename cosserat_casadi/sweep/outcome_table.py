@@ -25,7 +25,7 @@ class Sweep:
         found: columns of the results: iterations, residual, poses of tips and bodies, what actuators exert.
         values: numbers of both, shape (rows, len(swept) + len(found)); NaN in place of results where none was found.
         outcomes: how each row ended, as its place in LABELS, shape (rows,).
-        record: what was computed, how and how well, as plain data: the file beside the results.
+        record: what was computed, how and how well, as plain data: the file beside the results; empty without it.
     """
 
     swept: tuple[str, ...]
@@ -57,13 +57,18 @@ class Sweep:
 
     @property
     def holds(self) -> bool:
-        """Whether some row converged, and every row that was looked at is within the scene's tolerance."""
+        """Whether some row converged, and every row that was looked at is within the scene's tolerance.
+
+        Without a record nothing says so.
+        """
+        if not self.record:
+            return False
         tolerance = self.record["tolerance"]
         chosen = self.record["chosen"]["error_estimate"]
         looked_at = [0.0 if chosen is None else chosen]
         for one in self.record["checked"]:
             looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
-        return bool(self.converged.any()) and max(looked_at) <= tolerance
+        return bool(self.converged.any()) and all(error <= tolerance for error in looked_at)
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).

@@ -69,7 +69,7 @@ class Plan:
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of numbers that the results will have."""
-        # What is swept and found alike, such as a given tension, is in the table already.
+        # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
         found = [name for name in row_results(self.scene)[1:] if name not in self.table.columns]
         return (*self.table.columns, *found)
 
@@ -97,16 +97,15 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
         samples: rows that the discretisation is chosen on, at least 1.
 
     Raises:
-        SceneError: with every fault of table and output.
+        SceneError: with every fault of scene, table and output.
         ExportError: there is no C compiler, or two things of the scene would have one name in C.
     """
-    problems: list[Problem] = []
+    problems = list(_repeated_columns(scene))
     plan = None
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
         plan = Plan(scene, table, variants(scene, table), output, samples)
-        problems += _clashing_columns(plan)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -135,7 +134,7 @@ def sweep_scene(
         output: file to write, ``.csv`` or ``.parquet``, with a record of what was computed beside it. What a killed or
             interrupted run of the same sweep has done is not done again.
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
-        cores: how many of them; all by default.
+        cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
         progress: told what is being done, how much of it is done, and of how much.
 
@@ -169,7 +168,7 @@ def run_sweep(
         return read_sweep(plan.output)
     told = progress or (lambda doing, done, total: None)
     # A cluster that does not answer is told of before the discretisation is chosen.
-    with Cores(cores) if scheduler is None else Cluster(scheduler) as machine:
+    with _machine(scheduler, cores) as machine:
         store = None if plan.part is None else Store(plan.part)
         with store or nullcontext():
             choice, done = _begun(plan, store, told)
@@ -180,6 +179,16 @@ def run_sweep(
                 write_sweep(sweep, plan.output)
                 store.remove()
     return sweep
+
+
+def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
+    """What does the work."""
+    if scheduler is None:
+        return Cores(cores)
+    if cores is not None:
+        remedy = "leave it out beside --scheduler: a cluster has its own"
+        raise SceneError(Problem("--cores", "are those of this machine", remedy))
+    return Cluster(scheduler)
 
 
 def _begun(plan: Plan, store: Store | None, told: Told) -> tuple[Choice, dict[int, FloatArray]]:
@@ -262,10 +271,13 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
     }
 
 
-def _clashing_columns(plan: Plan) -> Iterator[Problem]:
-    for column in plan.table.columns:
-        if column in row_results(plan.scene)[:3]:
-            yield Problem(plan.table.where, f"{column!r} is a column of the results", "rename it")
+def _repeated_columns(scene: Scene) -> Iterator[Problem]:
+    """Bodies whose poses could not be told from those of rods."""
+    rods = {rod.name for rod in scene.rods}
+    for i, body in enumerate(scene.bodies):
+        if body.name in rods:
+            problem = f"{body.name!r} is the name of a rod too: their columns could not be told apart"
+            yield Problem(f"bodies[{i}].name", problem, "rename one")
 
 
 def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:

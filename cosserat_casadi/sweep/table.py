@@ -60,7 +60,7 @@ def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
     Raises:
         SceneError: there is no row, lengths differ, or a value is not a finite number.
     """
-    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in columns.items()}
+    arrays = {name: _column(name, values) for name, values in columns.items()}
     lengths = {len(array) for array in arrays.values() if array.ndim == 1} or {1}
     problems = [
         Problem(name, f"must be a number or a list of numbers, got {array.ndim} dimensions")
@@ -78,6 +78,13 @@ def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
         raise SceneError(*problems)
     count = max(lengths)
     return Table(tuple(arrays), np.column_stack([np.broadcast_to(a, count) for a in arrays.values()]), "table")
+
+
+def _column(name: str, values: npt.ArrayLike) -> FloatArray:
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise SceneError(Problem(name, "must be a number or a list of numbers")) from None
 
 
 def shortened(problems: list[Problem], where: str) -> list[Problem]:

@@ -7,8 +7,11 @@ of equal parameters share a scene.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,13 +19,19 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.load_cases import column_places
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.scene import Scene, scene_from_dict
+from cosserat_casadi.scene.reading import place_of
 from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweep.table import Table, shortened
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds")
 """Tables of a scene that are no property of what is computed."""
+
+
+STIFFNESS = ("material", "section", "stiffness", "linear_density")
+"""Tables and numbers of a rod that say how it yields, not where it is."""
 
 
 @dataclass(frozen=True)
@@ -72,11 +81,12 @@ def variants(scene: Scene, table: Table) -> Variants:
     others = [k for k in range(len(table.columns)) if k not in chosen]
     inputs = np.tile(layout.pack(), (len(table.values), 1))
     inputs[:, [places[table.columns[k]] for k in chosen]] = table.values[:, chosen]
-    problems = [*_refused_inputs(free, layout, inputs, table)]
+    parameters = tuple(table.columns[k] for k in others)
+    problems = [*_set_twice(free, [*layout.names, *parameters], table), *_refused_inputs(free, layout, inputs, table)]
     entries = list(_entries(free, table, others, problems))
     if problems:
         raise SceneError(*shortened(problems, table.where))
-    return Variants(tuple(entries), inputs, layout, tuple(table.columns[k] for k in others))
+    return Variants(tuple(entries), inputs, layout, parameters)
 
 
 def _freed(scene: Scene, columns: Sequence[str]) -> Scene:
@@ -98,26 +108,64 @@ def _input_name(column: str) -> str:
     return ".".join(words[: 3 if words[1:2] == ["base"] else 2])
 
 
+def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Problem]:
+    """Names of inputs and parameters that set one thing: one of them would count for nothing."""
+    tables, places = scene_tables(scene), dict[str, tuple[str | int, ...]]()
+    for name in names:
+        # What is not there to be set is told with the row that would set it.
+        with suppress(SceneError):
+            # A tangent is one more way to give the orientation.
+            places[name] = place_of(tables, name.replace(".base.tangent", ".base.quaternion"))
+    for (one, first), (other, second) in combinations(places.items(), 2):
+        shared = min(len(first), len(second))
+        if first[:shared] == second[:shared]:
+            remedy = "name what is swept in one way: push.force.x, wire.section.radius"
+            yield Problem(table.where, f"{other!r} sets what {one!r} sets", remedy)
+
+
 def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: list[Problem]) -> Iterator[Variant]:
     if not parameters:
+        try:
+            check_constraints(scene)
+        except SceneError as error:
+            problems += error.problems
         yield Variant(scene, np.arange(len(table.values)))
         return
-    columns = [table.columns[k] for k in parameters]
-    reserved = [c for c in columns if c.replace("[", ".").split(".")[0] in NOT_PARAMETERS]
+    names = [table.columns[k] for k in parameters]
+    reserved = [c for c in names if c.replace("[", ".").split(".")[0] in NOT_PARAMETERS]
     problems += [Problem(table.where, f"{c!r} cannot be swept", "change it with --set for all rows") for c in reserved]
-    if reserved:
-        return
-    tables = scene_tables(scene)
-    seen = set[str]()
+    if not reserved:
+        yield from _scenes(scene_tables(scene), table, parameters, problems)
+
+
+def _scenes(
+    tables: Mapping[str, Any], table: Table, parameters: Sequence[int], problems: list[Problem]
+) -> Iterator[Variant]:
+    """A scene for each set of parameters; a fault is told once, with the first row that has it."""
+    columns = [table.columns[k] for k in parameters]
+    seen, moved = set[str](), any(_moves_joints(tables, column) for column in columns)
     for values, rows in _groups(table.values[:, list(parameters)]):
         overrides = [f"{column}={float(value)!r}" for column, value in zip(columns, values, strict=True)]
         try:
-            yield Variant(scene_from_dict(tables, overrides), rows)
+            variant = Variant(scene_from_dict(tables, overrides), rows)
+            # Building a model would find it too, but in a worker; it takes as long as that.
+            if moved or rows[0] == 0:
+                check_constraints(variant.scene)
+            yield variant
         except SceneError as error:
             for problem in error.problems:
                 if str(problem) not in seen:
                     seen.add(str(problem))
                     problems.append(_told(problem, table, int(rows[0])))
+
+
+def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:
+    """Whether what joints hold may depend on a parameter."""
+    try:
+        table, *_, field = place_of(tables, column)[:3]
+    except SceneError:
+        return False
+    return table != "actuators" and field not in STIFFNESS
 
 
 def _groups(values: FloatArray) -> Iterator[tuple[FloatArray, npt.NDArray[np.int64]]]:

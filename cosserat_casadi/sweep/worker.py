@@ -44,7 +44,7 @@ class Worker:
             process.stdin.flush()
             found: FloatArray = pickle.load(process.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
-            message = f"a process of the sweep ended with {process.wait()}; the same command goes on"
+            message = f"a process of the sweep ended with {process.wait()}; what an output keeps is not done again"
             raise SolveError(message) from None
         return found
 

@@ -178,7 +178,7 @@ def test_what_cannot_be_emitted_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no name for a C library"):
         acados_expressions(wire(), "my wire")
     literal = wire(transport="permuted")
-    with pytest.raises(ExportError, match="no scalar form"):
+    with pytest.raises(ExportError, match=r"no scalar form.*accuracy\.rotation"):
         write_acados(literal, tmp_path / "wire", "wire")
     assert not (tmp_path / "wire").exists()
     (tmp_path / "mine").mkdir()

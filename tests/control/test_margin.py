@@ -247,7 +247,7 @@ def test_refusals() -> None:
     cable = {"name": "cable", "kind": "tendon", "rod": "rod", "length": 0.78, "slack": True, "offset": [0.05, 0.0]}
     with pytest.raises(SceneError, match=r"actuators\[0\].slack: a cable that may go slack"):
         stability_margin(build(scene(actuators=[cable])))
-    for width in (0.0, -1.0, float("nan")):
+    for width in (0.0, -1.0, float("nan"), float("inf")):
         with pytest.raises(ValueError, match="positive"):
             stability_margin(build(column()), width)
 

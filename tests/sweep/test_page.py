@@ -52,6 +52,7 @@ def test_every_outcome_is_named() -> None:
         assert f"`{label}`" in PAGE
 
 
+@pytest.mark.slow
 def test_python_of_the_page_runs() -> None:
     (code,) = blocks("python")
     done = subprocess.run(
@@ -78,6 +79,7 @@ def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
     assert (tmp_path / "workspace.parquet").exists()
 
 
+@pytest.mark.slow
 def test_wires_drawn_from_tolerances_are_solved(tmp_path: Path) -> None:
     """A stiffer wire bends less: the tips of 16 drawn wires lie in the order of their bending stiffness."""
     grid = ROOT / "examples" / "sweeps" / "wire_tolerances.toml"

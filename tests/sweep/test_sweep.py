@@ -126,6 +126,9 @@ def test_rows_without_an_equilibrium_show_none(tmp_path: Path) -> None:
         assert row["iterations"].isdigit()
     assert_array_equal(read_sweep(file).values, found.values)
     assert json.loads(record_file(file).read_text())["outcomes"] == found.counts
+    record_file(file).unlink()
+    assert_array_equal(read_sweep(file).values, found.values)
+    assert not read_sweep(file).holds
 
 
 def test_the_discretisation_is_chosen_for_all_rows() -> None:

@@ -76,6 +76,12 @@ def test_draws_stand_beside_every_combination() -> None:
         ("samples = 2\nseed = 1\na.b = [1]", "samples: stands without random columns"),
         ("samples = 0\nseed = 1\na.b = { uniform = [1, 2] }", "samples must be a whole number >= 1"),
         ('a.b = 1\n"a.b" = 2', "twice"),
+        ("samples = 2\nseed = {}\na.b = { uniform = [1, 2] }", "seed must be a whole number >= 0, got a table"),
+        ("samples.x = 2\nseed = 1\na.b = { uniform = [1, 2] }", "samples must be a whole number >= 1, got a table"),
+        (f"a.b = 1{400 * '0'}", "finite number"),
+        ("a.b = { from = -1.7e308, to = 1.7e308, count = 3 }", "beyond the largest number"),
+        ("samples = 2\nseed = 1\na.b = { uniform = [-1.7e308, 1.7e308] }", "beyond the largest number"),
+        ("samples = 2\nseed = 1\na.b = { normal = [0, 1.7e308] }", "beyond the largest number"),
     ],
 )
 def test_faults_of_a_grid(text: str, said: str) -> None:
@@ -90,8 +96,12 @@ def test_every_fault_of_a_grid_is_told_at_once() -> None:
 
 def test_files_that_are_none(tmp_path: Path) -> None:
     (tmp_path / "bad.toml").write_text("a = [")
-    for name, said in (("none.toml", "cannot be read"), ("bad.toml", "is not TOML"), ("none.csv", "cannot be read")):
-        with pytest.raises(SceneError, match=said):
+    (tmp_path / "long.toml").write_text(f"a = 1{5000 * '0'}")
+    for name in ("none.toml", "none.csv"):
+        with pytest.raises(SceneError, match="cannot be read"):
+            read_table(tmp_path / name)
+    for name in ("bad.toml", "long.toml"):
+        with pytest.raises(SceneError, match="is not TOML"):
             read_table(tmp_path / name)
 
 
@@ -115,6 +125,8 @@ def test_arrays_that_are_no_table() -> None:
         ({"a": [1, 2], "b": [1, 2, 3]}, "2, 3 rows"),
         ({"a": [[1]]}, "2 dimensions"),
         ({"a": [np.inf]}, "not a finite number"),
+        ({"a": ["x"]}, "a: must be a number"),
+        ({"a": [1, [2, 3]]}, "a: must be a number"),
     ):
         with pytest.raises(SceneError, match=said):
             table_of(columns)
@@ -161,6 +173,43 @@ def test_columns_that_are_refused(columns: dict[str, list[float]], said: str) ->
     with pytest.raises(SceneError) as refused:
         variants(PLANAR, table_of(columns))
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [
+        ("push.force.x", "push.force[1]"),
+        ("push.force.x", "loads[0].force[0]"),
+        ("rod.length", "rods.rod.length"),
+        ("rod.base.quaternion.w", "rod.base.tangent[0]"),
+        ("rod.stiffness.bending_y", "rods[0].stiffness.bending_y"),
+    ],
+)
+def test_two_names_of_one_thing_are_refused(columns: tuple[str, str]) -> None:
+    with pytest.raises(SceneError, match=r"sets what '.*' sets"):
+        variants(PLANAR, table_of({name: [0.1, 0.2] for name in columns}))
+
+
+def test_entries_of_one_vector_may_be_parameters() -> None:
+    found = variants(PLANAR, table_of({"push.force[0]": [0.1, 0.2], "push.force[1]": [0.3, 0.3]}))
+    assert [entry.scene.loads[0].force for entry in found.entries] == [(0.1, 0.3, -0.4), (0.2, 0.3, -0.4)]  # type: ignore[union-attr]
+
+
+def test_joints_that_hold_too_little_are_refused_with_their_row() -> None:
+    """A plate on three spherical joints: in the second row they lie on one line."""
+    rods = [
+        rod("kirchhoff", name=name, base={"position": [x, 0, 0]}) for name, x in (("a", 0.0), ("b", 0.1), ("c", 0.2))
+    ]
+    joints = [
+        {"body": "plate", "rod": name, "kind": "spherical", "position": [x, y, 0]}
+        for name, x, y in (("a", 0.0, 0.0), ("b", 0.1, 0.0), ("c", 0.2, 0.1))
+    ]
+    given = scene(rods=rods, bodies=[{"name": "plate"}], joints=joints)
+    with pytest.raises(SceneError, match=r"table, row 2, bodies\[0\]: nothing holds the orientation of 'plate'"):
+        variants(given, table_of({"joints[2].position[1]": [0.1, 0.0]}))
+    joints[2]["position"] = [0.2, 0.0, 0.0]
+    with pytest.raises(SceneError, match=r"^bodies\[0\]: nothing holds the orientation of 'plate'"):
+        variants(scene(rods=rods, bodies=[{"name": "plate"}], joints=joints), table_of({"a.length": [0.8]}))
 
 
 def test_a_tension_below_zero_is_refused() -> None:

@@ -1,0 +1,105 @@
+"""The command as a whole: options that are refused before anything is computed or written, and interrupts."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cosserat_casadi import SceneError, Solution, solve_scene, sweep_scene
+from cosserat_casadi.cli import INTERRUPTED, REFUSED, app, run
+from cosserat_casadi.scene.writing import scene_text
+from tests.scenes import rod, scene
+from tests.sweep.conftest import PLANAR
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "scene.toml").write_text(scene_text(PLANAR))
+    (tmp_path / "grid.toml").write_text("push.force.x = [0.0, 0.1]")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "400")
+    return tmp_path
+
+
+def refused(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    before = sorted(file.name for file in folder.iterdir())
+    monkeypatch.setattr(sys, "argv", ["cosserat", "sweep", "scene.toml", "--over", "grid.toml", *words])
+    assert run(app) == REFUSED
+    assert sorted(file.name for file in folder.iterdir()) == before
+    return capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--output", "a.csv", "--colour", "rod.x"), ["--colour: is for a figure"]),
+        (("--output", "a.csv", "--plot", "a.png", "--colour", "x"), ["'x' is no column (there are outcome, push.f"]),
+        (("--output", "a.csv", "--cores", "0"), ["--cores"]),
+        (("--output", "a.csv", "--cores", "1", "--scheduler", "tcp://127.0.0.1:1"), ["--cores: are those of this"]),
+        (("--output", "no/a.csv", "--colour", "rod.x"), ["the folder no does not exist", "--colour: is for a figure"]),
+        (("--output", "no/a.csv", "--plot", "a.bmp", "--over", "b.csv"), ["folder no", "--plot", "b.csv: cannot be"]),
+    ],
+)
+def test_options_that_are_refused(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    words: tuple[str, ...],
+    said: list[str],
+) -> None:
+    told = refused(folder, monkeypatch, capsys, *words)
+    for one in said:
+        assert one in told
+
+
+def test_the_extra_that_lacks_is_named_whole(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert "pip install 'cosserat-casadi[sweep]'" in refused(folder, monkeypatch, capsys, "--output", "a.parquet")
+
+
+def test_no_core_is_refused() -> None:
+    with pytest.raises(SceneError, match="--cores: must be at least 1, got 0"):
+        sweep_scene(PLANAR, {"push.force.x": [0.1]}, cores=0)
+
+
+def test_a_body_named_as_a_rod_is_refused() -> None:
+    joint = {"body": "rod", "rod": "rod", "kind": "fixed"}
+    given = scene(rods=[rod()], bodies=[{"name": "rod", "mass": 0.1}], joints=[joint])
+    with pytest.raises(SceneError, match=r"bodies\[0\]\.name: 'rod' is the name of a rod too"):
+        sweep_scene(given, {"rod.length": [0.5]})
+
+
+@pytest.mark.usefixtures("quick_compiler")
+@pytest.mark.parametrize("command", ["sweep", "solve"])
+def test_an_interrupt_that_is_lost_stops_the_command(
+    command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As CasADi loses what is raised while it looks at its arguments."""
+
+    def lose(*given: Any, **more: Any) -> Solution:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+        except KeyboardInterrupt:
+            lost.append(True)
+        return solve_scene(*given, **more)
+
+    lost: list[bool] = []
+    monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.cli.solve_scene", lose)
+    words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
+    monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words, "--output", "out.csv"])
+    before = signal.getsignal(signal.SIGINT)
+    assert run(app) == INTERRUPTED
+    assert lost == [True]
+    assert signal.getsignal(signal.SIGINT) is before
+    assert not (folder / "out.csv").exists()
+    assert "Stopped" in capsys.readouterr().err
