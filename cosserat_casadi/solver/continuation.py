@@ -213,6 +213,6 @@ def _tangent(path: Path, here: NewtonResult, t: float) -> FloatArray:
 
 
 def _stalled(path: Path, here: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
-    """The last point, which was found roughly, in equilibrium."""
+    """The last point, which was found roughly, as near to equilibrium as Newton brings it."""
     end = newton(path.at(here.t), here.x, limits.newton)
     return ContinuationResult(end.x, Outcome.LOAD_STALLED, end.residual_norm, iterations + end.iterations, here.t)

@@ -127,7 +127,7 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         damped = damped or length < 1.0
         if length == 1.0:
             secant.steps.append(step)
-            rough = length_of(step) * norm <= settings.rough * before
+            rough = length_of(step) * norm < settings.rough * before
         keep = length == 1.0 and norm <= KEPT_DECREASE * before and len(secant.steps) < KEPT_STEPS
 
 

@@ -1367,7 +1367,7 @@ static correction newton(const point *at, const limits *most, real *q, secant *k
       memcpy(kept->steps[kept->count], step, sizeof step);
       kept->squares[kept->count] = square;
       kept->count++;
-      if ((real)sqrt((double)square) * norm <= most->rough * before) end.status = SIX_ROD_PLATFORM_CONVERGED;
+      if ((real)sqrt((double)square) * norm < most->rough * before) end.status = SIX_ROD_PLATFORM_CONVERGED;
     }
     keep = length == 1 && norm <= KEPT_DECREASE * before && kept->count < KEPT_STEPS;
   }

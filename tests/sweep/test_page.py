@@ -52,7 +52,6 @@ def test_every_outcome_is_named() -> None:
         assert f"`{label}`" in PAGE
 
 
-@pytest.mark.slow
 def test_python_of_the_page_runs() -> None:
     (code,) = blocks("python")
     done = subprocess.run(
