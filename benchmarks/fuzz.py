@@ -56,7 +56,7 @@ def summary(found: dict[int, Verdict]) -> str:
     figures = (
         f"{len(found):,} scenes; {len(faulty)} with a fault; longest {longest:.0f} s. Violation of the weak form by "
         f"what converged: median {weak[len(weak) // 2]:.0e}, 95 % {weak[int(0.95 * (len(weak) - 1))]:.0e}, "
-        f"worst {weak[-1]:.0e}, on a coarse discretisation whose estimate of its own error says so."
+        f"worst {weak[-1]:.0e}, in the stress between the nodes of a discretisation that the user fixed too coarse."
     )
     return "\n".join(["| outcome | | scenes |", "|---|---|---|", *rows, "", figures])
 

@@ -18,10 +18,12 @@ UNIT = 1e-9
 ROUNDING = 1e-8
 """Violation of the weak form that is not asked about: rounding of long stiff rods, and of the check itself."""
 
-SLACK, SLACK_STRAIN = 10.0, 1000.0
+SLACK, SLACK_STRAIN = 10.0, 1e4
 """Factors on the estimated error of the shape: for poses, and for stresses, which follow derivatives of the shape.
 
-The tip's own estimate is no measure here: the tip is superconvergent, the strain between the nodes is not.
+Of stresses no result claims an error. On fixed discretisations as coarse as nine modes on seven nodes theirs was up to
+8 300 times that of the shape, while the poses were within their estimates. The tip's own estimate is no measure here:
+the tip is superconvergent, the strain between the nodes is not.
 """
 
 
