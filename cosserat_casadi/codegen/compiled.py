@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -131,7 +131,7 @@ class Compiled:
         given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(_pointer(given), _pointer(q), ctypes.byref(info))
+        self._function("solve")(pointer(given), pointer(q), ctypes.byref(info))
         return _solution(q, info)
 
     def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
@@ -143,7 +143,7 @@ class Compiled:
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
         q, info = _vector(start, self.size, "start").copy(), _Info()
-        self._function("follow")(_pointer(old), _pointer(given), _pointer(q), ctypes.byref(info))
+        self._function("follow")(pointer(old), pointer(given), pointer(q), ctypes.byref(info))
         return _solution(q, info)
 
     def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
@@ -156,7 +156,7 @@ class Compiled:
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
         q, infos = np.zeros((len(given), self.size)), (_Info * len(given))()
-        self._function("solve_batch")(len(given), _pointer(given), _pointer(q), infos)
+        self._function("solve_batch")(len(given), pointer(given), pointer(q), infos)
         return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
 
     def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
@@ -186,9 +186,7 @@ class Compiled:
         unknowns = _vector(q, self.size, "q")
         count = len(self._names.rods) + len(self._names.bodies)
         d_q, d_poses = np.zeros((len(given), self.size)), np.zeros((count, len(given), 7))
-        status = self._function("solve_sensitivity")(
-            _pointer(given), _pointer(unknowns), _pointer(d_q), _pointer(d_poses)
-        )
+        status = self._function("solve_sensitivity")(pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses))
         return None if status != 0 else (d_q.T, [pose.T for pose in d_poses])
 
     @cached_property
@@ -261,6 +259,16 @@ def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], c
             remedy = "name a folder for it in the environment variable XDG_CACHE_HOME"
             raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
     return target
+
+
+def compiled_texts(name: str, texts: Mapping[str, str], compiler: str) -> Path:
+    """As :func:`shared_object`, of sources and headers that are texts by file name."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder) / file for file in texts]
+        for path in paths:
+            path.write_text(texts[path.name], encoding="utf-8")
+        sources, headers = ([path for path in paths if path.suffix == suffix] for suffix in (".c", ".h"))
+        return shared_object(name, sources, headers, compiler)
 
 
 def _compile(compiler: str, sources: Sequence[Path], target: Path) -> None:
@@ -336,7 +344,8 @@ def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     return vector
 
 
-def _pointer(array: FloatArray) -> Any:
+def pointer(array: FloatArray) -> Any:
+    """An array as an argument of a function in C."""
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 

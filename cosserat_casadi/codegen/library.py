@@ -46,15 +46,16 @@ def library_sources(
     words = _words(model, names, parts, error_estimate)
     name = names.name
     return {
-        f"{name}.h": _render("library.h.in", words),
-        f"{name}.c": _render("library.c.in", words),
-        f"{name}_demo.c": _render("demo.c.in", words),
-        "CMakeLists.txt": _render("CMakeLists.txt.in", words),
-        "README.md": _render("README.md.in", words),
+        f"{name}.h": render("library.h.in", words),
+        f"{name}.c": render("library.c.in", words),
+        f"{name}_demo.c": render("demo.c.in", words),
+        "CMakeLists.txt": render("CMakeLists.txt.in", words),
+        "README.md": render("README.md.in", words),
     }
 
 
-def _render(template: str, words: dict[str, Any]) -> str:
+def render(template: str, words: dict[str, Any]) -> str:
+    """A template of this package with its words filled in."""
     text = (resources.files("cosserat_casadi.codegen") / "templates" / template).read_text(encoding="utf-8")
     return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
@@ -74,7 +75,7 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
         **_unknown_words(model),
         **rods[0],
         **_pose_words(names),
-        **(dense_words(_render, basics) if parts is None else block_words(_render, basics, parts)),
+        **(dense_words(render, basics) if parts is None else block_words(render, basics, parts)),
         "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
         "functions": _rendered({"rod.c.in": rods, "actuator.c.in": actuators, "body.c.in": bodies}),
         "pose_jacobians": ", ".join(
@@ -90,7 +91,7 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
 
 
 def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
-    return "".join(_render(template, words) for template, wordings in entries.items() for words in wordings)
+    return "".join(render(template, words) for template, wordings in entries.items() for words in wordings)
 
 
 def _sizes(model: Model, names: Names) -> dict[str, Any]:

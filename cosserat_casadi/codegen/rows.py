@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import ctypes
-import re
-import tempfile
 import threading
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
-from pathlib import Path
 
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.compiled import find_compiler, shared_object
+from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler, pointer
 from cosserat_casadi.codegen.export import kernel_sources
 from cosserat_casadi.codegen.kernels import kernels
-from cosserat_casadi.codegen.library import library_sources
+from cosserat_casadi.codegen.library import library_sources, render
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -62,7 +57,7 @@ class RowLibrary:
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
         found = np.empty((len(given), self.results))
-        _loaded(self.files)[f"{NAME}_rows"](len(given), _pointer(given), _pointer(found))
+        _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(found))
         return found
 
 
@@ -109,8 +104,7 @@ def _rows_source(model: Model, names: Names, results: int) -> str:
         lines.append(f"    {function}(q, given, here + {place}, here + {place + 1}, slope);")
         place += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
-    template = resources.files("cosserat_casadi.codegen") / "templates" / "rows.c.in"
-    return re.sub(r"@\{(\w+)\}", lambda match: words[match[1]], template.read_text(encoding="utf-8"))
+    return render("rows.c.in", words)
 
 
 def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
@@ -121,17 +115,4 @@ def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 @cache
 def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(_object(dict(files), find_compiler())))
-
-
-def _object(files: Mapping[str, str], compiler: str) -> Path:
-    with tempfile.TemporaryDirectory() as folder:
-        paths: Sequence[Path] = [Path(folder) / name for name in files]
-        for path in paths:
-            path.write_text(files[path.name], encoding="utf-8")
-        sources, headers = ([path for path in paths if path.suffix == suffix] for suffix in (".c", ".h"))
-        return shared_object(NAME, sources, headers, compiler)
-
-
-def _pointer(array: FloatArray) -> ctypes.c_void_p:
-    return array.ctypes.data_as(ctypes.c_void_p)
+    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler())))

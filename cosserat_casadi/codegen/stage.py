@@ -7,13 +7,11 @@ here the Jacobian is one function in C, and so is the second derivative. CasADi 
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 
 import casadi as ca
 
-from cosserat_casadi.codegen.compiled import find_compiler, shared_object
+from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import body_pose, sources, tip
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
@@ -44,17 +42,10 @@ def compiled_stage(
     library_names(name)
     check_scalar(model)
     found = find_compiler(compiler)
-    with tempfile.TemporaryDirectory() as scratch:
-        texts: dict[str, str] = {}
-        for function in stage_functions(model, name, curvature):
-            texts |= sources([function], function.name(), "long long int")
-        for file, text in texts.items():
-            (Path(scratch) / file).write_text(text, encoding="utf-8")
-        paths = [Path(scratch) / file for file in texts]
-        library = shared_object(
-            name, [p for p in paths if p.suffix == ".c"], [p for p in paths if p.suffix == ".h"], found
-        )
-    return ca.external(name, os.fspath(library))
+    texts: dict[str, str] = {}
+    for function in stage_functions(model, name, curvature):
+        texts |= sources([function], function.name(), "long long int")
+    return ca.external(name, os.fspath(compiled_texts(name, texts, found)))
 
 
 def check_scalar(model: Model) -> None:

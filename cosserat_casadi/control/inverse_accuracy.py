@@ -40,19 +40,18 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         SceneError: as in :func:`inverse`.
     """
     accuracy = scene.accuracy
-    fixed = any(choice is not None for choice in (accuracy.modes, accuracy.nodes, accuracy.rotation))
-    model, start = (build(scene) if fixed else _finer(scene, LADDER[0])), None
+    model, start = (build(scene) if accuracy.fixed else _finer(scene, LADDER[0])), None
     for modes in LADDER[1:]:
         if report is not None:
             report(f"{model.size} unknowns, {max(d.nodes for d in model.discretisation.values())} intervals")
         found = inverse(model, start=start, stable=stable)
         if not found.solution.converged and found.solution.outcome is not Outcome.UNRESOLVED:
             return found
-        fine = _finer(scene, max(modes, _most(model) + 4) if fixed else modes, found.solution)
+        fine = _finer(scene, max(modes, _most(model) + 4) if accuracy.fixed else modes, found.solution)
         start = solve(fine, found.values, start=prolong(found.solution, fine))
         judged = _estimated(found, start)
         estimate = judged.solution.error_estimate
-        if fixed or (estimate is not None and estimate <= accuracy.tolerance):
+        if accuracy.fixed or (estimate is not None and estimate <= accuracy.tolerance):
             return judged
         model = fine
     return _unresolved(found)

@@ -102,6 +102,11 @@ class Accuracy(Record):
         "'permuted' linear system",
     )
 
+    @property
+    def fixed(self) -> bool:
+        """Whether the scene itself chooses what it is computed with, or part of that."""
+        return any(choice is not None for choice in (self.modes, self.nodes, self.rotation))
+
 
 # Rods
 

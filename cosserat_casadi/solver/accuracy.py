@@ -257,9 +257,7 @@ def solve_scene(
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
     climb = _Climb(scene, values, progress, report, stable)
-    accuracy = scene.accuracy
-    chosen = any(choice is not None for choice in (accuracy.modes, accuracy.nodes, accuracy.rotation))
-    found = climb.fixed() if chosen else climb.ladder()
+    found = climb.fixed() if scene.accuracy.fixed else climb.ladder()
     if climb.settled and found.stable and PATH_OF_ENERGY not in found.message:
         found = replace(found, message=found.message + PATH_OF_ENERGY)
     if stable and found.converged and not found.stable and NONE_STABLE not in found.message:

@@ -74,7 +74,7 @@ def choose(found: Variants, values: FloatArray, samples: int, told: Told) -> Cho
         told: told what is being done.
     """
     accuracy = found.entries[0].scene.accuracy
-    if any(choice is not None for choice in (accuracy.modes, accuracy.nodes, accuracy.rotation)):
+    if accuracy.fixed:
         return Choice(None)
     rows = representative_rows(values, samples)
     cases = [(unfixed(found.of_row(row).scene, accuracy.tolerance), _values(found, row)) for row in rows]
