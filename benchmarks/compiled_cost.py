@@ -1,7 +1,7 @@
 """What discretisations of random scenes cost once compiled, beside what the solver foresees without building them.
 
 Rows go to build/dial/compiled.csv one by one: the same command goes on where it was stopped. How far the law is from
-them is printed; its factors in solver/cost.py were fitted to these rows.
+them is printed; its factors in accuracy/cost.py were fitted to these rows.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from rich.progress import Progress
 from rows import append, read
 
 from cosserat_casadi import build, solve_scene
+from cosserat_casadi.accuracy.cost import STRAIGHT, foreseen_time, spread_on
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.cost import STRAIGHT, foreseen_time, spread_on
 
 FILE = Path(__file__).parents[1] / "build" / "dial" / "compiled.csv"
 FIRST = 3000
@@ -56,7 +56,7 @@ class Compiled:
 
 def compiled(model: Model, seed: int, tolerance: float) -> Compiled | None:
     """None where the program does not converge."""
-    d, rod = model.discretisation[ROD], model.frame.bases[ROD].rod
+    d, rod = model.discretisation[ROD], model.discrete.rods[ROD].properties
     program = Program(model, find_compiler())
     instructions = scalar(model.path_jacobian, "jacobian").n_instructions()
     program.wait()

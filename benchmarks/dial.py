@@ -3,7 +3,7 @@
 The true error of a pick is its distance to shooting (the strong form, DOP853 at 1e-13), which starts from a far finer
 discretisation; where shooting does not get there, that one stands in. The cheapest discretisation is searched by brute
 force: all intervals and integrators of a wide window, and for each the modes of every component by several greedy
-descents. Candidates cheaper than the pick, by the time that solver/cost.py foresees, are built, solved and judged by
+descents. Candidates cheaper than the pick, by the time that accuracy/cost.py foresees, are built, solved and judged by
 their true error, cheapest first. For a sample of picks, pick and cheapest are compiled with gcc -O2 and timed.
 
 Rows go to build/dial/*.csv one by one: Ctrl-C keeps them, and the same command goes on where it was stopped.
@@ -26,14 +26,14 @@ from rich.progress import Progress
 from rows import append, read
 
 from cosserat_casadi import Solution, build, discretise, solve, solve_scene
+from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
+from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.refine import largest_turn, prolong
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.accuracy import largest_turn, prolong
-from cosserat_casadi.solver.cost import foreseen_time, spread_on
-from cosserat_casadi.solver.preview import Preview
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
@@ -148,10 +148,10 @@ def judged(row: Row, solution: Solution, truth: np.ndarray, followed: np.ndarray
 
 def true_tip(near: Solution) -> tuple[np.ndarray, str]:
     """Tip of shooting that starts at the clamp's wrench of a solution; that of a far finer solution where it fails."""
-    basis, base = near.model.frame.bases[ROD], near.base_wrench(ROD)
+    basis, base = near.model.discrete.rods[ROD], near.base_wrench(ROD)
     values = load_values(near.model.scene, near.model.inputs, near.inputs)
     try:
-        state = shoot(near.model.scene, basis.rod, values, [1.0], np.concatenate([base.force, base.moment]))
+        state = shoot(near.model.scene, basis.properties, values, [1.0], np.concatenate([base.force, base.moment]))
     except ShootingError:
         return tip(far_finer(near)), "finer"
     return np.concatenate([state.position[0] / state.length, state.rotation[0].ravel()]), "shooting"
@@ -191,7 +191,7 @@ def distance(a: np.ndarray, b: np.ndarray) -> float:
 
 def cost_of(solution: Solution, candidate: Discretisation) -> float:
     model = solution.model
-    return foreseen_time(model.frame.bases[ROD].rod, candidate, spread_on(model.scene, ROD))
+    return foreseen_time(model.discrete.rods[ROD].properties, candidate, spread_on(model.scene, ROD))
 
 
 def words(d: Discretisation) -> str:
@@ -259,7 +259,7 @@ class Brute:
         enough = self.fewest_uniform(np.zeros_like(self.preview.tips))
         modes = {ROD: tuple(m + 1 for m in enough or self.near.modes)}
         x = self.preview.with_modes(modes)
-        turning = len(self.preview.model.frame.bases[ROD].rod.turning_axes)
+        turning = len(self.preview.model.discrete.rods[ROD].properties.turning_axes)
         for transport in ("magnus4", "magnus6", "magnus8") if turning > 1 else ("magnus6",):
             met = 0
             for nodes in range(2, self.near.nodes + 8):

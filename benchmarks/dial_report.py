@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.plot import figure_class, write_figure
+from cosserat_casadi.plots.scene_plot import figure_class, write_figure
 
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- dial: written by benchmarks/dial.py -->", "<!-- end of dial -->"
@@ -111,7 +111,8 @@ def _law_sentence(rows: list[RowDict]) -> str:
     ratio = np.log(times / _numbers(rows, "foreseen"))
     off = np.exp(np.abs(ratio - np.median(ratio)))
     return (
-        "Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by the law of `solver/cost.py`. "
+        "Cost is the time of residual and Jacobian compiled with gcc -O2, as foreseen by "
+        "the law of `accuracy/cost.py`. "
         f"From the {len(rows)} compiled discretisations it was fitted to, {times.min():.2g} to {times.max():.3g} µs, "
         f"it is off by a factor {np.median(off):.2f} in the median, {off.max():.2f} at worst."
     )

@@ -23,8 +23,8 @@ from rich.table import Table
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from cosserat_casadi import Model, build, discretise, read_scene, scene_from_dict
-from cosserat_casadi.solver.continuation import ContinuationResult, ContinuationSettings, follow
-from cosserat_casadi.solver.load_path import load_path
+from cosserat_casadi.equilibrium.load_path import load_path
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
 from tests.reference.random_scenes import random_scene
 from tests.scenes import WEIGHT, scene
 

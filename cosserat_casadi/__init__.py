@@ -4,26 +4,27 @@ scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Func
 Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
 """
 
+from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.mesh import discretise
-from cosserat_casadi.path_file import path_result
-from cosserat_casadi.result_file import result, write_result
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
+from cosserat_casadi.paths.refine import follow_scene_path
+from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.results.inverse_file import inverse_result
+from cosserat_casadi.results.path_file import path_result
+from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.solver.accuracy import solve_scene
-from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.path import EquilibriumPath, PathEvent, follow_path
-from cosserat_casadi.solver.path_accuracy import follow_scene_path
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import solve
-from cosserat_casadi.solver.trace import PathOutcome
-from cosserat_casadi.solver.tuning import Tuning, tune
 from cosserat_casadi.sweep import Sweep, read_sweep, sweep_scene
 
 __all__ = [
@@ -52,6 +53,7 @@ __all__ = [
     "follow_path",
     "follow_scene_path",
     "inverse",
+    "inverse_result",
     "inverse_scene",
     "load",
     "parse_scene",

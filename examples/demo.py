@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from cosserat_casadi.cli import app, run
+from cosserat_casadi.cli.main import app, run
 
 SCENES = (
     "planar_strip",

@@ -28,7 +28,7 @@ def blocks() -> list[tuple[str, str, str]]:
 
 
 def run_lines(text: str, folder: Path) -> None:
-    words = {"cosserat": f'"{sys.executable}" -c "from cosserat_casadi.cli import main; main()"'}
+    words = {"cosserat": f'"{sys.executable}" -c "from cosserat_casadi.cli.main import main; main()"'}
     lines = "\n".join(re.sub(r"^cosserat\b", lambda _: words["cosserat"], line) for line in text.splitlines())
     done = subprocess.run(["sh", "-e", "-c", lines], cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"

@@ -17,7 +17,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import ActuationStress
 from tests.initial_value import integrate
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
@@ -233,7 +233,7 @@ def test_actuation_stress_bends_to_the_curvature_it_balances() -> None:
     plain = RodProperties(
         "r", 0.5, tuple(range(6)), "legendre", lambda X: np.tile(hooke, (len(X), 1)), ((0.0,),) * 5 + ((1.0,),)
     )
-    basis = StrainBasis(plain, Discretisation((3,) * 6, 8))
+    basis = DiscreteRod(plain, Discretisation((3,) * 6, 8))
     wrench = np.array([0.3, -0.4, 0.2, 1.0, -2.0, 3.0])
     q = np.linalg.solve(basis.stiffness, -_actuation(basis, np.zeros(basis.size), -wrench))
     assert_allclose(_actuation(basis, q, -wrench) + basis.stiffness @ q, 0.0, rtol=0, atol=1e-14)
@@ -241,7 +241,7 @@ def test_actuation_stress_bends_to_the_curvature_it_balances() -> None:
     assert_allclose(strain, np.tile([0, 0, 0, 0, 0, 1] + wrench / hooke, (3, 1)), rtol=0, atol=1e-12)
 
 
-def _actuation(basis: StrainBasis, q: np.ndarray, stress: np.ndarray) -> np.ndarray:
+def _actuation(basis: DiscreteRod, q: np.ndarray, stress: np.ndarray) -> np.ndarray:
     import casadi as ca
 
     action = ActuationStress(ca.DM(stress), np.ones((1, basis.grid.size)))

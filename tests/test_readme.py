@@ -62,7 +62,7 @@ def test_there_are_ten_commands() -> None:
 @pytest.mark.parametrize("line", commands())
 def test_commands_of_the_readme_run(line: str, tmp_path: Path) -> None:
     words = shlex.split(line.replace("examples/", f"{ROOT}/examples/"))
-    code = "from cosserat_casadi.cli import main; main()"
+    code = "from cosserat_casadi.cli.main import main; main()"
     done = subprocess.run(
         [sys.executable, "-c", code, *words[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
     )
@@ -70,7 +70,7 @@ def test_commands_of_the_readme_run(line: str, tmp_path: Path) -> None:
 
 
 def test_every_effect_is_in_the_table() -> None:
-    from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
+    from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
 
     for kind in (*EFFECTS, *SUPPORTS):
         assert f"`{kind}`" in README

@@ -7,7 +7,7 @@ from contextlib import ExitStack, closing
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.model.build import build
-from cosserat_casadi.price import without_load
+from cosserat_casadi.model.price import without_load
 
 
 def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[str, Times | str]]:

@@ -9,16 +9,16 @@ from math import inf, isfinite, nan
 from typing import Any
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.cost import foreseen_operations
+from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.reference import Errors, Reference, with_tolerance
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.solver.accuracy import solve_scene
-from cosserat_casadi.solver.cost import foreseen_operations
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import solve
 
 LARGEST = 400_000
 """Scalar operations of residual and Jacobian beyond which they are not counted and the compiler is not asked."""
@@ -154,7 +154,7 @@ class Trial:
     def _virtual_times(self) -> dict[str, Any]:
         x, inputs = self.solution.x, self.solution.inputs
         rod = self.model.scene.rods[0]
-        arguments = (x[self.model.frame.rod_slices[rod.name]], *base_pose(rod), inputs)
+        arguments = (x[self.model.discrete.rod_slices[rod.name]], *base_pose(rod), inputs)
         igm = self.model.igm[rod.name]
         return {
             "vm_igm_us": _best(lambda: igm(*arguments)),
@@ -208,8 +208,10 @@ def _too_large(model: Model) -> str:
     intervals = max(d.nodes for d in model.discretisation.values())
     if _is_literal(model):
         return f"not compiled: literal system of {intervals} intervals" if intervals > LARGEST_LITERAL else ""
-    bases = model.frame.bases.values()
-    operations = sum(foreseen_operations(basis.rod, basis.discretisation).all for basis in bases)
+    bases = model.discrete.rods.values()
+    operations = sum(
+        foreseen_operations(discrete_rod.properties, discrete_rod.discretisation).all for discrete_rod in bases
+    )
     return f"not compiled: about {operations:,.0f} operations" if operations > LARGEST else ""
 
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.preview import watched
+from cosserat_casadi.accuracy.refine import prolong, solve_scene
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.model.mesh import discretise
-from cosserat_casadi.solver.accuracy import prolong, solve_scene
-from cosserat_casadi.solver.preview import watched
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import solve
 
 FINEST = 1e-10
 """Tolerance of the solution that the finest discretisation is derived from."""
@@ -94,10 +94,10 @@ def find_reference(scene: scenes.Scene) -> Reference:
 def states(solution: Solution) -> dict[str, RodState]:
     """What is compared of a solution."""
     found = {}
-    for name, basis in solution.model.frame.bases.items():
+    for name, discrete_rod in solution.model.discrete.rods.items():
         pose, base = solution.pose(watched(solution.model, name), name), solution.base_wrench(name)
         wrench = np.concatenate([base.force, base.moment])
-        found[name] = RodState(basis.rod.length, pose.position, pose.rotation, wrench)
+        found[name] = RodState(discrete_rod.properties.length, pose.position, pose.rotation, wrench)
     return found
 
 
@@ -137,8 +137,8 @@ def _shot(finest: Solution, fine: dict[str, RodState]) -> dict[str, RodState]:
     model = finest.model
     values = load_values(model.scene, model.inputs, finest.inputs)
     return {
-        name: shoot(model.scene, basis.rod, values, list(watched(model, name)), fine[name].base_wrench)
-        for name, basis in model.frame.bases.items()
+        name: shoot(model.scene, discrete_rod.properties, values, list(watched(model, name)), fine[name].base_wrench)
+        for name, discrete_rod in model.discrete.rods.items()
     }
 
 

@@ -36,7 +36,7 @@ class Assembled:
 
 def assembled(model: Model, names: Names) -> Assembled | None:
     """The equations of an assembly in parts; None where one dense Jacobian does."""
-    found = blocks(model.frame, model.path_jacobian.sparsity_out(0))
+    found = blocks(model.discrete, model.path_jacobian.sparsity_out(0))
     if found is None:
         return None
     residual = _path_function(model.path_residual, dense=True)

@@ -14,7 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.model.system import Frame
+from cosserat_casadi.model.system import DiscreteScene
 
 BORDER = -1
 """Owner of what belongs to no rod."""
@@ -117,17 +117,17 @@ class Blocks:
         return [i + j * self.pattern.size1() for i, j in zip(rows, columns, strict=True)]
 
 
-def blocks(frame: Frame, pattern: ca.Sparsity) -> Blocks | None:
+def blocks(frame: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
     """Blocks of a scene's Jacobian; None where there is one rod alone, or nothing couples them, or too much does."""
-    literal = any(basis.discretisation.transport == "permuted" for basis in frame.bases.values())
-    if len(frame.bases) < 2 or not frame.couplings.moving or literal:
+    literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in frame.rods.values())
+    if len(frame.rods) < 2 or not frame.couplings.moving or literal:
         return None
     found = Blocks(_owners(frame), pattern)
     return found if found.separate else None
 
 
-def _owners(frame: Frame) -> list[int]:
-    numbers, owners = {rod: i for i, rod in enumerate(frame.bases)}, [BORDER] * frame.size
+def _owners(frame: DiscreteScene) -> list[int]:
+    numbers, owners = {rod: i for i, rod in enumerate(frame.rods)}, [BORDER] * frame.size
     owned: list[tuple[str, slice]] = list(frame.rod_slices.items())
     owned += _with_rods([support.rod for support, _ in frame.holds], frame.hold_slices)
     owned += [(tie.rod, frame.tie_slices[tie.where]) for tie in frame.couplings.ties]

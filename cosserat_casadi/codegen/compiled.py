@@ -27,7 +27,7 @@ from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.numerics.outcome import Outcome
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 

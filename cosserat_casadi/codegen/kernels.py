@@ -8,10 +8,10 @@ from pathlib import Path
 
 import casadi as ca
 
+from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.cost import STRAIGHT
 
 GENERATOR = {"with_header": True, "static_aux": True}
 

@@ -16,13 +16,13 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.equilibrium.judge import NEAR
+from cosserat_casadi.equilibrium.load_path import first_step, step_shares
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver import newton
-from cosserat_casadi.solver.continuation import MOST_BENT, ContinuationSettings
-from cosserat_casadi.solver.judgement import NEAR
-from cosserat_casadi.solver.load_path import first_step, step_shares
-from cosserat_casadi.solver.secant import SINGULAR
+from cosserat_casadi.numerics import newton
+from cosserat_casadi.numerics.broyden import SINGULAR
+from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
@@ -188,7 +188,7 @@ def _unknown_word(entry: dict[str, Any]) -> str:
 def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
     words = {word: names.function(word, rod) for word in FUNCTIONS}
     kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
-    basics = {"name": names.name, "rod": rod, "coordinates": model.frame.bases[rod].size}
+    basics = {"name": names.name, "rod": rod, "coordinates": model.discrete.rods[rod].size}
     return {**words, **kernels, **basics}
 
 

@@ -9,10 +9,10 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import ROD_UNITS
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
@@ -99,7 +99,7 @@ def _output_entries(model: Model) -> dict[str, Any]:
         found["actuators"] = actuator_entries(model)
     if model.scene.bodies:
         found["bodies"] = [body.name for body in model.scene.bodies]
-        rods = [{"rod": rod} for rod in model.frame.bases]
+        rods = [{"rod": rod} for rod in model.discrete.rods]
         found["sensitivities"] = [*rods, *({"body": body} for body in found["bodies"])]
     return found
 
@@ -107,26 +107,26 @@ def _output_entries(model: Model) -> dict[str, Any]:
 def unknown_entries(model: Model) -> list[dict[str, Any]]:
     """Unknowns in the order of their vector: strain coordinates, multipliers, moving frames, unknown tensions."""
     entries: list[dict[str, Any]] = []
-    for rod, basis in model.frame.bases.items():
-        first = model.frame.rod_slices[rod].start
-        for component, columns in basis.columns.items():
-            count = basis.at_nodes[component].shape[1]
+    for rod, discrete_rod in model.discrete.rods.items():
+        first = model.discrete.rod_slices[rod].start
+        for component, columns in discrete_rod.columns.items():
+            count = discrete_rod.at_nodes[component].shape[1]
             start = columns.start if isinstance(columns, slice) else columns[0]
             entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
-    first = model.frame.strain_size
-    for support, hold in model.frame.holds:
+    first = model.discrete.strain_size
+    for support, hold in model.discrete.holds:
         entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
         first += hold.size
-    for tie in model.frame.couplings.ties:
-        place = model.frame.tie_slices[tie.where]
+    for tie in model.discrete.couplings.ties:
+        place = model.discrete.tie_slices[tie.where]
         entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
-    for carrier, place in model.frame.moving_slices.items():
+    for carrier, place in model.discrete.moving_slices.items():
         holders = [joint.rod for joint in model.scene.joints if carrier == ("body", joint.body)]
         rod, frame = (holders or [carrier.name])[0], f"{carrier.kind} {carrier.name}"
         entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
-    for tendon, _ in model.frame.cables:
-        unit = model.frame.tension_unit(tendon.rod)
-        first = model.frame.tension_place(tendon.name)
+    for tendon, _ in model.discrete.cables:
+        unit = model.discrete.tension_unit(tendon.rod)
+        first = model.discrete.tension_place(tendon.name)
         entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
     return entries
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from cosserat_casadi.solver.cost import STRAIGHT
+from cosserat_casadi.accuracy.cost import STRAIGHT
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 

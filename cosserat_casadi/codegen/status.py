@@ -1,6 +1,6 @@
 """Statuses of the solver in C, and the outcomes that they are."""
 
-from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.numerics.outcome import Outcome
 
 OUTCOMES = (
     Outcome.CONVERGED,

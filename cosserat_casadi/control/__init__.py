@@ -4,7 +4,6 @@ from cosserat_casadi.control.embedding import Lifted, embedded, lifted
 from cosserat_casadi.control.goals import Gap
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
-from cosserat_casadi.control.inverse_file import inverse_result
 from cosserat_casadi.control.margin import stability_margin
 
 __all__ = [
@@ -13,7 +12,6 @@ __all__ = [
     "Lifted",
     "embedded",
     "inverse",
-    "inverse_result",
     "inverse_scene",
     "lifted",
     "stability_margin",

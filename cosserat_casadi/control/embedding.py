@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.newton import NewtonSettings
-from cosserat_casadi.solver.solution import Solution
+from cosserat_casadi.numerics.newton import NewtonSettings
 
 CERTIFIED = NewtonSettings().tolerance
 """Largest relative residual of a root that counts as an equilibrium."""

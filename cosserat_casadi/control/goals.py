@@ -8,10 +8,10 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.rotation import quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.solution import Solution
 
 
 @dataclass(frozen=True)

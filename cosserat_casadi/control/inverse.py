@@ -14,11 +14,11 @@ import numpy as np
 
 from cosserat_casadi.control.goals import Gap, deviations, gaps, length_of
 from cosserat_casadi.control.sought import Sought, scales, sought
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import check_potential, solve
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
 """Weights of the inputs' distance from where a round starts, the last one for all further rounds.

@@ -7,13 +7,13 @@ from dataclasses import replace
 from math import ceil
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import largest_turn, prolong, with_estimate
 from cosserat_casadi.control.inverse import Inverse, inverse
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.mesh import discretise, nodes_for
-from cosserat_casadi.solver.accuracy import largest_turn, prolong, with_estimate
-from cosserat_casadi.solver.outcome import Outcome
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import solve
+from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.numerics.outcome import Outcome
 
 LADDER = (6, 9, 12, 16, 21, 28, 36, 48)
 """Modes per strain component and element, rung by rung."""

@@ -15,11 +15,11 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.control.soft_minimum import soft_minimum
+from cosserat_casadi.equilibrium.solve import check_potential
+from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.solver.solve import check_potential
-from cosserat_casadi.solver.stability import variations
 
 WIDTH = 0.02
 """Width w of the soft minimum."""
@@ -83,10 +83,10 @@ def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
 
 def _growth(model: Model, x: Matrix) -> Matrix:
     """Variation of the length of each moving frame's quaternion, which moves nothing and is not admitted, k×size."""
-    frame = model.frame
+    discrete = model.discrete
     rows = []
-    for carrier, place in frame.moving_slices.items():
-        quaternion = ca.DM(frame.couplings.moving[carrier].start.quaternion) + x[place][3:]
+    for carrier, place in discrete.moving_slices.items():
+        quaternion = ca.DM(discrete.couplings.moving[carrier].start.quaternion) + x[place][3:]
         rows.append(ca.horzcat(ca.MX(1, place.start + 3), quaternion.T, ca.MX(1, model.size - place.stop)))
     return ca.vertcat(ca.MX(0, model.size), *rows)
 
@@ -95,7 +95,7 @@ def _elastic(model: Model) -> FloatArray:
     """Second variation of the elastic energy of the unloaded rods, n×n; zero for moving frames."""
     whole = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
     elastic = np.zeros_like(whole)
-    for place in model.frame.rod_slices.values():
+    for place in model.discrete.rod_slices.values():
         elastic[place, place] = whole[place, place]
     free = variations(model).free
     scaled = _shares(model)[:, None] * elastic[np.ix_(free, free)]

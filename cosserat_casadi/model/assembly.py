@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from cosserat_casadi.effects.effect import BodyAction
-from cosserat_casadi.effects.joint import Joint, Placement
-from cosserat_casadi.effects.registry import EFFECTS
-from cosserat_casadi.effects.support import Pose
+from cosserat_casadi.constraints.joint import Joint, Placement
+from cosserat_casadi.constraints.tip_support import Pose
+from cosserat_casadi.loads.load import BodyAction
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame, Tie
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.reaction import Reaction
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ class Coupled:
     @property
     def couplings(self) -> Couplings:
         """What does not depend on the unknowns."""
-        return self.system.frame.couplings
+        return self.system.discrete.couplings
 
     @cached_property
     def placements(self) -> dict[Carrier, Placement]:
@@ -88,7 +88,7 @@ class Coupled:
 
     def multipliers(self, tie: Tie) -> Matrix:
         """Multipliers of a tie."""
-        return self.system.arguments.x[self.system.frame.tie_slices[tie.where]]
+        return self.system.arguments.x[self.system.discrete.tie_slices[tie.where]]
 
     @cached_property
     def gaps(self) -> list[Matrix]:
@@ -117,12 +117,12 @@ class Coupled:
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
-        frame = self.system.frame
-        slices = [*frame.rod_slices.values(), *frame.hold_slices, *frame.tie_slices.values()]
-        slices += [*frame.moving_slices.values(), *frame.tension_slices]
+        discrete = self.system.discrete
+        slices = [*discrete.rod_slices.values(), *discrete.hold_slices, *discrete.tie_slices.values()]
+        slices += [*discrete.moving_slices.values(), *discrete.tension_slices]
         blocks = Blocks([place.stop for place in slices])
         for rod, tangent in self.system.tangents.items():
-            blocks.add(frame.rod_slices[rod], frame.rod_slices[rod], tangent.jacobian)
+            blocks.add(discrete.rod_slices[rod], discrete.rod_slices[rod], tangent.jacobian)
         self._add_holds(blocks)
         self._add_lengths(blocks)
         for tie in self.couplings.ties:
@@ -153,7 +153,7 @@ class Coupled:
         return Placement(position, ca.DM(frame.start.quaternion) + moved[3:])
 
     def _deviation(self, carrier: Carrier) -> Matrix:
-        return self.system.arguments.x[self.system.frame.moving_slices[carrier]]
+        return self.system.arguments.x[self.system.discrete.moving_slices[carrier]]
 
     def _section(self, tie: Tie) -> Pose:
         place = self.system.rods[tie.rod].shape
@@ -202,7 +202,7 @@ class Coupled:
         body, found = self.couplings.moving[carrier].body, []
         if body is None:
             return []
-        for load in self.system.frame.scene.loads:
+        for load in self.system.discrete.scene.loads:
             effect = EFFECTS[load.kind]
             action = effect.on_body(load, body, self.system.values(load))
             if action is not None:
@@ -219,9 +219,9 @@ class Coupled:
         return force, moment, rotation @ ca.DM(action.position)
 
     def _add_holds(self, blocks: Blocks) -> None:
-        frame = self.system.frame
-        for (support, hold, _), place in zip(self.system.holds, frame.hold_slices, strict=True):
-            tangent, rod = self.system.tangents[support.rod], frame.rod_slices[support.rod]
+        discrete = self.system.discrete
+        for (support, hold, _), place in zip(self.system.holds, discrete.hold_slices, strict=True):
+            tangent, rod = self.system.tangents[support.rod], discrete.rod_slices[support.rod]
             moved, turned = tangent.position(-1), tangent.rotation_of(-1)
             blocks.add(rod, place, hold.force_variation(moved, turned))
             blocks.add(place, rod, self._scaled(hold.gap_variation(self.system.tip(support.rod), moved, turned)))
@@ -230,17 +230,17 @@ class Coupled:
 
     def _add_lengths(self, blocks: Blocks) -> None:
         """Rows of the cables of given length, and their tensions' columns in the rods' residuals."""
-        frame = self.system.frame
-        for length, place in zip(self.system.lengths, frame.tension_slices, strict=True):
-            rod = frame.rod_slices[length.cable.shape.basis.rod.name]
+        discrete = self.system.discrete
+        for length, place in zip(self.system.lengths, discrete.tension_slices, strict=True):
+            rod = discrete.rod_slices[length.cable.shape.rod.properties.name]
             blocks.add(rod, place, length.pull)
             blocks.add(place, rod, (length.gap_with_length * length.pull).T)
             blocks.add(place, place, length.gap_with_tension)
 
     def _add_gap(self, blocks: Blocks, tie: Tie) -> None:
         """Rows of a tie's gap, and its multipliers' columns in the rod's residual."""
-        frame, tangent = self.system.frame, self.system.tangents[tie.rod]
-        rows, rod, joint = frame.tie_slices[tie.where], frame.rod_slices[tie.rod], tie.joint
+        discrete, tangent = self.system.discrete, self.system.tangents[tie.rod]
+        rows, rod, joint = discrete.tie_slices[tie.where], discrete.rod_slices[tie.rod], tie.joint
         moved, turned = tangent.position(tie.node), tangent.rotation_of(tie.node)
         sides = (self._section(tie), self.base(tie.rod), self._other(tie))
         blocks.add(rod, rows, joint.force_with_strain(moved, turned))
@@ -248,7 +248,7 @@ class Coupled:
         own = self.couplings.carrier(tie.rod)
         for carrier, columns in ((own, joint.gap_with_base), (tie.other, joint.gap_with_other)):
             if carrier is not None:
-                blocks.add(rows, frame.moving_slices[carrier], self._scaled(columns(*sides) @ self._motion(carrier)))
+                blocks.add(rows, discrete.moving_slices[carrier], self._scaled(columns(*sides) @ self._motion(carrier)))
         self._add_give(blocks, rows)
 
     def _add_pull(self, blocks: Blocks, tie: Tie) -> None:
@@ -256,7 +256,7 @@ class Coupled:
         if tie.other is None:
             return
         base, other, joint = self.base(tie.rod), self.placements[tie.other], tie.joint
-        columns, arm = self.system.frame.tie_slices[tie.where], hat(joint.arm(other))
+        columns, arm = self.system.discrete.tie_slices[tie.where], hat(joint.arm(other))
         force, moment = (base.rotation @ unit for unit in joint.units())
         self._add_rows(blocks, tie.other, columns, -force, -(arm @ force) - moment)
         pulled, twisted = map(hat, self._tie_wrench(tie))
@@ -269,7 +269,7 @@ class Coupled:
         """What a frame's own turn does to its balance, the length of its quaternion, loads on the body."""
         frame, place = self.couplings.moving[carrier], self.placements[carrier]
         _, moment = self._resultants[carrier]
-        q, rows = place.quaternion, self.system.frame.moving_slices[carrier]
+        q, rows = place.quaternion, self.system.discrete.moving_slices[carrier]
         own = (ca.sumsqr(q) - 1) * ca.DM.eye(4) + 2 * q @ q.T - place.turned_moment(moment) / frame.unit
         blocks.add(rows, rows, self._scaled(ca.diagcat(ca.DM(3, 3), own)))
         for action in self._actions(carrier):
@@ -283,13 +283,13 @@ class Coupled:
 
     def _add_reaction(self, blocks: Blocks, name: str) -> None:
         """A carried rod: what it does to its base, and what the turn of its base does to it."""
-        frame, carrier, igm = self.system.frame, Carrier("rod", name), self.system.rods[name]
-        rotation, rod = self.placements[carrier].rotation, frame.rod_slices[name]
+        discrete, carrier, igm = self.system.discrete, Carrier("rod", name), self.system.rods[name]
+        rotation, rod = self.placements[carrier].rotation, discrete.rod_slices[name]
         reaction = Reaction(self.system.tangents[name], self.system.dead_wrenches(name))
         strained = (reaction.force_with_strain, reaction.moment_with_strain)
         self._add_rows(blocks, carrier, rod, *(-(rotation @ columns) for columns in strained))
         residual, force, moment = reaction.with_turn
-        blocks.add(rod, frame.moving_slices[carrier], residual @ rotation.T @ self._motion(carrier)[3:, :])
+        blocks.add(rod, discrete.moving_slices[carrier], residual @ rotation.T @ self._motion(carrier)[3:, :])
         force, moment = force - hat(igm.statics.base_force), moment - hat(igm.statics.base_moment)
         self._add_turn(blocks, carrier, carrier, *(-(rotation @ m @ rotation.T) for m in (force, moment)))
         for tie in self.couplings.ties:
@@ -300,7 +300,7 @@ class Coupled:
         """What a tie on a carried rod passes on to the rod's base."""
         rotation, (force, moment) = self.placements[carrier].rotation, joint.units()
         levered = hat(self._section(tie).position) @ force + moment
-        columns = self.system.frame.tie_slices[tie.where]
+        columns = self.system.discrete.tie_slices[tie.where]
         self._add_rows(blocks, carrier, columns, rotation @ force, rotation @ levered)
 
     def _motion(self, carrier: Carrier) -> Matrix:
@@ -310,13 +310,13 @@ class Coupled:
     def _add_turn(self, blocks: Blocks, carrier: Carrier, turning: Carrier, force: Matrix, moment: Matrix) -> None:
         """Variations of force and moment on a frame with the turn of a frame, 3×3 each, world axes."""
         turn = self._motion(turning)[3:, :]
-        self._add_rows(blocks, carrier, self.system.frame.moving_slices[turning], force @ turn, moment @ turn)
+        self._add_rows(blocks, carrier, self.system.discrete.moving_slices[turning], force @ turn, moment @ turn)
 
     def _add_rows(self, blocks: Blocks, carrier: Carrier, columns: slice, force: Matrix, moment: Matrix) -> None:
         """Variations of force and moment on a frame, 3×k each, as rows of its balance."""
         frame, turn = self.couplings.moving[carrier], self.placements[carrier].turn
         rows = ca.vertcat(-frame.length / frame.unit * force, turn.T @ moment / -frame.unit)
-        blocks.add(self.system.frame.moving_slices[carrier], columns, self._scaled(rows))
+        blocks.add(self.system.discrete.moving_slices[carrier], columns, self._scaled(rows))
 
     def _add_give(self, blocks: Blocks, rows: slice) -> None:
         if not self.system.whole:

@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
-from cosserat_casadi.model.constraints import check_constraints
+from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
-from cosserat_casadi.model.mesh import discretise
-from cosserat_casadi.model.system import Arguments, Frame, frame, ratio_of
+from cosserat_casadi.model.rank import check_constraints
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import Arguments, DiscreteScene, discrete_scene, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -31,120 +31,120 @@ class Model:
     Every function is exact for the discrete model and can be differentiated again.
 
     Attributes:
-        frame: the scene with its constant matrices.
+        discrete: the scene with its constant matrices.
     """
 
-    frame: Frame
+    discrete: DiscreteScene
 
     @property
     def scene(self) -> scenes.Scene:
         """The scene this is a model of."""
-        return self.frame.scene
+        return self.discrete.scene
 
     @property
     def inputs(self) -> InputLayout:
         """Names, order and default values of the inputs."""
-        return self.frame.layout
+        return self.discrete.layout
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
-        return self.frame.size
+        return self.discrete.size
 
     @property
     def discretisation(self) -> dict[str, Discretisation]:
         """Modes, nodes and element ends of every rod."""
-        return {name: basis.discretisation for name, basis in self.frame.bases.items()}
+        return {name: discrete_rod.discretisation for name, discrete_rod in self.discrete.rods.items()}
 
     @cached_property
     def residual(self) -> ca.Function:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return functions.residual(self.frame)
+        return functions.residual(self.discrete)
 
     @cached_property
     def jacobian(self) -> ca.Function:
         """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        return functions.jacobian(self.frame)
+        return functions.jacobian(self.discrete)
 
     @cached_property
     def input_jacobian(self) -> ca.Function:
         """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        return functions.input_jacobian(self.frame)
+        return functions.input_jacobian(self.discrete)
 
     @cached_property
     def path_residual(self) -> ca.Function:
         """(x, inputs, factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return functions.path_residual(self.frame)
+        return functions.path_residual(self.discrete)
 
     @cached_property
     def path_jacobian(self) -> ca.Function:
         """(x, inputs, factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return functions.path_jacobian(self.frame)
+        return functions.path_jacobian(self.discrete)
 
     @cached_property
     def path_rate(self) -> ca.Function:
         """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
-        return functions.path_rate(self.frame)
+        return functions.path_rate(self.discrete)
 
     @cached_property
     def path_tangent(self) -> ca.Function:
         """Inputs ↦ dx/dfactor of the unloaded scene, where the Jacobian is constant."""
-        return functions.path_tangent(self.frame)
+        return functions.path_tangent(self.discrete)
 
     @cached_property
     def coarseness(self) -> ca.Function:
         """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
-        return functions.coarseness(self.frame)
+        return functions.coarseness(self.discrete)
 
     @cached_property
     def igm(self) -> dict[str, ca.Function]:
         """For each rod (q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment)."""
-        return {rod: functions.igm(self.frame, rod) for rod in self.frame.bases}
+        return {rod: functions.igm(self.discrete, rod) for rod in self.discrete.rods}
 
     @cached_property
     def tip(self) -> dict[str, ca.Function]:
         """For each rod (x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
-        return {rod: functions.tip(self.frame, rod) for rod in self.frame.bases}
+        return {rod: functions.tip(self.discrete, rod) for rod in self.discrete.rods}
 
     @cached_property
     def tip_jacobian(self) -> dict[str, ca.Function]:
         """For each rod (x, inputs) ↦ derivatives of the tip's position and quaternion with x and with inputs."""
-        return {rod: functions.tip_jacobian(self.frame, rod) for rod in self.frame.bases}
+        return {rod: functions.tip_jacobian(self.discrete, rod) for rod in self.discrete.rods}
 
     @cached_property
     def shape(self) -> dict[str, ca.Function]:
         """For each rod (x, inputs, X) ↦ (position, quaternion) at any abscissa: the interpolant itself."""
-        return {rod: functions.shape(self.frame, rod) for rod in self.frame.bases}
+        return {rod: functions.shape(self.discrete, rod) for rod in self.discrete.rods}
 
     @cached_property
     def fields(self) -> dict[str, ca.Function]:
         """For each rod (x, inputs) ↦ position, quaternion, internal wrench at the nodes and the base wrench."""
-        return {rod: functions.fields(self.frame, rod) for rod in self.frame.bases}
+        return {rod: functions.fields(self.discrete, rod) for rod in self.discrete.rods}
 
     @cached_property
     def actuator(self) -> dict[str, ca.Function]:
         """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and the derivative with x."""
-        return {one.name: functions.actuator(self.frame, one.name) for one in self.scene.actuators}
+        return {one.name: functions.actuator(self.discrete, one.name) for one in self.scene.actuators}
 
     @cached_property
     def body(self) -> dict[str, ca.Function]:
         """For each rigid body (x, inputs) ↦ (position, quaternion, rotation), world frame."""
-        return {body.name: functions.body(self.frame, body.name) for body in self.scene.bodies}
+        return {body.name: functions.body(self.discrete, body.name) for body in self.scene.bodies}
 
     @cached_property
     def body_jacobian(self) -> dict[str, ca.Function]:
         """For each rigid body (x, inputs) ↦ derivatives of its position and quaternion with x and with inputs."""
-        return {body.name: functions.body_jacobian(self.frame, body.name) for body in self.scene.bodies}
+        return {body.name: functions.body_jacobian(self.discrete, body.name) for body in self.scene.bodies}
 
     @cached_property
     def energy(self) -> ca.Function:
         """(x, inputs) ↦ elastic energy of all rods, J."""
-        return functions.energy(self.frame)
+        return functions.energy(self.discrete)
 
     @cached_property
     def potential(self) -> ca.Function | None:
         """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
-        return functions.potential(self.frame)
+        return functions.potential(self.discrete)
 
     def operations(self, function: ca.Function) -> int:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
@@ -156,7 +156,7 @@ class Model:
         Raises:
             KeyError: there is no such rod, or there are several to choose from.
         """
-        names = list(self.frame.bases)
+        names = list(self.discrete.rods)
         if rod is None and len(names) == 1:
             return names[0]
         if rod not in names:
@@ -165,26 +165,26 @@ class Model:
 
     def length_ratio(self, rod: str, inputs: FloatArray) -> float:
         """Length of a rod for these inputs, relative to the scene's."""
-        ratio = ratio_of(self.frame, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
+        ratio = ratio_of(self.discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
         return 1.0 if ratio is None else float(ratio)
 
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
         values = load_values(self.scene, self.inputs, inputs)
         on_rods = all(
-            EFFECTS[cause.kind].has_potential(cause, values[cause.name], self._turning(basis.rod))
+            EFFECTS[cause.kind].has_potential(cause, values[cause.name], self._turning(discrete_rod.properties))
             for cause in self.scene.causes
-            for basis in self.frame.bases.values()
-            if EFFECTS[cause.kind].acts_on(cause, basis.rod.name)
+            for discrete_rod in self.discrete.rods.values()
+            if EFFECTS[cause.kind].acts_on(cause, discrete_rod.properties.name)
         )
         return on_rods and all(
-            EFFECTS[load.kind].has_potential_on_bodies(load, values[load.name], flat=self.frame.couplings.all_flat)
+            EFFECTS[load.kind].has_potential_on_bodies(load, values[load.name], flat=self.discrete.couplings.all_flat)
             for load in self.scene.loads
         )
 
     def _turning(self, rod: RodProperties) -> RodProperties:
         """A rod as it turns in the world: one that is carried about may turn about every axis."""
-        still = self.frame.couplings.carrier(rod.name) is None or self.frame.couplings.flat(rod.name) is not None
+        still = self.discrete.couplings.carrier(rod.name) is None or self.discrete.couplings.flat(rod.name) is not None
         return rod if still else replace(rod, admitted=(0, 1, 2))
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
@@ -209,4 +209,4 @@ def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | No
     """
     check_constraints(scene)
     chosen = discretise(scene) if discretisation is None else discretisation
-    return Model(frame(scene, input_layout(scene), chosen))
+    return Model(discrete_scene(scene, input_layout(scene), chosen))

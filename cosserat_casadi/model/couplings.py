@@ -16,8 +16,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.effects.joint import Joint
-from cosserat_casadi.effects.support import Pose, stays_in_plane
+from cosserat_casadi.constraints.joint import Joint
+from cosserat_casadi.constraints.tip_support import Pose, stays_in_plane
 from cosserat_casadi.maths.rotation import (
     matrix_to_quaternion,
     quaternion_conjugate,
@@ -28,7 +28,7 @@ from cosserat_casadi.maths.rotation import (
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import DiscreteRod
 
 ALL = (0, 1, 2)
 IN_PLANE = (0, 2)
@@ -126,15 +126,15 @@ class Couplings:
 
     Attributes:
         scene: the scene.
-        bases: the constant matrices of each rod.
+        rods: the constant matrices of each rod.
     """
 
     scene: scenes.Scene
-    bases: Mapping[str, StrainBasis]
+    rods: Mapping[str, DiscreteRod]
     _shapes: dict[str, Shape] = field(default_factory=dict, repr=False)
 
     @cached_property
-    def rods(self) -> dict[str, scenes.Rod]:
+    def records(self) -> dict[str, scenes.Rod]:
         """Rods of the scene by name."""
         return {rod.name: rod for rod in self.scene.rods}
 
@@ -145,16 +145,16 @@ class Couplings:
 
     def carrier(self, rod: str) -> Carrier | None:
         """The moving frame that a rod's base is; None where it rests in the world."""
-        return None if self.rods[rod].base.rod is None else Carrier("rod", rod)
+        return None if self.records[rod].base.rod is None else Carrier("rod", rod)
 
     @cached_property
     def moving(self) -> dict[Carrier, MovingFrame]:
         """Moving frames: bases of carried rods in the order of the scene, then bodies."""
         found = {}
         for rod in self.carried:
-            basis = self.bases[rod.name]
+            discrete_rod = self.rods[rod.name]
             start = self.unloaded_base(rod.name)
-            found[Carrier("rod", rod.name)] = MovingFrame(None, basis.energy_unit, rod.length, start)
+            found[Carrier("rod", rod.name)] = MovingFrame(None, discrete_rod.energy_unit, rod.length, start)
         for body in self.scene.bodies:
             found[Carrier("body", body.name)] = self._body_frame(body)
         return found
@@ -171,24 +171,24 @@ class Couplings:
 
     def unloaded_base(self, rod: str) -> RigidPose:
         """World pose of a rod's base in the unloaded scene."""
-        record = self.rods[rod]
+        record = self.records[rod]
         own = RigidPose(*base_pose(record))
         return own if record.base.rod is None else self._unloaded_section(record.base.rod, record.base.at).then(own)
 
     def flat(self, rod: str) -> RigidPose | None:
         """Unloaded base of a rod that never leaves its x–z plane; None where the rod or what carries it may."""
-        own, carrier = self.unloaded_base(rod), self.rods[rod].base.rod
-        if not stays_in_plane(self.bases[rod].rod):
+        own, carrier = self.unloaded_base(rod), self.records[rod].base.rod
+        if not stays_in_plane(self.rods[rod].properties):
             return None
         if carrier is None:
             return own
         below = self.flat(carrier)
-        return own if below is not None and _same_plane(below, own, self.rods[rod].length) else None
+        return own if below is not None and _same_plane(below, own, self.records[rod].length) else None
 
     @cached_property
     def all_flat(self) -> bool:
         """Whether all rods stay in parallel planes, so that bodies turn about one axis."""
-        planes = [self.flat(rod) for rod in self.rods]
+        planes = [self.flat(rod) for rod in self.records]
         first = planes[0]
         if first is None:
             return False
@@ -196,10 +196,10 @@ class Couplings:
         return all(normal is not None and np.linalg.norm(normal) <= FLAT for normal in normals)
 
     def _unloaded_section(self, rod: str, at: float) -> RigidPose:
-        basis = self.bases[rod]
+        discrete_rod = self.rods[rod]
         if rod not in self._shapes:
-            self._shapes[rod] = shape(basis, ca.MX.zeros(basis.size))
-        place, node = self._shapes[rod], basis.grid.node_at(at)
+            self._shapes[rod] = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
+        place, node = self._shapes[rod], discrete_rod.grid.node_at(at)
         position, quaternion = (_numbers(m) for m in (place.position_at(node), place.quaternion[:, node]))
         return self.unloaded_base(rod).then(RigidPose(position, quaternion / np.linalg.norm(quaternion)))
 
@@ -210,8 +210,8 @@ class Couplings:
         of fixed joints, and the arms of all, nearest to what the tips ask for.
         """
         joints = [joint for joint in self.scene.joints if joint.body == body.name]
-        bases = [self.bases[joint.rod] for joint in joints]
-        unit, length = max(b.energy_unit for b in bases), max(b.rod.length for b in bases)
+        bases = [self.rods[joint.rod] for joint in joints]
+        unit, length = max(b.energy_unit for b in bases), max(b.properties.length for b in bases)
         tips = [self._unloaded_section(joint.rod, 1.0) for joint in joints]
         arms, points = np.array([j.position for j in joints]), np.array([tip.position for tip in tips])
         spread = (points - points.mean(axis=0)).T @ (arms - arms.mean(axis=0))
@@ -228,7 +228,7 @@ class Couplings:
         carrier, at = rod.base.rod, rod.base.at
         assert carrier is not None
         place = RigidPose(*base_pose(rod)).inverse
-        where = f"rods[{list(self.rods).index(rod.name)}].base"
+        where = f"rods[{list(self.records).index(rod.name)}].base"
         what = f"the base of {rod.name!r} on {carrier!r}"
         return self._tie(carrier, at, Carrier("rod", rod.name), place, (ALL, ALL), (where, what))
 
@@ -242,7 +242,7 @@ class Couplings:
         turns = isinstance(support, scenes.ClampedSupport)
         own = _array(support.quaternion) if isinstance(support, scenes.ClampedSupport) else np.array([1.0, 0, 0, 0])
         place, plane = RigidPose(_array(support.position), own), self.flat(support.rod)
-        length, what = self.rods[support.rod].length, f"the tip of {support.rod!r} at its support"
+        length, what = self.records[support.rod].length, f"the tip of {support.rod!r} at its support"
         axes: tuple[tuple[int, ...], tuple[int, ...]] = (ALL, ALL if turns else ())
         if plane is not None and _same_plane(plane, place, length, turns=turns):
             axes = (IN_PLANE, ACROSS if turns else ())
@@ -258,12 +258,12 @@ class Couplings:
         words: tuple[str, str],
     ) -> Tie:
         """A tie whose place has the sign of quaternion that is near the unloaded section."""
-        basis = self.bases[rod]
+        discrete_rod = self.rods[rod]
         wanted = place if other is None else self.moving[other].start.then(place)
         turn = self._unloaded_section(rod, at).quaternion
         near = place if wanted.quaternion @ turn >= 0 else RigidPose(place.position, -place.quaternion)
-        joint = Joint(basis.rod, basis.energy_unit, at, *axes, near.pose)
-        return Tie(joint, rod, basis.grid.node_at(at), other, *words)
+        joint = Joint(discrete_rod.properties, discrete_rod.energy_unit, at, *axes, near.pose)
+        return Tie(joint, rod, discrete_rod.grid.node_at(at), other, *words)
 
     def _joint_axes(self, joint: scenes.Joint) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Base axes that a joint holds: of planar rods that hold one body in their plane, only the first does that.
@@ -287,7 +287,7 @@ class Couplings:
 
     def _shares_plane(self, joint: scenes.Joint, plane: RigidPose, other: scenes.Joint) -> bool:
         """Whether two joints hold a body in one plane, in the world and in the body alike."""
-        second, length = self.flat(other.rod), self.rods[joint.rod].length
+        second, length = self.flat(other.rod), self.records[joint.rod].length
         if second is None or not _same_plane(plane, second, length):
             return False
         place, there = (RigidPose(_array(j.position), _array(j.quaternion)) for j in (joint, other))

@@ -11,7 +11,7 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier
-from cosserat_casadi.model.system import Arguments, Frame, System, balance, ratio_of, rod_actions
+from cosserat_casadi.model.system import Arguments, DiscreteScene, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.transport import largest_turn
 
@@ -25,12 +25,12 @@ RESOLVED_NORM = 1e-2
 """Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
 
 
-def _arguments(frame: Frame) -> Arguments:
-    return Arguments(ca.MX.sym("x", frame.size), ca.MX.sym("inputs", frame.layout.size))
+def _arguments(discrete: DiscreteScene) -> Arguments:
+    return Arguments(ca.MX.sym("x", discrete.size), ca.MX.sym("inputs", discrete.layout.size))
 
 
-def _path_arguments(frame: Frame) -> Arguments:
-    symbols = _arguments(frame)
+def _path_arguments(discrete: DiscreteScene) -> Arguments:
+    symbols = _arguments(discrete)
     return Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
 
 
@@ -43,89 +43,89 @@ def _name(word: str, rod: str) -> str:
     return re.sub("_+", "_", f"{word}_{rod}")
 
 
-def residual(frame: Frame) -> ca.Function:
+def residual(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs) ↦ residual."""
-    a = _arguments(frame)
-    return ca.Function("residual", [a.x, a.inputs], [System(frame, a).residual], ["x", "inputs"], ["residual"])
+    a = _arguments(discrete)
+    return ca.Function("residual", [a.x, a.inputs], [System(discrete, a).residual], ["x", "inputs"], ["residual"])
 
 
-def jacobian(frame: Frame) -> ca.Function:
+def jacobian(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs) ↦ (jacobian, residual)."""
-    a = _arguments(frame)
-    system = System(frame, a)
+    a = _arguments(discrete)
+    system = System(discrete, a)
     outputs = [system.jacobian, system.residual]
     return ca.Function("jacobian", [a.x, a.inputs], outputs, ["x", "inputs"], ["jacobian", "residual"])
 
 
-def input_jacobian(frame: Frame) -> ca.Function:
+def input_jacobian(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs) ↦ ∂ residual / ∂ inputs."""
-    a = _arguments(frame)
-    derivative = ca.jacobian(System(frame, a).residual, a.inputs)
+    a = _arguments(discrete)
+    derivative = ca.jacobian(System(discrete, a).residual, a.inputs)
     return ca.Function("input_jacobian", [a.x, a.inputs], [derivative], ["x", "inputs"], ["input_jacobian"])
 
 
-def path_residual(frame: Frame) -> ca.Function:
+def path_residual(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs, factor) ↦ residual."""
-    a = _path_arguments(frame)
-    outputs = [System(frame, a).residual]
+    a = _path_arguments(discrete)
+    outputs = [System(discrete, a).residual]
     return ca.Function("path_residual", _listed(a), outputs, ["x", "inputs", "factor"], ["residual"])
 
 
-def path_jacobian(frame: Frame) -> ca.Function:
+def path_jacobian(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs, factor) ↦ ∂ residual / ∂x."""
-    a = _path_arguments(frame)
-    outputs = [System(frame, a).jacobian]
+    a = _path_arguments(discrete)
+    outputs = [System(discrete, a).jacobian]
     return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian"])
 
 
-def path_rate(frame: Frame) -> ca.Function:
+def path_rate(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
-    a = _path_arguments(frame)
-    inputs_rate, factor_rate = ca.MX.sym("inputs_rate", frame.layout.size), ca.MX.sym("factor_rate")
+    a = _path_arguments(discrete)
+    inputs_rate, factor_rate = ca.MX.sym("inputs_rate", discrete.layout.size), ca.MX.sym("factor_rate")
     moving, speed = ca.vertcat(a.inputs, a.factor), ca.vertcat(inputs_rate, factor_rate)
     joined = ca.MX.sym("inputs_and_factor", moving.shape[0])
     parts = Arguments(a.x, joined[:-1], joined[-1])
-    rate = ca.substitute(ca.jtimes(System(frame, parts).residual, joined, speed), joined, moving)
+    rate = ca.substitute(ca.jtimes(System(discrete, parts).residual, joined, speed), joined, moving)
     names = ["x", "inputs", "factor", "inputs_rate", "factor_rate"]
     return ca.Function("path_rate", [*_listed(a), inputs_rate, factor_rate], [rate], names, ["residual_rate"])
 
 
-def path_tangent(frame: Frame) -> ca.Function:
+def path_tangent(discrete: DiscreteScene) -> ca.Function:
     """Inputs ↦ dx/dfactor of the unloaded scene: its linear response.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
     lengths and bases of rods are inputs, it is the map's linear part at the scene's own values.
     """
-    size, inputs = frame.layout.size, ca.MX.sym("inputs", frame.layout.size)
-    unloaded, still, rest = np.zeros(frame.size), np.zeros(size), np.zeros(size)
-    geometry = frame.layout.geometry
-    rest[geometry] = frame.layout.pack()[geometry]
-    jacobian = path_jacobian(frame)(unloaded, rest, 0.0)
-    rate, probes = path_rate(frame), np.hstack([np.zeros((size, 1)), np.eye(size)])
+    size, inputs = discrete.layout.size, ca.MX.sym("inputs", discrete.layout.size)
+    unloaded, still, rest = np.zeros(discrete.size), np.zeros(size), np.zeros(size)
+    geometry = discrete.layout.geometry
+    rest[geometry] = discrete.layout.pack()[geometry]
+    jacobian = path_jacobian(discrete)(unloaded, rest, 0.0)
+    rate, probes = path_rate(discrete), np.hstack([np.zeros((size, 1)), np.eye(size)])
     probes[:, 1:][:, geometry] = 0.0
     rates = rate.map(size + 1)(unloaded, rest[:, None] + probes, 0.0, still, 1.0).full()
     if geometry:
         slope = ca.Function("slope", [inputs], [ca.jacobian(rate(unloaded, inputs, 0.0, still, 1.0), inputs)])
-        rates[:, 1:][:, geometry] = rates[:, :1] + slope(frame.layout.pack()).full()[:, geometry]
-    response = -np.linalg.solve(jacobian.full(), rates) if frame.size else rates
+        rates[:, 1:][:, geometry] = rates[:, :1] + slope(discrete.layout.pack()).full()[:, geometry]
+    response = -np.linalg.solve(jacobian.full(), rates) if discrete.size else rates
     matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
     moved = inputs - ca.DM(rest) if geometry else inputs
     return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ moved], ["inputs"], ["tangent"])
 
 
-def igm(frame: Frame, rod: str) -> ca.Function:
+def igm(discrete: DiscreteScene, rod: str) -> ca.Function:
     """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
 
     Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
     forces in units of EI/ℓ. Wrenches of supports are unknowns of the scene, not loads, and are left out.
     """
-    basis = frame.bases[rod]
-    q, inputs = ca.MX.sym("q", basis.size), ca.MX.sym("inputs", frame.layout.size)
+    discrete_rod = discrete.rods[rod]
+    q, inputs = ca.MX.sym("q", discrete_rod.size), ca.MX.sym("inputs", discrete.layout.size)
     position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
     rotation = quaternion_to_matrix(quaternion)
     arguments = Arguments(q, inputs)
-    place = kinematics.shape(basis, q, ratio_of(frame, rod, arguments))
-    model = balance(place, rod_actions(frame, rod, rotation.T, arguments))
+    place = kinematics.shape(discrete_rod, q, ratio_of(discrete, rod, arguments))
+    model = balance(place, rod_actions(discrete, rod, rotation.T, arguments))
     actuated = model.actuation_force
     outputs = [
         model.generalised_force if actuated is None else model.generalised_force + actuated,
@@ -141,10 +141,10 @@ def igm(frame: Frame, rod: str) -> ca.Function:
     )
 
 
-def tip(frame: Frame, rod: str) -> ca.Function:
+def tip(discrete: DiscreteScene, rod: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
-    a = _arguments(frame)
-    system = System(frame, a)
+    a = _arguments(discrete)
+    system = System(discrete, a)
     pose, base = system.tip(rod), system.base(rod)
     quaternion = quaternion_product(ca.MX(base.quaternion), pose.quaternion)
     position = base.position + rotate(ca.MX(base.quaternion), pose.position)
@@ -153,46 +153,46 @@ def tip(frame: Frame, rod: str) -> ca.Function:
     return ca.Function(_name("tip", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
-def tip_jacobian(frame: Frame, rod: str) -> ca.Function:
+def tip_jacobian(discrete: DiscreteScene, rod: str) -> ca.Function:
     """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
 
     From the variations of the rod's fields: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q.
     """
-    a = _arguments(frame)
-    system = System(frame, a)
+    a = _arguments(discrete)
+    system = System(discrete, a)
     base = system.base(rod)
-    moving = frame.couplings.carrier(rod) is not None
-    if moving or frame.bases[rod].discretisation.transport == "permuted":
-        pose = ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2])
+    moving = discrete.couplings.carrier(rod) is not None
+    if moving or discrete.rods[rod].discretisation.transport == "permuted":
+        pose = ca.vertcat(*tip(discrete, rod)(a.x, a.inputs)[:2])
         own = ca.jacobian(pose, a.x)
     else:
-        tangent, count = system.tangents[rod], frame.bases[rod].size
+        tangent, count = system.tangents[rod], discrete.rods[rod].size
         quaternion = ca.repmat(ca.densify(system.tip(rod).quaternion), 1, count)
         spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
         turned = quaternion_product(spin, quaternion) / 2
         world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
         moved = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
-        place = frame.rod_slices[rod]
-        before, after = ca.DM(7, place.start), ca.DM(7, frame.size - place.stop)
+        place = discrete.rod_slices[rod]
+        before, after = ca.DM(7, place.start), ca.DM(7, discrete.size - place.stop)
         own = ca.horzcat(before, ca.vertcat(moved, world), after)
-    directly = ca.DM.zeros(7, frame.layout.size)
-    if frame.layout.geometry:
-        directly = ca.densify(ca.jacobian(ca.vertcat(*tip(frame, rod)(a.x, a.inputs)[:2]), a.inputs))
+    directly = ca.DM.zeros(7, discrete.layout.size)
+    if discrete.layout.geometry:
+        directly = ca.densify(ca.jacobian(ca.vertcat(*tip(discrete, rod)(a.x, a.inputs)[:2]), a.inputs))
     outputs = [ca.densify(own), directly]
     names = ["d_pose_d_x", "d_pose_d_inputs"]
     return ca.Function(_name("tip_jacobian", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
-def shape(frame: Frame, rod: str) -> ca.Function:
+def shape(discrete: DiscreteScene, rod: str) -> ca.Function:
     """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame.
 
     The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and exact
     derivatives with respect to X too.
     """
-    a, X = _arguments(frame), ca.MX.sym("X")
-    system = System(frame, a)
+    a, X = _arguments(discrete), ca.MX.sym("X")
+    system = System(discrete, a)
     place, base = system.rods[rod].shape, system.base(rod)
-    row = _interpolation_row(frame, rod, X)
+    row = _interpolation_row(discrete, rod, X)
     position = base.position + rotate(ca.MX(base.quaternion), place.position @ row)
     local = place.quaternion @ row
     quaternion = quaternion_product(ca.MX(base.quaternion), local / ca.sqrt(ca.sumsqr(local)))
@@ -200,12 +200,12 @@ def shape(frame: Frame, rod: str) -> ca.Function:
     return ca.Function(_name("shape", rod), [a.x, a.inputs, X], [position, quaternion], ["x", "inputs", "X"], names)
 
 
-def fields(frame: Frame, rod: str) -> ca.Function:
+def fields(discrete: DiscreteScene, rod: str) -> ca.Function:
     """(x, inputs) ↦ fields at the nodes, world frame but for the internal wrench, which is in the section's."""
-    a = _arguments(frame)
-    system = System(frame, a)
+    a = _arguments(discrete)
+    system = System(discrete, a)
     model, base = system.rods[rod], system.base(rod)
-    count = frame.bases[rod].grid.size
+    count = discrete.rods[rod].grid.size
     turn = ca.repmat(base.quaternion, 1, count)
     rotation = quaternion_to_matrix(base.quaternion)
     outputs = [
@@ -219,14 +219,14 @@ def fields(frame: Frame, rod: str) -> ca.Function:
     return ca.Function(_name("fields", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
-def actuator(frame: Frame, name: str) -> ca.Function:
+def actuator(discrete: DiscreteScene, name: str) -> ca.Function:
     """(x, inputs) ↦ (tension, length) of a tendon, N and m, or (pressure, volume) of a chamber, Pa and m³.
 
     Third comes the derivative of the length or the volume with x, 1×size: what a unit of tension or pressure does.
     """
-    a = _arguments(frame)
-    effort, extent, gradient = System(frame, a).actuator(name)
-    kind = next(one.kind for one in frame.scene.actuators if one.name == name)
+    a = _arguments(discrete)
+    effort, extent, gradient = System(discrete, a).actuator(name)
+    kind = next(one.kind for one in discrete.scene.actuators if one.name == name)
     names = {"tendon": ["tension", "length"], "chamber": ["pressure", "volume"]}[kind]
     outputs = [ca.densify(ca.MX(value)) for value in (effort, extent, gradient)]
     return ca.Function(
@@ -234,50 +234,50 @@ def actuator(frame: Frame, name: str) -> ca.Function:
     )
 
 
-def body(frame: Frame, name: str) -> ca.Function:
+def body(discrete: DiscreteScene, name: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
-    a = _arguments(frame)
-    place = System(frame, a).coupled.placements[Carrier("body", name)]
+    a = _arguments(discrete)
+    place = System(discrete, a).coupled.placements[Carrier("body", name)]
     outputs = [place.position, place.direction, place.rotation]
     names = ["position", "quaternion", "rotation"]
     return ca.Function(_name("body", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
-def body_jacobian(frame: Frame, name: str) -> ca.Function:
+def body_jacobian(discrete: DiscreteScene, name: str) -> ca.Function:
     """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
-    a = _arguments(frame)
-    pose = ca.vertcat(*body(frame, name)(a.x, a.inputs)[:2])
+    a = _arguments(discrete)
+    pose = ca.vertcat(*body(discrete, name)(a.x, a.inputs)[:2])
     outputs = [ca.densify(ca.jacobian(pose, a.x)), ca.densify(ca.jacobian(pose, a.inputs))]
     names = ["d_pose_d_x", "d_pose_d_inputs"]
     return ca.Function(_name("body_jacobian", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
 
-def energy(frame: Frame) -> ca.Function:
+def energy(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs) ↦ elastic energy, J."""
-    a = _arguments(frame)
-    return ca.Function("energy", [a.x, a.inputs], [System(frame, a).energy()], ["x", "inputs"], ["energy"])
+    a = _arguments(discrete)
+    return ca.Function("energy", [a.x, a.inputs], [System(discrete, a).energy()], ["x", "inputs"], ["energy"])
 
 
-def potential(frame: Frame) -> ca.Function | None:
+def potential(discrete: DiscreteScene) -> ca.Function | None:
     """(x, inputs) ↦ elastic energy less the work of dead forces, J; None where a load has no such energy."""
-    a = _arguments(frame)
-    value = System(frame, a).potential()
+    a = _arguments(discrete)
+    value = System(discrete, a).potential()
     if value is None:
         return None
     return ca.Function("potential", [a.x, a.inputs], [value], ["x", "inputs"], ["potential"])
 
 
-def coarseness(frame: Frame) -> ca.Function:
+def coarseness(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs) ↦ largest turn of an interval over what can be resolved; in the literal system error of tip's |Q|."""
-    a = _arguments(frame)
+    a = _arguments(discrete)
     shares: list[Matrix] = [ca.MX(0.0)]
-    for rod, basis in frame.bases.items():
-        q, ratio = a.x[frame.rod_slices[rod]], ratio_of(frame, rod, a)
-        if basis.discretisation.transport == "permuted":
-            tip = kinematics.shape(basis, q, ratio).quaternion[:, -1]
+    for rod, discrete_rod in discrete.rods.items():
+        q, ratio = a.x[discrete.rod_slices[rod]], ratio_of(discrete, rod, a)
+        if discrete_rod.discretisation.transport == "permuted":
+            tip = kinematics.shape(discrete_rod, q, ratio).quaternion[:, -1]
             shares.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)
-        elif basis.rod.turning_axes:
-            shares.append(largest_turn(basis, q, ratio) / RESOLVED_TURN)
+        elif discrete_rod.properties.turning_axes:
+            shares.append(largest_turn(discrete_rod, q, ratio) / RESOLVED_TURN)
     largest = ca.mmax(ca.vertcat(*shares))
     return ca.Function("coarseness", [a.x, a.inputs], [largest], ["x", "inputs"], ["coarseness"])
 
@@ -303,9 +303,9 @@ def _operations(scalar: ca.Function) -> int:
     return total
 
 
-def _interpolation_row(frame: Frame, rod: str, X: Matrix) -> Matrix:
+def _interpolation_row(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
     """Weights of the nodal values at X, M×1: Chebyshev series of the element that holds X."""
-    grid = frame.bases[rod].grid
+    grid = discrete.rods[rod].grid
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
     rows = []
     for e in range(grid.elements):

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.effects.effect import coefficients
-from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
 
 

@@ -13,16 +13,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.effects.registry import EFFECTS
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.couplings import FLAT, Carrier
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import System
 
 
 def free_spins(system: System) -> Iterator[Problem]:
     """A problem for every body whose orientation nothing holds."""
-    for i, body in enumerate(system.frame.scene.bodies):
+    for i, body in enumerate(system.discrete.scene.bodies):
         joints, forces = _joints(system, body), _forces(system, body)
         if joints is None or _lines(joints) > 1 or _lines(np.vstack([joints, forces])) > _lines(joints):
             continue
@@ -33,7 +33,7 @@ def free_spins(system: System) -> Iterator[Problem]:
 
 def _joints(system: System, body: scenes.Body) -> FloatArray | None:
     """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
-    ties = [tie for tie in system.frame.couplings.ties if tie.other == Carrier("body", body.name)]
+    ties = [tie for tie in system.discrete.couplings.ties if tie.other == Carrier("body", body.name)]
     if any(tie.joint.rotation_axes for tie in ties):
         return None
     return np.array([np.asarray(tie.joint.place.position).ravel() for tie in ties])
@@ -41,7 +41,7 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:
     """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
-    actions = [EFFECTS[load.kind].on_body(load, body, system.values(load)) for load in system.frame.scene.loads]
+    actions = [EFFECTS[load.kind].on_body(load, body, system.values(load)) for load in system.discrete.scene.loads]
     points = [a.position for a in actions if a is not None and a.force is not None and not a.follower]
     return np.reshape(points, (-1, 3))
 

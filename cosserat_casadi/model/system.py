@@ -15,26 +15,26 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.effects.chamber import PRESSED, volume_rates
-from cosserat_casadi.effects.course import course
-from cosserat_casadi.effects.effect import Site, constant
-from cosserat_casadi.effects.held_length import HeldLength
-from cosserat_casadi.effects.registry import EFFECTS, SUPPORTS
-from cosserat_casadi.effects.support import Hold, Pose
+from cosserat_casadi.actuators.chamber import PRESSED, volume_rates
+from cosserat_casadi.actuators.routing import routing
+from cosserat_casadi.constraints.cable_length import HeldLength
+from cosserat_casadi.constraints.tip_support import Hold, Pose
+from cosserat_casadi.loads.load import Site, constant
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.assembly import Coupled
 from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
 from cosserat_casadi.model.inputs import InputLayout, magnitude
+from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.model.rods import base_pose, rod_properties
-from cosserat_casadi.rod.cable import LedCable
+from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.strain import Ratio, StrainBasis
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, Course, LineWrench, Wrench
+from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, Routing, Wrench
 
 
 @dataclass(frozen=True)
@@ -53,18 +53,18 @@ class Arguments:
 
 
 @dataclass(frozen=True)
-class Frame:
+class DiscreteScene:
     """A scene with everything that does not depend on the unknowns settled.
 
     Attributes:
         scene: the scene.
         layout: its inputs.
-        bases: the constant matrices of each rod.
+        rods: the constant matrices of each rod.
     """
 
     scene: scenes.Scene
     layout: InputLayout
-    bases: dict[str, StrainBasis]
+    rods: dict[str, DiscreteRod]
 
     @cached_property
     def holds(self) -> list[tuple[scenes.Support, Hold]]:
@@ -75,7 +75,7 @@ class Frame:
     @cached_property
     def couplings(self) -> Couplings:
         """What couples the rods."""
-        return Couplings(self.scene, self.bases)
+        return Couplings(self.scene, self.rods)
 
     @cached_property
     def hold_slices(self) -> list[slice]:
@@ -105,13 +105,13 @@ class Frame:
     @cached_property
     def rod_slices(self) -> dict[str, slice]:
         """Where each rod's coordinates stand in x."""
-        ends = np.cumsum([0, *[basis.size for basis in self.bases.values()]])
-        return {n: slice(int(a), int(b)) for n, a, b in zip(self.bases, ends, ends[1:], strict=False)}
+        ends = np.cumsum([0, *[discrete_rod.size for discrete_rod in self.rods.values()]])
+        return {n: slice(int(a), int(b)) for n, a, b in zip(self.rods, ends, ends[1:], strict=False)}
 
     @cached_property
     def strain_size(self) -> int:
         """Number of strain coordinates of all rods."""
-        return sum(basis.size for basis in self.bases.values())
+        return sum(discrete_rod.size for discrete_rod in self.rods.values())
 
     @cached_property
     def size(self) -> int:
@@ -120,10 +120,10 @@ class Frame:
         return self.strain_size + self.multiplier_size + moving + len(self.cables)
 
     @cached_property
-    def cables(self) -> list[tuple[scenes.Tendon, Course]]:
+    def cables(self) -> list[tuple[scenes.Tendon, Routing]]:
         """Tendons of given length, whose tensions are unknowns, unit EI/ℓ² each."""
         held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
-        return [(tendon, course(tendon, self.bases[tendon.rod].grid)) for tendon in held]
+        return [(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in held]
 
     @cached_property
     def tension_slices(self) -> list[slice]:
@@ -136,7 +136,7 @@ class Frame:
 
     def tension_unit(self, rod: str) -> float:
         """EI/ℓ² of a rod, N."""
-        return self.bases[rod].energy_unit / self.bases[rod].rod.length
+        return self.rods[rod].energy_unit / self.rods[rod].properties.length
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
@@ -145,14 +145,18 @@ class Frame:
 
     def hold(self, support: scenes.Support) -> Hold:
         """The support as the mechanics see it."""
-        basis, kind = self.bases[support.rod], SUPPORTS[support.kind]
-        return Hold(basis.rod, basis.energy_unit, kind.turns, kind.target(support, self.base(support.rod)))
+        discrete_rod, kind = self.rods[support.rod], SUPPORTS[support.kind]
+        return Hold(
+            discrete_rod.properties, discrete_rod.energy_unit, kind.turns, kind.target(support, self.base(support.rod))
+        )
 
 
-def frame(scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]) -> Frame:
+def discrete_scene(
+    scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]
+) -> DiscreteScene:
     """Constant matrices of every rod of a scene."""
-    bases = {rod.name: StrainBasis(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
-    return Frame(scene, layout, bases)
+    bases = {rod.name: DiscreteRod(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
+    return DiscreteScene(scene, layout, bases)
 
 
 def _slices(start: int, sizes: Sequence[int]) -> list[slice]:
@@ -165,17 +169,17 @@ class System:
     """The equations of a scene in given arguments.
 
     Attributes:
-        frame: what is constant.
+        discrete: what is constant.
         arguments: what they are written in.
     """
 
-    frame: Frame
+    discrete: DiscreteScene
     arguments: Arguments
 
     @cached_property
     def rods(self) -> dict[str, InverseGeometricModel]:
         """Balance of every rod, in its base frame."""
-        return {name: self._rod(name) for name in self.frame.bases}
+        return {name: self._rod(name) for name in self.discrete.rods}
 
     @cached_property
     def tangents(self) -> dict[str, Tangent]:
@@ -198,9 +202,9 @@ class System:
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
-        if any(b.discretisation.transport == "permuted" for b in self.frame.bases.values()):
+        if any(b.discretisation.transport == "permuted" for b in self.discrete.rods.values()):
             return ca.jacobian(self.residual, self.arguments.x)
-        if self.frame.couplings.ties or self.frame.holds or self.frame.cables:
+        if self.discrete.couplings.ties or self.discrete.holds or self.discrete.cables:
             return self.coupled.jacobian
         return ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
 
@@ -211,41 +215,43 @@ class System:
 
     def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
         """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
-        one = next(actuator for actuator in self.frame.scene.actuators if actuator.name == name)
-        place, basis = self.rods[one.rod].shape, self.frame.bases[one.rod]
+        one = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
+        place, discrete_rod = self.rods[one.rod].shape, self.discrete.rods[one.rod]
         if one.kind == "chamber":
-            rates = ca.DM(volume_rates(one, basis.grid) * basis.rod.length * basis.grid.weights)
+            rates = ca.DM(
+                volume_rates(one, discrete_rod.grid) * discrete_rod.properties.length * discrete_rod.grid.weights
+            )
             effort, extent, gradient = self._effort(one, "pressure"), *place.strain_work(PRESSED, rates)
         else:
-            cable = LedCable(place, course(one, basis.grid))
+            cable = RoutedCable(place, routing(one, discrete_rod.grid))
             held = one.length is not None
             effort = self._tension(one) if held else self._effort(one, "tension")
             effort = ca.fmax(effort, 0.0) if one.slack else effort
             extent, gradient = cable.length, cable.length_gradient
-        rest = type(self.arguments.x)(self.frame.size - self.frame.strain_size, 1)
+        rest = type(self.arguments.x)(self.discrete.size - self.discrete.strain_size, 1)
         return effort, extent, ca.vertcat(self._among_strains(one.rod, gradient), rest).T
 
     def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
-        value = _value(self.frame.layout, actuator, field, self.arguments)
+        value = _value(self.discrete.layout, actuator, field, self.arguments)
         return ca.DM(0.0) if value is None else value
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
-        if self.frame.couplings.carrier(rod) is None:
+        if self.discrete.couplings.carrier(rod) is None:
             return self._still_base(rod)
         place = self.coupled.base(rod)
         return Pose(place.position, place.direction)
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
-        pose = self.frame.base(rod)
+        pose = self.discrete.base(rod)
         position, quaternion = (self._input(f"{rod}.base.{word}") for word in ("position", "quaternion"))
         turn = pose.quaternion if quaternion is None else quaternion / ca.sqrt(ca.sumsqr(quaternion))
         return Pose(pose.position if position is None else position, turn)
 
     def _input(self, name: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
-        place = self.frame.layout.slices.get(name)
+        place = self.discrete.layout.slices.get(name)
         return None if place is None else self.arguments.inputs[place]
 
     def energy(self) -> Matrix:
@@ -255,7 +261,7 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.frame.scene.supports or self.frame.couplings.ties or any(term is None for term in terms):
+        if self.discrete.scene.supports or self.discrete.couplings.ties or any(term is None for term in terms):
             return None
         return ca.sum1(ca.vertcat(*terms))
 
@@ -272,18 +278,18 @@ class System:
     def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
         """Magnitudes of a load in these arguments; None where one is zero for good."""
         magnitudes = EFFECTS[load.kind].magnitudes
-        return {field: _value(self.frame.layout, load, field, self.arguments) for field in magnitudes}
+        return {field: _value(self.discrete.layout, load, field, self.arguments) for field in magnitudes}
 
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
-        actions = rod_actions(self.frame, rod, self._base_R_world(rod), self.arguments)
+        actions = rod_actions(self.discrete, rod, self._base_R_world(rod), self.arguments)
         return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
 
     @cached_property
     def holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
         """Supports of rods that start in the world, with their multipliers."""
-        found, start = [], self.frame.strain_size
-        for support, fixed in self.frame.holds:
+        found, start = [], self.discrete.strain_size
+        for support, fixed in self.discrete.holds:
             hold = self._held(support, fixed)
             found.append((support, hold, self.arguments.x[start : start + hold.size]))
             start += hold.size
@@ -291,48 +297,48 @@ class System:
 
     def _held(self, support: scenes.Support, hold: Hold) -> Hold:
         """A support as the rod sees it from a base that inputs may move."""
-        if not any(f"{support.rod}.base.{word}" in self.frame.layout.slices for word in ("position", "quaternion")):
+        if not any(f"{support.rod}.base.{word}" in self.discrete.layout.slices for word in ("position", "quaternion")):
             return hold
         return replace(hold, target=SUPPORTS[support.kind].target(support, self.base(support.rod)))
 
     @cached_property
     def lengths(self) -> list[HeldLength]:
         """Equations of the cables of given length."""
-        return [self._held_length(tendon, course) for tendon, course in self.frame.cables]
+        return [self._held_length(tendon, routing) for tendon, routing in self.discrete.cables]
 
-    def _held_length(self, tendon: scenes.Tendon, course: Course) -> HeldLength:
+    def _held_length(self, tendon: scenes.Tendon, routing: Routing) -> HeldLength:
         whole = replace(self.arguments, factor=1.0)
         return HeldLength(
-            cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.course is course),
-            wanted=_value(self.frame.layout, tendon, "length", whole),
-            tension=self.arguments.x[self.frame.tension_place(tendon.name)],
+            cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.routing is routing),
+            wanted=_value(self.discrete.layout, tendon, "length", whole),
+            tension=self.arguments.x[self.discrete.tension_place(tendon.name)],
             slack=tendon.slack,
             factor=self.arguments.factor,
         )
 
     def _among_strains(self, rod: str, columns: Matrix) -> Matrix:
         """Columns on the coordinates of one rod, among those of all."""
-        place, count = self.frame.rod_slices[rod], columns.shape[1]
+        place, count = self.discrete.rod_slices[rod], columns.shape[1]
         pad = type(columns)
-        before, after = pad(place.start, count), pad(self.frame.strain_size - place.stop, count)
+        before, after = pad(place.start, count), pad(self.discrete.strain_size - place.stop, count)
         return ca.vertcat(before, columns, after)
 
     def _rod(self, name: str) -> InverseGeometricModel:
-        basis = self.frame.bases[name]
-        q = self.arguments.x[self.frame.rod_slices[name]]
-        actions = rod_actions(self.frame, name, self._base_R_world(name), self.arguments)
+        discrete_rod = self.discrete.rods[name]
+        q = self.arguments.x[self.discrete.rod_slices[name]]
+        actions = rod_actions(self.discrete, name, self._base_R_world(name), self.arguments)
         actions += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
-        ties = [tie for tie in self.frame.couplings.ties if tie.rod == name]
+        ties = [tie for tie in self.discrete.couplings.ties if tie.rod == name]
         actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
-        actions += [Cable(course, self._tension(t)) for t, course in self.frame.cables if t.rod == name]
-        return balance(shape(basis, q, ratio_of(self.frame, name, self.arguments)), actions)
+        actions += [Cable(routing, self._tension(t)) for t, routing in self.discrete.cables if t.rod == name]
+        return balance(shape(discrete_rod, q, ratio_of(self.discrete, name, self.arguments)), actions)
 
     def _tension(self, tendon: scenes.Tendon) -> Matrix:
         """Unknown tension of a tendon of given length, N."""
-        return self.frame.tension_unit(tendon.rod) * self.arguments.x[self.frame.tension_place(tendon.name)]
+        return self.discrete.tension_unit(tendon.rod) * self.arguments.x[self.discrete.tension_place(tendon.name)]
 
     def _base_R_world(self, rod: str) -> Matrix:
-        if self.frame.couplings.carrier(rod) is not None:
+        if self.discrete.couplings.carrier(rod) is not None:
             return self.coupled.base(rod).rotation.T
         rotation = quaternion_to_matrix(self._still_base(rod).quaternion)
         return ca.sparsify(rotation, 1e-16).T if isinstance(rotation, ca.DM) else rotation.T
@@ -345,24 +351,24 @@ def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
     return InverseGeometricModel(Statics(place, wrenches), actuation)
 
 
-def rod_actions(frame: Frame, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
+def rod_actions(discrete: DiscreteScene, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
     """What the scene's loads and actuators do to one rod, in its base frame."""
-    basis = frame.bases[rod]
-    site = Site(basis.rod, basis.grid, base_R_world)
+    discrete_rod = discrete.rods[rod]
+    site = Site(discrete_rod.properties, discrete_rod.grid, base_R_world)
     found: list[Action] = []
-    ratio = ratio_of(frame, rod, arguments)
-    for cause in frame.scene.causes:
+    ratio = ratio_of(discrete, rod, arguments)
+    for cause in discrete.scene.causes:
         effect = EFFECTS[cause.kind]
         if effect.acts_on(cause, rod):
-            values = {field: _value(frame.layout, cause, field, arguments) for field in effect.magnitudes}
+            values = {field: _value(discrete.layout, cause, field, arguments) for field in effect.magnitudes}
             found.extend(drawn_out(action, ratio) for action in effect.actions(cause, site, values))
     return found
 
 
-def ratio_of(frame: Frame, rod: str, arguments: Arguments) -> Ratio:
+def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
     """Length of a rod relative to the scene's where it is an input, else None."""
-    place = frame.layout.slices.get(f"{rod}.length") if rod in frame.layout.rods else None
-    return None if place is None else arguments.inputs[place] / frame.bases[rod].rod.length
+    place = discrete.layout.slices.get(f"{rod}.length") if rod in discrete.layout.rods else None
+    return None if place is None else arguments.inputs[place] / discrete.rods[rod].properties.length
 
 
 def drawn_out(action: Action, ratio: Ratio) -> Action:

@@ -2,7 +2,7 @@
 
 The cable runs at D(X) in the sections, so its tangent in the section's frame is T = Γ + K × D + D'/ℓ and its length
 L = ℓ ∫ |T| dX. A tension τ does the work −τ δL. What the cable puts against the elastic stress is therefore
-Λ_ad = τ [D × t; t] with t = T/|T|, report (2.15), whatever the course, and its generalised force τ ∂L/∂q needs no
+Λ_ad = τ [D × t; t] with t = T/|T|, report (2.15), whatever the routing, and its generalised force τ ∂L/∂q needs no
 pose of any section. The sums over the nodes below are exact derivatives of the length that the nodes give.
 """
 
@@ -16,34 +16,34 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.wrenches import Course
+from cosserat_casadi.rod.wrenches import Routing
 
 Row = Matrix | None
-"""A field on the nodes of the course, 1×k; None where it is zero whatever the rod does."""
+"""A field on the nodes of the routing, 1×k; None where it is zero whatever the rod does."""
 
 
 @dataclass(frozen=True)
-class LedCable:
-    """A cable on its course through a deformed rod.
+class RoutedCable:
+    """A cable on its routing through a deformed rod.
 
     Attributes:
         shape: the rod's shape.
-        course: where the cable runs.
+        routing: where the cable runs.
     """
 
     shape: Shape
-    course: Course
+    routing: Routing
 
     @cached_property
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
-        nodes = self.course.nodes.tolist()
+        nodes = self.routing.nodes.tolist()
         strain = [
             row if row is None else row[nodes]
-            for row in self.shape.basis.strain_rows(self.shape.q, range(6), self.shape.ratio)
+            for row in self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
         ]
-        dx, dy = (_constant(row) for row in self.course.offset)
-        slope_x, slope_y = (_constant(row / self.shape.basis.rod.length) for row in self.course.slope)
+        dx, dy = (_constant(row) for row in self.routing.offset)
+        slope_x, slope_y = (_constant(row / self.shape.rod.properties.length) for row in self.routing.slope)
         kx, ky, kz, gx, gy, gz = strain
         return (
             _sum(gx, _negative(_product(kz, dy)), slope_x),
@@ -64,14 +64,14 @@ class LedCable:
         """T = T/|T|, three rows."""
         x, y, z = self.tangent
         if x is None and y is None:
-            return None, None, ca.DM.ones(1, len(self.course.nodes))
+            return None, None, ca.DM.ones(1, len(self.routing.nodes))
         return _quotient(x, self.stretch), _quotient(y, self.stretch), _quotient(z, self.stretch)
 
     @cached_property
     def lever(self) -> dict[int, Row]:
         """Rate of |T| with each admitted strain, the components of [D × t; t]."""
         x, y, z = self.direction
-        dx, dy = (_constant(row) for row in self.course.offset)
+        dx, dy = (_constant(row) for row in self.routing.offset)
         levers = {
             0: _product(z, dy),
             1: _negative(_product(z, dx)),
@@ -80,20 +80,20 @@ class LedCable:
             4: y,
             5: z,
         }
-        return {c: levers[c] for c in self.shape.basis.rod.admitted}
+        return {c: levers[c] for c in self.shape.rod.properties.admitted}
 
     @cached_property
     def length(self) -> Matrix:
-        """Length along the course, 1×1, m."""
+        """Length along the routing, 1×1, m."""
         return self.stretch @ ca.DM(self._weights)
 
     @cached_property
     def length_gradient(self) -> Matrix:
         """∂L/∂q, n×1, m."""
-        basis = self.shape.basis
+        rod = self.shape.rod
         parts: list[Matrix] = []
         for c, lever in self.lever.items():
-            weighted = ca.DM(basis.at_nodes[c][self.course.nodes] * self._weights[:, None])
+            weighted = ca.DM(rod.at_nodes[c][self.routing.nodes] * self._weights[:, None])
             parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
         return ca.vertcat(*parts)
 
@@ -107,13 +107,13 @@ class LedCable:
         if fixed is None and moving is None:
             return None
         row = _sum(fixed, moving) / self.stretch * ca.DM(self._weights).T
-        whole = type(row)(1, self.shape.basis.grid.size)
-        whole[self.course.nodes.tolist()] = row
+        whole = type(row)(1, self.shape.rod.grid.size)
+        whole[self.routing.nodes.tolist()] = row
         return whole
 
     def _metric(self, a: int, b: int) -> FloatArray:
         """Scalar product of the rates of T with two strains, shape (k,)."""
-        dx, dy = self.course.offset
+        dx, dy = self.routing.offset
         zero, one = np.zeros_like(dx), np.ones_like(dx)
         rates = [
             np.array([zero, zero, dy]),
@@ -127,8 +127,8 @@ class LedCable:
 
     @property
     def _weights(self) -> FloatArray:
-        basis = self.shape.basis
-        return np.asarray(basis.rod.length * basis.grid.weights[self.course.nodes])
+        rod = self.shape.rod
+        return np.asarray(rod.properties.length * rod.grid.weights[self.routing.nodes])
 
 
 def _constant(row: FloatArray) -> Row:

@@ -13,7 +13,7 @@ import casadi as ca
 from cosserat_casadi.maths.blocks import stack
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.cable import LedCable
+from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import interval_kernels
@@ -40,19 +40,19 @@ class InverseGeometricModel:
     @cached_property
     def generalised_force(self) -> Matrix:
         """Q_ad / (EI/ℓ), n×1: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
-        if self.shape.basis.discretisation.transport == "permuted":
+        if self.shape.rod.discretisation.transport == "permuted":
             return self._weighted_force()
         return self._transposed_force()
 
     @cached_property
-    def cables(self) -> tuple[tuple[Matrix, LedCable], ...]:
+    def cables(self) -> tuple[tuple[Matrix, RoutedCable], ...]:
         """Tension, N, and course of every cable."""
-        return tuple((a.tension, LedCable(self.shape, a.course)) for a in self.actuation if isinstance(a, Cable))
+        return tuple((a.tension, RoutedCable(self.shape, a.routing)) for a in self.actuation if isinstance(a, Cable))
 
     @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        unit = self.shape.basis.energy_unit
+        unit = self.shape.rod.energy_unit
         forces = self._stress_forces + [tension / unit * cable.length_gradient for tension, cable in self.cables]
         return sum(forces[1:], forces[0]) if forces else None
 
@@ -64,15 +64,15 @@ class InverseGeometricModel:
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        passive = self._elastic(ca.sparsify(ca.DM(self.shape.basis.stiffness)) @ self.shape.q) + self.generalised_force
+        passive = self._elastic(ca.sparsify(ca.DM(self.shape.rod.stiffness)) @ self.shape.q) + self.generalised_force
         return passive if self.actuation_force is None else passive + self.actuation_force
 
     @cached_property
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
-        basis = self.shape.basis
-        stored = ca.bilin(ca.sparsify(ca.DM(basis.stiffness)), self.shape.q, self.shape.q)
-        return basis.energy_unit / 2 * self._elastic(stored)
+        rod = self.shape.rod
+        stored = ca.bilin(ca.sparsify(ca.DM(rod.stiffness)), self.shape.q, self.shape.q)
+        return rod.energy_unit / 2 * self._elastic(stored)
 
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""
@@ -96,37 +96,37 @@ class InverseGeometricModel:
         for tension, cable in self.cables:
             energy = energy + tension * cable.length
         for force in self._stress_forces:
-            energy = energy + self.shape.basis.energy_unit * ca.dot(force, self.shape.q)
+            energy = energy + self.shape.rod.energy_unit * ca.dot(force, self.shape.q)
         return energy
 
     def _transposed_force(self) -> Matrix:
         """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""
-        basis, moment = self.shape.basis, self.statics.interval_moment
-        force: Matrix = ca.DM.zeros(basis.size, 1)
-        if moment is not None and basis.rod.turning_axes:
-            pulled = interval_kernels(basis).pull.map(moment.shape[1])(*self.shape.interval_arguments, moment)
-            fold, half = basis.turn_factors
-            force = force + (half / -basis.energy_unit).T @ (fold @ stack(pulled))
+        rod, moment = self.shape.rod, self.statics.interval_moment
+        force: Matrix = ca.DM.zeros(rod.size, 1)
+        if moment is not None and rod.properties.turning_axes:
+            pulled = interval_kernels(rod).pull.map(moment.shape[1])(*self.shape.interval_arguments, moment)
+            fold, half = rod.turn_factors
+            force = force + (half / -rod.energy_unit).T @ (fold @ stack(pulled))
         return force + self._linear_force(self.statics.force_covector)
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
-        basis = self.shape.basis
-        parts: list[Matrix] = [ca.DM.zeros(basis.size - self._linear_size(), 1)]
-        for c in basis.rod.admitted:
+        rod = self.shape.rod
+        parts: list[Matrix] = [ca.DM.zeros(rod.size - self._linear_size(), 1)]
+        for c in rod.properties.admitted:
             if c < 3:
                 continue
             if covector is None:
-                parts.append(ca.DM.zeros(basis.at_nodes[c].shape[1], 1))
+                parts.append(ca.DM.zeros(rod.at_nodes[c].shape[1], 1))
                 continue
             share = dot(self.shape.directors[c - 3], covector).T
-            fold, half = basis.node_factors(c)
-            parts.append((half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share))
+            fold, half = rod.node_factors(c)
+            parts.append((half * (-rod.properties.length / rod.energy_unit)).T @ (fold @ share))
         return ca.vertcat(*parts)
 
     def _linear_size(self) -> int:
-        basis = self.shape.basis
-        return sum(basis.at_nodes[c].shape[1] for c in basis.rod.admitted if c >= 3)
+        rod = self.shape.rod
+        return sum(rod.at_nodes[c].shape[1] for c in rod.properties.admitted if c >= 3)
 
     def _weighted_force(self) -> Matrix:
         """Literal quadrature of report (2.16), from the internal wrench at the nodes."""
@@ -134,6 +134,8 @@ class InverseGeometricModel:
 
     def _project(self, wrench: Matrix) -> Matrix:
         """ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ) of a 6×M stress in the sections' frames, n×1."""
-        basis = self.shape.basis
-        factor = basis.rod.length / basis.energy_unit * basis.grid.weights
-        return ca.vertcat(*[ca.DM(basis.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in basis.rod.admitted])
+        rod = self.shape.rod
+        factor = rod.properties.length / rod.energy_unit * rod.grid.weights
+        return ca.vertcat(
+            *[ca.DM(rod.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in rod.properties.admitted]
+        )

@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi.maths.rotation import directors
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.strain import Ratio, StrainBasis
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.transport import Increments, increments, transport
 
 
@@ -24,14 +24,14 @@ class Shape:
     """Poses of a rod's sections in its base frame.
 
     Attributes:
-        basis: the matrices of the rod.
+        rod: the matrices of the rod.
         q: strain coordinates, n×1.
         section_quaternion: quaternions of the distinct sections, 4×(intervals + 1).
         steps: rotations of the intervals between them; None where the rotation is not their product.
         ratio: length of the rod relative to the reference length, where that is free.
     """
 
-    basis: StrainBasis
+    rod: DiscreteRod
     q: Matrix
     section_quaternion: Matrix
     steps: Increments | None
@@ -69,8 +69,8 @@ class Shape:
     @cached_property
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
-        strain = self.basis.strain_rows(self.q, (3, 4, 5), self.ratio)
-        length = self.basis.rod.length
+        strain = self.rod.strain_rows(self.q, (3, 4, 5), self.ratio)
+        length = self.rod.properties.length
         pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
         scaled = [self.scale(d, length * row) for d, row in pairs]
         total = scaled[0]
@@ -81,11 +81,11 @@ class Shape:
     @cached_property
     def position(self) -> Matrix:
         """Positions at the nodes, 3×M, by integration of the tangent, in metres."""
-        return self.tangent @ ca.DM(self.basis.grid.integration_matrix).T
+        return self.tangent @ ca.DM(self.rod.grid.integration_matrix).T
 
     def position_at(self, node: int) -> Matrix:
         """Position of one node, 3×1."""
-        return self.tangent @ ca.DM(self.basis.grid.integration_matrix[node])
+        return self.tangent @ ca.DM(self.rod.grid.integration_matrix[node])
 
     def strain_work(self, components: Sequence[int], rates: Matrix) -> tuple[Matrix, Matrix]:
         """Sum over the nodes of rates times strains, 1×1, and its derivative with q, n×1.
@@ -94,13 +94,13 @@ class Shape:
             components: strains that work is done on.
             rates: one row for each of them, k×M.
         """
-        rows = self.basis.strain_rows(self.q, components, self.ratio)
+        rows = self.rod.strain_rows(self.q, components, self.ratio)
         parts = [row @ rates[i, :].T for i, row in enumerate(rows) if row is not None]
         gradient = [
-            ca.DM(self.basis.at_nodes[c]).T @ rates[components.index(c), :].T
+            ca.DM(self.rod.at_nodes[c]).T @ rates[components.index(c), :].T
             if c in components
-            else ca.DM(self.basis.at_nodes[c].shape[1], 1)
-            for c in self.basis.rod.admitted
+            else ca.DM(self.rod.at_nodes[c].shape[1], 1)
+            for c in self.rod.properties.admitted
         ]
         return sum(parts[1:], parts[0]), ca.vertcat(*gradient)
 
@@ -123,13 +123,13 @@ class Shape:
         return ca.horzcat(*[d[:, node] for d in self.directors])
 
     def _at_nodes(self, sections: Matrix) -> Matrix:
-        if self.basis.grid.elements == 1:
+        if self.rod.grid.elements == 1:
             return sections
-        return sections[:, np.asarray(self.basis.grid.section_of_node).tolist()]
+        return sections[:, np.asarray(self.rod.grid.section_of_node).tolist()]
 
 
-def shape(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Shape:
+def shape(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Shape:
     """Forward sweep of report (2.17) in the base frame."""
-    product = bool(basis.rod.turning_axes) and basis.discretisation.transport != "permuted"
-    steps = increments(basis, q, ratio) if product else None
-    return Shape(basis, q, transport(basis, q, steps, ratio), steps, ratio)
+    product = bool(rod.properties.turning_axes) and rod.discretisation.transport != "permuted"
+    steps = increments(rod, q, ratio) if product else None
+    return Shape(rod, q, transport(rod, q, steps, ratio), steps, ratio)

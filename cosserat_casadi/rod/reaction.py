@@ -71,7 +71,7 @@ class Reaction:
 
     @property
     def _size(self) -> int:
-        return self._statics.shape.basis.size
+        return self._statics.shape.rod.size
 
     @property
     def _followers(self) -> list[Wrench]:
@@ -84,7 +84,7 @@ class Reaction:
         """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n."""
         shape = self._statics.shape
         if isinstance(wrench, PointWrench):
-            node = shape.basis.grid.node_at(wrench.at)
+            node = shape.rod.grid.node_at(wrench.at)
             return -(hat(shape.rotation_at(node) @ vector) @ self.tangent.rotation_of(node))
         angular = -(hat_operator(self._statics.line(wrench, vector)) @ self.tangent.rotation)
         return ca.horzcat(angular, ca.DM(angular.shape[0], self._size - angular.shape[1]))
@@ -98,13 +98,13 @@ class Reaction:
         """Moment about the base of a force on the wrench's section, 3×3, or of forces per length at the nodes, 3×3M."""
         shape = self._statics.shape
         if isinstance(wrench, PointWrench):
-            return hat(shape.position_at(shape.basis.grid.node_at(wrench.at)))
+            return hat(shape.position_at(shape.rod.grid.node_at(wrench.at)))
         return _hat_row(shape.position * ca.repmat(self._weights, 3, 1))
 
     @property
     def _weights(self) -> ca.DM:
-        basis = self._statics.shape.basis
-        return ca.DM(basis.rod.length * basis.grid.weights).T
+        rod = self._statics.shape.rod
+        return ca.DM(rod.properties.length * rod.grid.weights).T
 
 
 def _hat_row(field: Matrix) -> Matrix:

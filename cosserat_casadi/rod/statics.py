@@ -65,7 +65,7 @@ class Statics:
     @cached_property
     def base_force(self) -> Matrix:
         """Force of the clamp on the rod, base frame, 3×1, N: minus the sum of the loads."""
-        grid = self.shape.basis.grid
+        grid = self.shape.rod.grid
         total = ca.DM.zeros(3, 1)
         for wrench in self.wrenches:
             if wrench.force is not None:
@@ -89,7 +89,7 @@ class Statics:
 
         Integrated over each element from the internal force, so that it jumps where a couple acts.
         """
-        grid = self.shape.basis.grid
+        grid = self.shape.rod.grid
         lever = cross(self.shape.tangent, self.internal_force)
         return lever @ ca.DM(_from_tip(grid.integration_matrix, grid.weights)).T + self._carried(
             lambda wrench: wrench.moment
@@ -101,7 +101,7 @@ class Statics:
         return ca.vertcat(moment, force)
 
     def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
-        grid, length = self.shape.basis.grid, self.shape.basis.rod.length
+        grid, length = self.shape.rod.grid, self.shape.rod.properties.length
         if isinstance(wrench, PointWrench):
             node = grid.node_at(wrench.at)
             return self._resultant(wrench, force, grid.weights) @ ca.DM(grid.integration_matrix[node]).T
@@ -111,7 +111,7 @@ class Statics:
         return force @ ca.DM(wrench.profiles @ to_covector)
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
-        grid, length = self.shape.basis.grid, self.shape.basis.rod.length
+        grid, length = self.shape.rod.grid, self.shape.rod.properties.length
         if isinstance(wrench, PointWrench):
             node = grid.node_at(wrench.at)
             place = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
@@ -125,13 +125,13 @@ class Statics:
 
     def _resultant(self, wrench: Wrench, vector: Matrix, weights: FloatArray) -> Matrix:
         if isinstance(wrench, PointWrench):
-            node = self.shape.basis.grid.node_at(wrench.at)
+            node = self.shape.rod.grid.node_at(wrench.at)
             return self.shape.rotation_at(node) @ vector if wrench.follower else vector
-        return self.line(wrench, vector) @ ca.DM(self.shape.basis.rod.length * weights)
+        return self.line(wrench, vector) @ ca.DM(self.shape.rod.properties.length * weights)
 
     def _carried(self, part: Callable[[Wrench], Matrix | None]) -> Matrix:
         """Sum over the wrenches of what acts between each node and the tip, 3×M."""
-        grid = self.shape.basis.grid
+        grid = self.shape.rod.grid
         total: Matrix = ca.DM.zeros(3, grid.size)
         for wrench in self.wrenches:
             vector = part(wrench)
@@ -141,13 +141,13 @@ class Statics:
                 before = (np.arange(grid.size) <= grid.node_at(wrench.at)).astype(float)
                 total = total + self._resultant(wrench, vector, grid.weights) @ ca.DM(before).T
             else:
-                rest = self.shape.basis.rod.length * _from_tip(grid.integration_matrix, grid.weights)
+                rest = self.shape.rod.properties.length * _from_tip(grid.integration_matrix, grid.weights)
                 total = total + self.line(wrench, vector) @ ca.DM(rest).T
         return total
 
     def _at_sections(self, covector: Matrix) -> Matrix:
         """Covectors of the distinct sections: the two sides of a break act on one section."""
-        grid = self.shape.basis.grid
+        grid = self.shape.rod.grid
         if grid.elements == 1:
             return covector
         gather = np.zeros((grid.size, grid.section_of_node[-1] + 1))

@@ -46,15 +46,15 @@ def drawn(value: Matrix, ratio: Ratio) -> Matrix:
 
 
 @dataclass(frozen=True)
-class StrainBasis:
+class DiscreteRod:
     """The constant matrices that turn strain coordinates into strains.
 
     Attributes:
-        rod: what the rod is made of.
+        properties: what the rod is made of.
         discretisation: polynomials and grid.
     """
 
-    rod: RodProperties
+    properties: RodProperties
     discretisation: Discretisation
 
     @cached_property
@@ -70,28 +70,28 @@ class StrainBasis:
     @cached_property
     def energy_unit(self) -> float:
         """EI/ℓ in joules: residuals and energies are divided by it."""
-        return self.rod.bending_stiffness / self.rod.length
+        return self.properties.bending_stiffness / self.properties.length
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
         """Strain that one unit of a coordinate stands for, per admitted component (1/m or none)."""
         x, weights = legendre.leggauss(8)
-        mean = (weights / 2) @ self.rod.hooke((x + 1) / 2)
-        unit = self.rod.bending_stiffness / self.rod.length**2
-        return tuple(float(np.sqrt(unit / mean[i])) for i in self.rod.admitted)
+        mean = (weights / 2) @ self.properties.hooke((x + 1) / 2)
+        unit = self.properties.bending_stiffness / self.properties.length**2
+        return tuple(float(np.sqrt(unit / mean[i])) for i in self.properties.admitted)
 
     @cached_property
     def columns(self) -> dict[int, slice]:
         """Coordinates of each admitted component in q: stacked component by component, then by element."""
         counts = [modes * self.discretisation.elements for modes in self.discretisation.modes]
         ends = np.cumsum([0, *counts])
-        return {c: slice(int(a), int(b)) for c, a, b in zip(self.rod.admitted, ends, ends[1:], strict=False)}
+        return {c: slice(int(a), int(b)) for c, a, b in zip(self.properties.admitted, ends, ends[1:], strict=False)}
 
     def shape_functions(self, component: int, X: Array, element: npt.NDArray[np.int64]) -> Array:
         """Φ_c at abscissae X seen from the given elements, report (2.4): shape (len(X), n_c)."""
-        place = self.rod.admitted.index(component)
+        place = self.properties.admitted.index(component)
         modes = self.discretisation.modes[place]
-        polynomials = _POLYNOMIALS[self.rod.basis]
+        polynomials = _POLYNOMIALS[self.properties.basis]
         breaks = np.asarray(self.discretisation.breaks)
         local = (X - breaks[element]) / (breaks[element + 1] - breaks[element])
         values = self.scales[place] * polynomials(modes, local)
@@ -102,7 +102,7 @@ class StrainBasis:
 
     def degrees(self, component: int) -> npt.NDArray[np.int64]:
         """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
-        modes = self.discretisation.modes[self.rod.admitted.index(component)]
+        modes = self.discretisation.modes[self.properties.admitted.index(component)]
         return np.tile(np.arange(modes), self.discretisation.elements)
 
     def parities(self, component: int) -> Array:
@@ -116,7 +116,7 @@ class StrainBasis:
         Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode
         enters the sum or the difference of two mirrored intervals alone.
         """
-        count, axes = len(self.grid.left_ends), self.rod.turning_axes
+        count, axes = len(self.grid.left_ends), self.properties.turning_axes
         rows, mirror, signs = [np.zeros((0, self.size))], [], []
         for order, matrices in enumerate(self.taylor_matrices):
             for axis in axes:
@@ -135,7 +135,7 @@ class StrainBasis:
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
-        return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.rod.admitted}
+        return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.properties.admitted}
 
     def node_factors(self, component: int) -> tuple[ca.DM, ca.DM]:
         """Factors (fold, half) of Φ_c at the nodes, foldᵀ half: modes meet sums or differences of mirrored nodes."""
@@ -153,7 +153,9 @@ class StrainBasis:
         for e in range(self.grid.elements):
             a, b = self.grid.breaks[e : e + 2]
             X = a + (b - a) * (x + 1) / 2
-            hooke = self.rod.hooke(X) * (weights * (b - a) / 2 * self.rod.length / self.energy_unit)[:, None]
+            hooke = (
+                self.properties.hooke(X) * (weights * (b - a) / 2 * self.properties.length / self.energy_unit)[:, None]
+            )
             for c, columns in self.columns.items():
                 phi = self.shape_functions(c, X, np.full(len(X), e))
                 matrix[columns, columns] += phi.T @ (hooke[:, [c]] * phi)
@@ -163,7 +165,7 @@ class StrainBasis:
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
         element = self.grid.element_of(X)
-        intrinsic = self.rod.intrinsic_strain(X)
+        intrinsic = self.properties.intrinsic_strain(X)
         rows = []
         for c in range(6):
             row = ca.DM(intrinsic[:, c]).T
@@ -174,7 +176,7 @@ class StrainBasis:
 
     def strain_rows(self, q: Matrix, components: Sequence[int], ratio: Ratio = None) -> list[Matrix | None]:
         """Components of (ℓ/ℓ₀) ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
-        intrinsic = self.rod.intrinsic_strain(self.grid.nodes)
+        intrinsic = self.properties.intrinsic_strain(self.grid.nodes)
         rows: list[Matrix | None] = []
         for c in components:
             row = drawn(ca.DM(intrinsic[:, c]).T, ratio) if np.any(intrinsic[:, c]) else None
@@ -201,12 +203,12 @@ class StrainBasis:
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
         """Taylor coefficients of the unloaded turn of every interval: one (intervals, 3) array for each l."""
-        return self._taylor(lambda X, element: self.rod.intrinsic_strain(X)[:, :3])
+        return self._taylor(lambda X, element: self.properties.intrinsic_strain(X)[:, :3])
 
     @cached_property
     def taylor_count(self) -> int:
         """Taylor coefficients read per interval: one where all turns share an axis."""
-        return 1 if len(self.rod.turning_axes) < 2 else magnus.coefficient_count(self.magnus_order)
+        return 1 if len(self.properties.turning_axes) < 2 else magnus.coefficient_count(self.magnus_order)
 
     def _sampled_modes(self, X: Array, element: npt.NDArray[np.int64]) -> Array:
         samples = np.zeros((len(X), self.size))
@@ -217,12 +219,12 @@ class StrainBasis:
 
     def _taylor(self, field: Callable[[Array, npt.NDArray[np.int64]], Array]) -> list[Array]:
         """Taylor coefficients over every interval of ℓ h times a field sampled at Gauss points."""
-        degree = max([*self.discretisation.modes, *map(len, self.rod.intrinsic)])
+        degree = max([*self.discretisation.modes, *map(len, self.properties.intrinsic)])
         points = max(self.taylor_count, degree // 2 + 1)
         tau, to_taylor = magnus.taylor_from_samples(self.taylor_count, points)
         width = self.grid.right_ends - self.grid.left_ends
         X = (self.grid.left_ends + self.grid.right_ends)[:, None] / 2 + width[:, None] * tau
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals * points)
         samples = field(X.ravel(), element).reshape(len(width), points, -1)
-        scaled = samples * (self.rod.length * width)[:, None, None]
+        scaled = samples * (self.properties.length * width)[:, None, None]
         return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]

@@ -43,23 +43,23 @@ class Tangent:
     @cached_property
     def kernels(self) -> IntervalKernels:
         """Functions of one interval."""
-        return interval_kernels(self.igm.shape.basis)
+        return interval_kernels(self.igm.shape.rod)
 
     @cached_property
     def intervals(self) -> int:
         """Number of intervals between sections."""
-        return len(self.igm.shape.basis.grid.left_ends)
+        return len(self.igm.shape.rod.grid.left_ends)
 
     @cached_property
     def angular_size(self) -> int:
         """Number n_a of coordinates of curvature and torsion, which come first in q."""
-        basis = self.igm.shape.basis
-        return sum(basis.at_nodes[c].shape[1] for c in basis.rod.admitted if c < 3)
+        rod = self.igm.shape.rod
+        return sum(rod.at_nodes[c].shape[1] for c in rod.properties.admitted if c < 3)
 
     @cached_property
     def turn_factors(self) -> tuple[ca.DM, ca.DM]:
         """Factors of the derivative of the stacked turns with respect to the angular coordinates."""
-        fold, half = self.igm.shape.basis.turn_factors
+        fold, half = self.igm.shape.rod.turn_factors
         return fold, half[:, : self.angular_size]
 
     @cached_property
@@ -91,7 +91,7 @@ class Tangent:
     @cached_property
     def rotation(self) -> Matrix:
         """δθ of the nodes, 3M×n_a, rad."""
-        grid = self.igm.shape.basis.grid
+        grid = self.igm.shape.rod.grid
         if not self.kernels.axes:
             return ca.DM(3 * grid.size, self.angular_size)
         parts = ca.vertsplit(self.section_rotation, self.intervals)
@@ -111,7 +111,7 @@ class Tangent:
     def position(self, node: int) -> Matrix:
         """δr of one node, 3×n, m."""
         shape = self.igm.shape
-        weights = shape.basis.grid.integration_matrix[[node]]
+        weights = shape.rod.grid.integration_matrix[[node]]
         x, y, z = ca.vertsplit(shape.tangent * ca.repmat(ca.DM(weights), 3, 1))
         none = type(x)(*x.shape)
         turned = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]]) @ self.rotation
@@ -120,17 +120,17 @@ class Tangent:
 
     def rotation_of(self, node: int) -> Matrix:
         """δθ of one node, 3×n, rad."""
-        size = self.igm.shape.basis.grid.size
+        size = self.igm.shape.rod.grid.size
         turned = ca.vertcat(*[part[node, :] for part in ca.vertsplit(self.rotation, size)])
-        return ca.horzcat(turned, ca.DM(3, self.igm.shape.basis.size - self.angular_size))
+        return ca.horzcat(turned, ca.DM(3, self.igm.shape.rod.size - self.angular_size))
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂q, n×n, without unit."""
-        basis = self.igm.shape.basis
+        rod = self.igm.shape.rod
         linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], ca.DM(0, self.angular_size))
         none = ca.DM(linear.shape[0], linear.shape[0])
-        elastic = ca.sparsify(ca.DM(basis.stiffness))
+        elastic = ca.sparsify(ca.DM(rod.stiffness))
         elastic = elastic if self.igm.shape.ratio is None else elastic / self.igm.shape.ratio
         matrix = elastic + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
         parts = [part for part in (self._following_forces(), self._cable_stiffness()) if part is not None]
@@ -139,11 +139,11 @@ class Tangent:
     @property
     def _linear(self) -> list[int]:
         """Admitted strains that are shear or extension."""
-        return [c for c in self.igm.shape.basis.rod.admitted if c >= 3]
+        return [c for c in self.igm.shape.rod.properties.admitted if c >= 3]
 
     def _angular_rows(self) -> Matrix:
         """Angular rows and columns but for following forces, n_a×n_a."""
-        statics, unit = self.igm.statics, self.igm.shape.basis.energy_unit
+        statics, unit = self.igm.statics, self.igm.shape.rod.energy_unit
         if statics.interval_moment is None or not self.kernels.axes:
             return ca.DM(self.angular_size, self.angular_size)
         turning, stiffness, second = self.interval_operators
@@ -178,26 +178,26 @@ class Tangent:
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
-        basis, covector = self.igm.shape.basis, self.igm.statics.force_covector
-        fold, half = basis.node_factors(component)
+        rod, covector = self.igm.shape.rod, self.igm.statics.force_covector
+        fold, half = rod.node_factors(component)
         if covector is None:
             return ca.DM(half.shape[1], self.angular_size)
         lever = cross(self.igm.shape.directors[component - 3], covector)
         share = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)]) @ self.rotation
-        return (half * (-basis.rod.length / basis.energy_unit)).T @ (fold @ share)
+        return (half * (-rod.properties.length / rod.energy_unit)).T @ (fold @ share)
 
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
         wrenches = [w for w in self.igm.statics.wrenches if w.follower]
-        basis = self.igm.shape.basis
-        parts = [self._following_force(w, w.force / basis.energy_unit) for w in wrenches if w.force is not None]
+        rod = self.igm.shape.rod
+        parts = [self._following_force(w, w.force / rod.energy_unit) for w in wrenches if w.force is not None]
         if not parts:
             return None
-        return ca.horzcat(-sum(parts[1:], parts[0]), ca.DM(basis.size, basis.size - self.angular_size))
+        return ca.horzcat(-sum(parts[1:], parts[0]), ca.DM(rod.size, rod.size - self.angular_size))
 
     def _following_force(self, wrench: Wrench, force: Matrix) -> Matrix:
         """Sum of δtᵀ δn̂, n×n_a: δrᵀ (δθ × f) wherever the force acts."""
-        shape, grid = self.igm.shape, self.igm.shape.basis.grid
+        shape, grid = self.igm.shape, self.igm.shape.rod.grid
         if isinstance(wrench, PointWrench):
             node = grid.node_at(wrench.at)
             turned = hat(shape.rotation_at(node) @ force) @ self.rotation_of(node)[:, : self.angular_size]
@@ -206,25 +206,25 @@ class Tangent:
 
     def _following_line(self, wrench: LineWrench, force: Matrix) -> Matrix:
         """δn̂ of a force per length that turns with the sections, 3M×n_a."""
-        grid, length = self.igm.shape.basis.grid, self.igm.shape.basis.rod.length
+        grid, length = self.igm.shape.rod.grid, self.igm.shape.rod.properties.length
         turned = -(hat_operator(self.igm.statics.line(wrench, force)) @ self.rotation)
         to_covector = ca.DM(length * grid.weights[:, None] * grid.integration_matrix).T
         return ca.vertcat(*[to_covector @ part for part in ca.vertsplit(turned, grid.size)])
 
     def _cable_stiffness(self) -> Matrix | None:
         """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all cables, n×n: sums over the nodes of rows that cables share."""
-        basis = self.igm.shape.basis
-        admitted = basis.rod.admitted
+        rod = self.igm.shape.rod
+        admitted = rod.properties.admitted
         blocks = {(a, b): self._curvature_block(a, b) for a in admitted for b in admitted if a <= b}
         if not any(block.nnz() for block in blocks.values()):
             return None
         return ca.blockcat([[blocks[a, b] if a <= b else blocks[b, a].T for b in admitted] for a in admitted])
 
     def _curvature_block(self, a: int, b: int) -> Matrix:
-        basis = self.igm.shape.basis
-        first, second = (ca.sparsify(ca.DM(basis.at_nodes[c])) for c in (a, b))
+        rod = self.igm.shape.rod
+        first, second = (ca.sparsify(ca.DM(rod.at_nodes[c])) for c in (a, b))
         curved = [(tension, cable.stretch_curvature(a, b)) for tension, cable in self.igm.cables]
-        rows = [tension / basis.energy_unit * row for tension, row in curved if row is not None]
+        rows = [tension / rod.energy_unit * row for tension, row in curved if row is not None]
         if not rows:
             return ca.DM(first.shape[1], second.shape[1])
         block = first.T @ (ca.diag(sum(rows[1:], rows[0])) @ second)
@@ -232,13 +232,13 @@ class Tangent:
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""
-        basis = self.igm.shape.basis
-        return ca.DM(basis.rod.length * basis.at_nodes[component])
+        rod = self.igm.shape.rod
+        return ca.DM(rod.properties.length * rod.at_nodes[component])
 
     @cached_property
     def _gather(self) -> ca.DM:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
-        grid = self.igm.shape.basis.grid
+        grid = self.igm.shape.rod.grid
         sections = np.eye(self.intervals + 1)[1:, grid.section_of_node]
         return ca.sparsify(ca.DM(np.kron(np.eye(3), sections)))
 

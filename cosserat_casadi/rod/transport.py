@@ -19,7 +19,7 @@ from cosserat_casadi.maths.blocks import unstack
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.strain import Ratio, StrainBasis, drawn
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio, drawn
 
 ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
 
@@ -111,9 +111,9 @@ class IntervalKernels:
         return turn, magnus.rotation_increment(alphas) if alphas else ca.SX(3, 1)
 
 
-def interval_kernels(basis: StrainBasis) -> IntervalKernels:
+def interval_kernels(rod: DiscreteRod) -> IntervalKernels:
     """The kernels that fit a rod's turning axes and its integration method."""
-    return _kernels(basis.rod.turning_axes, basis.taylor_count)
+    return _kernels(rod.properties.turning_axes, rod.taylor_count)
 
 
 @cache
@@ -122,17 +122,17 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
     return IntervalKernels(axes, count)
 
 
-def interval_turns(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Matrix:
+def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
-    axes = list(basis.rod.turning_axes)
-    intrinsic = np.concatenate([taylor[:, axes].T for taylor in basis.intrinsic_taylor])
-    fold, half = basis.turn_factors
+    axes = list(rod.properties.turning_axes)
+    intrinsic = np.concatenate([taylor[:, axes].T for taylor in rod.intrinsic_taylor])
+    fold, half = rod.turn_factors
     return drawn(ca.DM(intrinsic), ratio) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
 
 
-def largest_turn(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Matrix:
+def largest_turn(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Largest turn of an interval between nodes, 1×1, rad: a bound on ∫|K| ds over it, from the Taylor coefficients."""
-    axes, turns = len(basis.rod.turning_axes), interval_turns(basis, q, ratio)
+    axes, turns = len(rod.properties.turning_axes), interval_turns(rod, q, ratio)
     total = ca.DM.zeros(1, turns.shape[1])
     for order in range(turns.shape[0] // axes):
         rows = turns[order * axes : (order + 1) * axes, :]
@@ -157,26 +157,26 @@ class Increments:
     factors: Matrix
 
 
-def increments(basis: StrainBasis, q: Matrix, ratio: Ratio = None) -> Increments:
+def increments(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Increments:
     """Rotations of all intervals for given strain coordinates."""
-    turns = interval_turns(basis, q, ratio)
-    return Increments(turns, *interval_kernels(basis).increment.map(turns.shape[1])(turns))
+    turns = interval_turns(rod, q, ratio)
+    return Increments(turns, *interval_kernels(rod).increment.map(turns.shape[1])(turns))
 
 
-def transport(basis: StrainBasis, q: Matrix, steps: Increments | None, ratio: Ratio = None) -> Matrix:
+def transport(rod: DiscreteRod, q: Matrix, steps: Increments | None, ratio: Ratio = None) -> Matrix:
     """Quaternions base_Q_section of the distinct sections, 4×(intervals + 1), the first the identity.
 
     Args:
-        basis: matrices of the rod.
+        rod: matrices of the rod.
         q: strain coordinates.
         steps: rotations of the intervals; None for a rod that does not turn, or to solve the literal system.
         ratio: length of the rod relative to the reference length.
     """
-    if not basis.rod.turning_axes:
-        return ca.repmat(ca.DM([1, 0, 0, 0]), 1, len(basis.grid.left_ends) + 1)
+    if not rod.properties.turning_axes:
+        return ca.repmat(ca.DM([1, 0, 0, 0]), 1, len(rod.grid.left_ends) + 1)
     if steps is None:
-        return _permuted_transport(basis, q, ratio)
-    pattern = interval_kernels(basis).increment.sparsity_out(0)
+        return _permuted_transport(rod, q, ratio)
+    pattern = interval_kernels(rod).increment.sparsity_out(0)
     start = ca.project(ca.DM([1, 0, 0, 0]), pattern)
     return ca.horzcat(start, _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion))
 
@@ -188,22 +188,22 @@ def _chain(pattern: ca.Sparsity) -> ca.Function:
     return ca.Function("chain", [rotation, increment], [product])
 
 
-def _permuted_transport(basis: StrainBasis, q: Matrix, ratio: Ratio) -> Matrix:
+def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     """Literal solve of report (3.22) for Q' = ½ ℓ A(K) Q, element after element."""
-    grid = basis.grid
-    intrinsic = basis.rod.intrinsic_strain(grid.nodes)
+    grid = rod.grid
+    intrinsic = rod.properties.intrinsic_strain(grid.nodes)
     rates = []
     for axis in range(3):
         row = drawn(ca.DM(intrinsic[:, axis]).T, ratio)
-        if axis in basis.columns:
-            row = row + (ca.DM(basis.at_nodes[axis]) @ q[basis.columns[axis]]).T
+        if axis in rod.columns:
+            row = row + (ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]).T
         rates.append(row)
     curvature = ca.vertcat(*rates)
     sections = [ca.DM([1, 0, 0, 0])]
     for e in range(grid.elements):
         width = grid.breaks[e + 1] - grid.breaks[e]
         nodes = range(e * (grid.intervals + 1), (e + 1) * (grid.intervals + 1))
-        rate = [width * basis.rod.length / 2 * quaternion_rate_matrix(curvature[:, j]) for j in nodes]
+        rate = [width * rod.properties.length / 2 * quaternion_rate_matrix(curvature[:, j]) for j in nodes]
         solution = permuted_system(rate, [ca.DM.zeros(4, 1)] * len(rate)).solve(sections[-1][:, -1])
         sections.append(solution[:, 1:])
     return ca.horzcat(*sections)

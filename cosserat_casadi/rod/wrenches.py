@@ -63,7 +63,7 @@ class ActuationStress:
 
 
 @dataclass(frozen=True)
-class Course:
+class Routing:
     """Where a cable runs through the sections, at the k nodes of the elements that it passes.
 
     Attributes:
@@ -79,14 +79,14 @@ class Course:
 
 @dataclass(frozen=True)
 class Cable:
-    """A cable under one tension all along its course: it slides without friction.
+    """A cable under one tension all along its routing: it slides without friction.
 
     Attributes:
-        course: where it runs.
+        routing: where it runs.
         tension: 1×1, N.
     """
 
-    course: Course
+    routing: Routing
     tension: Matrix
 
 

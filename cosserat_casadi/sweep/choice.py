@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.tune import fixed, refine, unfixed
 from cosserat_casadi.codegen.rows import JUDGED, POSE
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
-from cosserat_casadi.solver.accuracy import solve_scene
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.tuning import fixed, refine, unfixed
 from cosserat_casadi.sweep.row_model import result_row
 from cosserat_casadi.sweep.sampling import representative_rows
 from cosserat_casadi.sweep.variants import Variants

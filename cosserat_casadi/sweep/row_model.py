@@ -9,11 +9,11 @@ import numpy as np
 
 from cosserat_casadi.codegen.rows import row_results
 from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.scene import parse_scene
-from cosserat_casadi.solver.solution import Solution
-from cosserat_casadi.solver.solve import solve
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.load_cases import read_numbers
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import read_numbers
 from cosserat_casadi.sweep.grid_file import read_grid
 
 MOST_TOLD = 20

@@ -17,10 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.load_cases import column_places
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.constraints import check_constraints
 from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.load_cases import column_places
+from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.reading import place_of
 from cosserat_casadi.scene.writing import scene_tables

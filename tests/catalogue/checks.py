@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_from_dict, solve, solve_scene
-from cosserat_casadi.solver.stability import admissible_eigenvalues, variations
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from tests.catalogue.cases import Table, twisted_column, twisted_ring
 from tests.initial_value import integrate
 
@@ -35,7 +35,7 @@ def initial_value_error(solution: Solution) -> float:
 
     Of a free tip the wrench left there counts too, relative to EI/L and EI/L²: what is not an equilibrium shows.
     """
-    (rod,) = solution.model.frame.bases.values()
+    (rod,) = solution.model.discrete.rods.values()
     base, reached = solution.base_wrench(), integrate(solution.model.scene, *_wrench(solution))
     error = float(np.abs(reached.position - solution.tip().position[0]).max()) / rod.rod.length
     error = max(error, float(np.abs(reached.rotation - solution.tip().rotation[0]).max()))
@@ -85,7 +85,7 @@ def ring_eigenvalue(twist: float, torsion: float) -> float:
 
 def flat_ring(model: Model, twist: float) -> Any:
     """Unknowns of the flat ring: constant curvature, no twist left but the one unloaded, multipliers that hold it."""
-    (basis,) = model.frame.bases.values()
+    (basis,) = model.discrete.rods.values()
     x, strains = np.zeros(model.size), basis.size
     x[basis.columns[1].start] = 2 * np.pi / basis.scales[1]
     x[basis.columns[2].start] = twist / basis.scales[2]

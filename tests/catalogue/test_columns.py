@@ -1,6 +1,6 @@
 """Catalogue (d), (e): columns and the deep arch beyond their critical loads.
 
-Critical loads, branches and their elliptic integrals are in tests/solver/test_path.py.
+Critical loads, branches and their elliptic integrals are in tests/paths/test_path.py.
 """
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ def test_functions_of_each_rod_vs_model(library: Library, name: str) -> None:
     made = library(name)
     model, n, m = made.model, made.model.size, made.model.inputs.size
     rng = np.random.default_rng(12)
-    for rod, basis in model.frame.bases.items():
+    for rod, basis in model.discrete.rods.items():
         symbol = {word: made.names.function(word, rod) for word in ("igm", "tip", "tip_jacobian", "shape")}
         for q, inputs in points(made):
             found = results(made, symbol["tip"], [q, inputs], [(3,), (4,)])
@@ -146,7 +146,7 @@ def test_sensitivities_of_poses_vs_differences(library: Library) -> None:
 @pytest.mark.parametrize("name", ["planar", "pair", "fixed"])
 def test_sensitivity_at_what_is_no_equilibrium_writes_nothing(library: Library, name: str) -> None:
     made = library(name)
-    n, m, rods = made.model.size, made.model.inputs.size, len(made.model.frame.bases)
+    n, m, rods = made.model.size, made.model.inputs.size, len(made.model.discrete.rods)
     inputs = made.model.pack()
     solved = made.compiled.solve(inputs).q
     for q, status in ((solved + 1e-3, NOT_IN_EQUILIBRIUM), (np.full(n, np.nan), NOT_FINITE)):

@@ -104,7 +104,7 @@ def test_unknowns(exported: Exported) -> None:
     strains = [entry for entry in manifest["unknowns"] if "strain" in entry]
     assert [e["rod"] for e in strains] == [r.name for r in model.scene.rods for _ in r.admitted]
     for entry in strains:
-        basis, place = model.frame.bases[entry["rod"]], model.frame.rod_slices[entry["rod"]]
+        basis, place = model.discrete.rods[entry["rod"]], model.discrete.rod_slices[entry["rod"]]
         assert STRAINS.index(entry["strain"]) in basis.columns
         x = np.zeros(model.size)
         x[entry["first"] : entry["first"] + entry["count"]] = 1.0
@@ -115,7 +115,7 @@ def test_unknowns(exported: Exported) -> None:
         assert np.count_nonzero(x) == len(x[place][columns])
     supports = [entry for entry in manifest["unknowns"] if "strain" not in entry]
     assert [(e["rod"], e["support"]) for e in supports] == [(s.rod, s.kind) for s in model.scene.supports]
-    assert sum(e["count"] for e in supports) == model.size - model.frame.strain_size
+    assert sum(e["count"] for e in supports) == model.size - model.discrete.strain_size
 
 
 def test_discretisation_builds_the_same_model(exported: Exported) -> None:
@@ -131,7 +131,7 @@ def test_discretisation_builds_the_same_model(exported: Exported) -> None:
 def test_functions(exported: Exported) -> None:
     model, files, manifest = exported
     entries = {entry["name"]: entry for entry in manifest["functions"]}
-    rods = list(model.frame.bases)
+    rods = list(model.discrete.rods)
     for word, own in {"residual": model.path_residual, "jacobian": model.path_jacobian}.items():
         assert_shapes(entries[f"lib_k_{word}"], own, own.n_out())
     for name in rods:
@@ -185,8 +185,8 @@ def test_header_agrees_with_the_manifest(exported: Exported) -> None:
         line = next(line for line in files["lib.h"].splitlines() if line.startswith(span))
         assert f"rod {entry['rod']}" in line
         assert entry.get("strain", entry.get("support")) in line
-    for name in model.frame.bases:
-        suffix = f"_{name}" if len(model.frame.bases) > 1 else ""
+    for name in model.discrete.rods:
+        suffix = f"_{name}" if len(model.discrete.rods) > 1 else ""
         for word in ("igm", "tip", "tip_jacobian", "shape"):
             assert f"void lib_{word}{suffix}(" in files["lib.h"]
 

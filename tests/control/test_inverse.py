@@ -9,8 +9,17 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Scene, SceneError, Solution, build, inverse, inverse_scene, read_scene, solve
-from cosserat_casadi.control import inverse_result
+from cosserat_casadi import (
+    Scene,
+    SceneError,
+    Solution,
+    build,
+    inverse,
+    inverse_result,
+    inverse_scene,
+    read_scene,
+    solve,
+)
 from cosserat_casadi.scene import scene_from_dict
 from cosserat_casadi.scene.writing import scene_tables
 from tests.conftest import ROOT

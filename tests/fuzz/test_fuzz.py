@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cosserat_casadi import Scene, SceneError, parse_scene
-from cosserat_casadi.solver.outcome import Outcome
+from cosserat_casadi.numerics.outcome import Outcome
 from tests.catalogue.cases import torsion_ratio
 from tests.catalogue.checks import solved
 from tests.conftest import ROOT

@@ -87,7 +87,7 @@ def evaluate(tables: dict[str, Any], solution: Solution) -> Violation:
     discretisation, base = solution.model.discretisation["rod"], solution.base_wrench()
     claim = Claim(solution.strain, base.force, base.moment, discretisation.breaks, discretisation.modes)
     held = next((support["kind"] for support in tables.get("supports", [])), None)
-    bending = solution.model.frame.bases["rod"].rod.bending_stiffness
+    bending = solution.model.discrete.rods["rod"].properties.bending_stiffness
     return violation(rod_of(tables), claim, bending, held)
 
 

@@ -174,7 +174,7 @@ def test_igm_of_a_floating_base_vs_the_scene_turned() -> None:
 def test_shape_function_vs_numeric_interpolation_and_nodes(load: str) -> None:
     solution = solve(coarse(scene(LOADS[load])))
     model = solution.model
-    nodes = model.frame.bases["rod"].grid.nodes
+    nodes = model.discrete.rods["rod"].grid.nodes
     for X in [*nodes[:: len(nodes) // 5], 0.123, 0.4, 0.77, 1.0]:
         position, quaternion = (v.full()[:, 0] for v in model.shape["rod"](solution.x, solution.inputs, X))
         expected = solution.pose(X)
@@ -190,7 +190,7 @@ def test_energy_gradient_is_the_elastic_part_of_the_residual() -> None:
     x, inputs = point(model)
     symbols = model.energy.mx_in()
     gradient = ca.Function("gradient", symbols, [ca.gradient(model.energy(*symbols), symbols[0])])
-    unit = model.frame.bases["rod"].energy_unit
+    unit = model.discrete.rods["rod"].energy_unit
     assert_allclose(gradient(x, inputs).full() / unit, model.residual(x, inputs).full(), rtol=0, atol=1e-13)
 
 
@@ -202,7 +202,7 @@ def test_residual_vs_gradient_of_the_potential(strain: str) -> None:
     assert model.potential is not None
     symbols = model.potential.mx_in()
     gradient = ca.Function("gradient", symbols, [ca.gradient(model.potential(*symbols), symbols[0])])
-    unit = model.frame.bases["rod"].energy_unit
+    unit = model.discrete.rods["rod"].energy_unit
     assert_allclose(gradient(x, inputs).full() / unit, model.residual(x, inputs).full(), rtol=0, atol=1e-13)
 
 
@@ -268,7 +268,7 @@ def test_a_load_baked_at_zero_costs_what_no_load_costs(strain: str, load: str) -
 @pytest.mark.parametrize("load", [k for k in LOADS if "hook" not in k])
 def test_registry_makes_no_difference(load: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """With every other effect struck from the registry the model has the same instructions."""
-    from cosserat_casadi.effects.registry import EFFECTS
+    from cosserat_casadi.model.registry import EFFECTS
 
     wanted = scene(LOADS[load])
     full = counted(wanted)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, parse_scene, solve
-from cosserat_casadi.load_cases import column_places
+from cosserat_casadi.model.load_cases import column_places
 
 NAMES = ("push.force", "wind.force", "cable.tension", "arm.length", "arm.base.position", "arm.base.quaternion")
 FREE = f"inputs = {list(NAMES)}"

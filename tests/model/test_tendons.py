@@ -13,7 +13,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, parse_scene, read_scene, scene_from_dict, solve, solve_scene
-from cosserat_casadi.plot import SAMPLES, actuator_course
+from cosserat_casadi.plots.scene_plot import SAMPLES, actuator_routing
 from tests.conftest import case_files
 from tests.reference.tendons import TendonRod
 
@@ -96,16 +96,25 @@ def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
     assert_allclose(solution.tip().rotation[0], rotation, rtol=0, atol=2e-9)
 
 
-TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]
+MANY_TURNS = pytest.mark.xfail(strict=True, reason="the error of a helical tendon of many turns is under-estimated")
+
+TENDON_ROBOTS = [
+    pytest.param(path, marks=MANY_TURNS if path.stem == "tendon_helix_many_turns" else ())
+    for path in case_files("robots")
+    if path.stem.startswith("tendon")
+]
 
 
 @pytest.mark.parametrize("path", TENDON_ROBOTS, ids=lambda path: path.stem)
 def test_reference_cases_of_tendon_robots(path: Path) -> None:
     case = json.loads(path.with_suffix(".json").read_text())
-    solution = solve_scene(read_scene(path))
-    tolerance, wanted = case["position_tolerance_relative_to_length"], case["expected"]
+    scene = read_scene(path)
+    solution = solve_scene(scene)
+    wanted = case["expected"]
+    tolerance = case.get("position_tolerance_relative_to_length", scene.accuracy.tolerance)
+    length = scene.rods[0].length
     assert solution.converged
-    assert_allclose(solution.tip().position[0], wanted["tip"]["position"], rtol=0, atol=tolerance * case["length"])
+    assert_allclose(solution.tip().position[0], wanted["tip"]["position"], rtol=0, atol=tolerance * length)
     assert_allclose(solution.tip().rotation[0], wanted["tip"]["rotation"], rtol=0, atol=tolerance)
     if "base_wrench" in wanted:
         assert_allclose(solution.base_wrench().force, wanted["base_wrench"]["force"], rtol=0, atol=tolerance)
@@ -156,7 +165,7 @@ def test_loaded_chamber_vs_intrinsic_strain() -> None:
 def test_length_is_the_length_of_the_course(course: str) -> None:
     """Chords through many points of r + R D, extrapolated."""
     solution = solved(rod() + LOADED + tendon(COURSES[course]))
-    points = actuator_course(solution, solution.model.scene.actuators[0])
+    points = actuator_routing(solution, solution.model.scene.actuators[0])
     assert len(points) == len(SAMPLES)
     fine, coarse = (np.linalg.norm(np.diff(points[::k], axis=0), axis=1).sum() for k in (1, 2))
     assert_allclose(solution.actuator("cable")["length"], fine + (fine - coarse) / 3, rtol=1e-8, atol=0)
@@ -251,7 +260,7 @@ def test_residual_vs_gradient_of_the_potential(strain: str) -> None:
     q = ca.MX.sym("q", model.size)
     hessian, gradient = ca.hessian(model.potential(q, model.pack()), q)
     derivatives = ca.Function("derivatives", [q], [gradient, hessian])
-    unit = model.frame.bases["finger"].energy_unit
+    unit = model.discrete.rods["finger"].energy_unit
     for x in (np.zeros(model.size), np.random.default_rng(5).standard_normal(model.size) / 4):
         found = [part.full() / unit for part in derivatives(x)]
         assert np.all(np.isfinite(found[1]))

@@ -15,7 +15,7 @@ from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.strain import StrainBasis
+from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench
 
@@ -48,7 +48,7 @@ def rod(admitted=KIRCHHOFF, intrinsic=CURVED, *, length=0.5, basis="legendre", h
 
 def strain_basis(properties, *, modes=3, nodes=12, breaks=(0.0, 1.0), transport="magnus8"):
     per_component = (modes,) * len(properties.admitted) if isinstance(modes, int) else modes
-    return StrainBasis(properties, Discretisation(per_component, nodes, breaks, transport))
+    return DiscreteRod(properties, Discretisation(per_component, nodes, breaks, transport))
 
 
 def coordinates(basis, seed=0, size=1.0):
@@ -106,7 +106,7 @@ def hat(v):
 
 def element_strain(basis, q, element):
     """The function X ↦ ξ inside one element, from the definition (2.1)–(2.4)."""
-    rod, grid = basis.rod, basis.discretisation
+    rod, grid = basis.properties, basis.discretisation
     a, b = grid.breaks[element : element + 2]
     degree = max([*grid.modes, *map(len, rod.intrinsic)])
     local = np.cos(np.pi * (np.arange(degree) + 0.5) / degree)
@@ -123,7 +123,7 @@ def element_strain(basis, q, element):
 
 def reference_poses(basis, q, rotation=None):
     """Rotation matrices (M, 3, 3) and positions (M, 3) at the nodes, by DOP853 from the base."""
-    length = basis.rod.length
+    length = basis.properties.length
     state = np.concatenate([(np.eye(3) if rotation is None else rotation).ravel(), np.zeros(3)])
     states = []
     for e, X in enumerate(basis.grid.nodes.reshape(basis.grid.elements, -1)):
@@ -152,7 +152,7 @@ def _in_body(wrench, R, profile=None):
 
 def reference_wrench(basis, q, wrenches, rotation=None):
     """Λ = [M; N] at the nodes (M, 6): Λ' = ad_ξᵀ Λ − F̄ by DOP853 from the tip to the base."""
-    length, width = basis.rod.length, basis.grid.intervals + 1
+    length, width = basis.properties.length, basis.grid.intervals + 1
     lines = [w for w in wrenches if isinstance(w, LineWrench)]
     R = reference_poses(basis, q, rotation)[0][-1]
     wrench = np.zeros(6)

@@ -62,6 +62,6 @@ def test_planar_tip_error_vs_geometric_decay():
     basis = basis_of(4, "magnus4", rod((1,), length=1.0, intrinsic=((0.0,),) * 5 + ((1.0,),)))
     q = coordinates(basis, 13, 3.0)
     exact = reference_poses(basis, q)[1][-1]
-    errors = [np.abs(tip(basis_of(n, "magnus4", basis.rod), q) - exact).max() for n in (4, 8, 12, 16, 24)]
+    errors = [np.abs(tip(basis_of(n, "magnus4", basis.properties), q) - exact).max() for n in (4, 8, 12, 16, 24)]
     assert np.all(np.array(errors[1:4]) < np.array(errors[:3]) / 50), errors
     assert errors[-1] < 1e-13

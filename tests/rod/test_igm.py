@@ -25,7 +25,7 @@ from rods import (
 )
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi.effects.effect import Site
+from cosserat_casadi.loads.load import Site
 from cosserat_casadi.rod.tangent import Tangent
 
 BREAKS = pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.4, 1.0)])
@@ -40,11 +40,11 @@ def dead_forces(basis, seed=0):
 
 def potential(igm, wrenches):
     """Elastic energy less the work of dead forces, from positions alone."""
-    basis, position = igm.shape.basis, igm.shape.position
+    basis, position = igm.shape.rod, igm.shape.position
     work = 0
     for w in wrenches[:-1]:
         work += ca.dot(w.force, position[:, basis.grid.node_at(w.at)])
-    along = (wrenches[-1].force.full() @ wrenches[-1].profiles) * basis.grid.weights * basis.rod.length
+    along = (wrenches[-1].force.full() @ wrenches[-1].profiles) * basis.grid.weights * basis.properties.length
     return igm.energy - work - ca.dot(ca.DM(along), position)
 
 
@@ -68,7 +68,7 @@ def test_residual_vs_gradient_with_a_planar_moment():
     igm = model(basis, q, wrenches)
     curvature = ca.DM(basis.at_nodes[1]) @ q
     angles = [
-        basis.rod.length * ca.DM(basis.grid.integration_matrix[[basis.grid.node_at(at)]]) @ curvature
+        basis.properties.length * ca.DM(basis.grid.integration_matrix[[basis.grid.node_at(at)]]) @ curvature
         for at in (0.4, 1.0)
     ]
     total = igm.energy - 0.7 * angles[0] + 1.2 * angles[1]
@@ -96,7 +96,7 @@ def test_floating_base_vs_wrench_in_the_world(seed):
     basis = strain_basis(rod(REISSNER), nodes=28)
     q, wrenches = coordinates(basis, seed), mixed_loads(basis, follower=False, seed=seed)
     world_R_base = Rotation.from_rotvec([0.4 + seed, -1.3, 0.7]).as_matrix()
-    site = Site(basis.rod, basis.grid, ca.DM(world_R_base.T))
+    site = Site(basis.properties, basis.grid, ca.DM(world_R_base.T))
     tip, along = wrenches
     placed = [
         point(1.0, *(site.placed(v, follower=False) for v in (tip.force, tip.moment))),

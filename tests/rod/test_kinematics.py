@@ -54,7 +54,7 @@ def test_constant_strain_vs_exponential_of_a_twist(seed, transport, breaks):
     twist = np.zeros((4, 4))
     twist[:3, :3], twist[:3, 3] = hat(xi[:3]), xi[3:]
     places = [1, 9, 17, basis.grid.size - 1]
-    expected = np.array([expm(basis.rod.length * x * twist) for x in basis.grid.nodes[places]])
+    expected = np.array([expm(basis.properties.length * x * twist) for x in basis.grid.nodes[places]])
     assert_allclose(rotations(pose)[places], expected[:, :3, :3], rtol=0, atol=1e-14)
     assert_allclose(pose.position.full().T[places], expected[:, :3, 3], rtol=0, atol=1e-14)
 
@@ -77,7 +77,7 @@ def test_quaternions_vs_dop853_of_the_rate_matrix():
     strain = element_strain(basis, q, 0)
 
     def rate(x, Q):
-        return basis.rod.length / 2 * quaternion_rate_matrix(ca.DM(strain(x)[:3])).full() @ Q
+        return basis.properties.length / 2 * quaternion_rate_matrix(ca.DM(strain(x)[:3])).full() @ Q
 
     nodes = basis.grid.nodes
     reference = solve_ivp(rate, (0, 1), [1, 0, 0, 0], "DOP853", nodes, rtol=1e-12, atol=1e-14).y
@@ -91,7 +91,7 @@ def test_quaternion_rate_of_the_body_vs_rate_of_the_world():
     basis = strain_basis(rod(), nodes=24)
     q = coordinates(basis, 2, 1.5)
     R, _ = reference_poses(basis, q)
-    strain, length = element_strain(basis, q, 0), basis.rod.length
+    strain, length = element_strain(basis, q, 0), basis.properties.length
 
     def printed(x, y):
         return length * (hat(strain(x)[:3]) @ y.reshape(3, 3)).ravel()
@@ -152,10 +152,10 @@ def test_planar_sweep_vs_closed_form_of_the_angle(curved):
     basis = strain_basis(rod(PLANAR, intrinsic), nodes=20, transport="magnus4")
     q = coordinates(basis, 6, 2.0)
     strain = basis.at(ca.DM(q), basis.grid.nodes).full()[0]
-    angle = basis.rod.length * basis.grid.integration_matrix @ strain
+    angle = basis.properties.length * basis.grid.integration_matrix @ strain
     pose = swept(basis, q)
     assert_allclose(pose.quaternion.full()[:2], [np.cos(angle / 2), np.sin(angle / 2)], rtol=0, atol=2e-15)
-    expected = basis.rod.length * basis.grid.integration_matrix @ np.cos(angle)
+    expected = basis.properties.length * basis.grid.integration_matrix @ np.cos(angle)
     assert_allclose(pose.position.full()[2], expected, rtol=0, atol=1e-15)
 
 
@@ -165,7 +165,7 @@ def test_rod_that_cannot_turn_vs_straight_line():
     pose = swept(basis, q)
     strain = basis.at(ca.DM(q), basis.grid.nodes).full()[3:]
     assert_allclose(pose.quaternion.full()[0], 1.0, rtol=0, atol=0)
-    expected = basis.rod.length * strain @ basis.grid.integration_matrix.T
+    expected = basis.properties.length * strain @ basis.grid.integration_matrix.T
     assert_allclose(pose.position.full(), expected, rtol=0, atol=1e-15)
 
 

@@ -85,7 +85,7 @@ def test_base_wrench_vs_global_balance(breaks, follower):
     turn = R if follower else np.broadcast_to(np.eye(3), R.shape)
     f = np.einsum("kij,jk->ki", turn, along.force.full() @ along.profiles)
     c = np.einsum("kij,jk->ki", turn, along.moment.full() @ along.profiles)
-    weights = basis.rod.length * basis.grid.weights
+    weights = basis.properties.length * basis.grid.weights
     force, moment = force + weights @ f, moment + weights @ (c + np.cross(r, f))
     statics = model(basis, q, wrenches).statics
     assert_allclose(statics.base_force.full().ravel(), -force, rtol=1e-12, atol=1e-12)
@@ -134,7 +134,7 @@ def test_balance_of_a_piece_vs_printed_1_16(i, j):
     m, n = internal(igm.statics)
     r = igm.shape.position.full().T
     f, c = ((v.full() @ along.profiles).T for v in (along.force, along.moment))
-    pieces = basis.rod.length * (basis.grid.integration_matrix[j] - basis.grid.integration_matrix[i])
+    pieces = basis.properties.length * (basis.grid.integration_matrix[j] - basis.grid.integration_matrix[i])
     load = pieces @ (c + np.cross(r, f))
     correct = m[j] + np.cross(r[j], n[j]) - m[i] - np.cross(r[i], n[i]) + load
     assert_allclose(correct, np.zeros(3), rtol=0, atol=1e-11)
@@ -160,7 +160,7 @@ def test_strain_in_equilibrium_vs_constitutive_law(bent):
     igm = model(basis, q, wrenches)
     X = basis.grid.nodes
     xi = basis.at(ca.DM(q), X).full().T
-    elastic = xi - basis.rod.intrinsic_strain(X)
+    elastic = xi - basis.properties.intrinsic_strain(X)
     m, n = internal(igm.statics)
     R, _ = reference_poses(basis, q)
     body_m, body_n = np.einsum("kij,ki->kj", R, m), np.einsum("kij,ki->kj", R, n)
@@ -228,7 +228,7 @@ def test_pulled_rod_vs_hooke():
 def literal_force(basis, q, wrenches):
     """−∫ Φᵀ Bᵀ Λ dX by the weights of the grid, without ℓ, from the reference wrench."""
     wrench = reference_wrench(basis, q, wrenches)
-    parts = [basis.at_nodes[c].T @ (basis.grid.weights * wrench[:, c]) for c in basis.rod.admitted]
+    parts = [basis.at_nodes[c].T @ (basis.grid.weights * wrench[:, c]) for c in basis.properties.admitted]
     return -np.concatenate(parts)
 
 

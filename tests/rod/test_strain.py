@@ -107,21 +107,21 @@ def test_scales_vs_definition(admitted, length):
 
 def quadrature_stiffness(basis):
     """K_εε = ℓ ∫ Φᵀ H_a Φ dX in joules, by adaptive quadrature of every element."""
-    H, ends = basis.rod.hooke, np.array(basis.grid.breaks)
+    H, ends = basis.properties.hooke, np.array(basis.grid.breaks)
     total = np.zeros((basis.size, basis.size))
     for e in range(basis.grid.elements):
 
         def integrand(x, e=e):
-            phi, place = np.zeros((len(basis.rod.admitted), basis.size)), 0
+            phi, place = np.zeros((len(basis.properties.admitted), basis.size)), 0
             local = 2 * (x - ends[e]) / (ends[e + 1] - ends[e]) - 1
             for i, modes in enumerate(basis.discretisation.modes):
                 own = slice(place + e * modes, place + (e + 1) * modes)
-                phi[i, own] = basis.scales[i] * VANDER[basis.rod.basis](local, modes - 1)
+                phi[i, own] = basis.scales[i] * VANDER[basis.properties.basis](local, modes - 1)
                 place += modes * basis.grid.elements
-            return phi.T @ np.diag(H(np.array([x]))[0][list(basis.rod.admitted)]) @ phi
+            return phi.T @ np.diag(H(np.array([x]))[0][list(basis.properties.admitted)]) @ phi
 
         total += quad_vec(integrand, ends[e], ends[e + 1], epsabs=1e-14, epsrel=1e-13, norm="max")[0]
-    return basis.rod.length * total
+    return basis.properties.length * total
 
 
 @POLYNOMIALS

@@ -129,7 +129,7 @@ def test_structured_jacobian_vs_ad_at_half_and_full_turns(name, axis, turns):
     """The tip has turned by exactly π and 2π: a quaternion and its logarithm are at their worst."""
     basis, f = case(name, "one", "all", True, straight=True)
     q = np.zeros(basis.size)
-    q[basis.columns[axis].start] = 2 * np.pi * turns / basis.rod.length / basis.scales[axis]
+    q[basis.columns[axis].start] = 2 * np.pi * turns / basis.properties.length / basis.scales[axis]
     trace = np.trace(model(basis, q, []).shape.rotation_at(basis.grid.size - 1).full())
     assert_allclose(trace, 1 + 2 * np.cos(2 * np.pi * turns), rtol=0, atol=1e-13)
     _, structured, automatic = (v.full() for v in f(q))

@@ -73,7 +73,7 @@ def test_turn_factors_vs_taylor_matrices(admitted, breaks, nodes, transport):
     rows = [
         intrinsic[:, axis] + (matrices[axis] @ q[basis.columns[axis]] if axis in matrices else 0.0)
         for intrinsic, matrices in zip(basis.intrinsic_taylor, basis.taylor_matrices, strict=True)
-        for axis in basis.rod.turning_axes
+        for axis in basis.properties.turning_axes
     ]
     assert_allclose(interval_turns(basis, ca.DM(q)).full(), np.array(rows), rtol=0, atol=1e-15)
     derivative = (fold.T @ half).full()

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from cosserat_casadi import SceneError, Solution, solve_scene, sweep_scene
-from cosserat_casadi.cli import INTERRUPTED, REFUSED, app, run
+from cosserat_casadi.cli.main import INTERRUPTED, REFUSED, app, run
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import rod, scene
 from tests.sweep.conftest import PLANAR
@@ -94,7 +94,7 @@ def test_an_interrupt_that_is_lost_stops_the_command(
 
     lost: list[bool] = []
     monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
-    monkeypatch.setattr("cosserat_casadi.cli.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.cli.main.solve_scene", lose)
     words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words, "--output", "out.csv"])
     before = signal.getsignal(signal.SIGINT)

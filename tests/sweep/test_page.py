@@ -67,7 +67,7 @@ def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
     grid = (ROOT / "examples" / "sweeps" / "robot_workspace.toml").read_text()
     (tmp_path / "small.toml").write_text(grid.replace("samples = 20000", "samples = 30"))
     line = first.replace("examples/sweeps/robot_workspace.toml", "small.toml").replace("examples/", f"{ROOT}/examples/")
-    code = "from cosserat_casadi.cli import main; main()"
+    code = "from cosserat_casadi.cli.main import main; main()"
     words = [*shlex.split(line)[1:], "--set", "accuracy.modes=3", "--set", "accuracy.nodes=6"]
     words = [word.replace("accuracy.tolerance=1e-4", "accuracy.tolerance=0.1") for word in words]
     done = subprocess.run(
@@ -82,7 +82,7 @@ def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
 def test_wires_drawn_from_tolerances_are_solved(tmp_path: Path) -> None:
     """A stiffer wire bends less: the tips of 16 drawn wires lie in the order of their bending stiffness."""
     grid = ROOT / "examples" / "sweeps" / "wire_tolerances.toml"
-    code = "from cosserat_casadi.cli import main; main()"
+    code = "from cosserat_casadi.cli.main import main; main()"
     words = ["sweep", str(WIRE), "--over", str(grid), "--output", "wires.csv", "--set", "weight.acceleration=[0,0,0]"]
     words += ["--set", "push.force=[0,0,0]", "--set", "accuracy.modes=4", "--set", "accuracy.nodes=8"]
     words += ["--set", "accuracy.tolerance=1e-3"]

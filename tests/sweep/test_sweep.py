@@ -162,7 +162,7 @@ SLOW = {"push.force.x": np.random.default_rng(5).uniform(-3.0, 3.0, 12_000)}
 
 
 def command(folder: Path, output: str, *more: str) -> list[str]:
-    code = "from cosserat_casadi.cli import main; main()"
+    code = "from cosserat_casadi.cli.main import main; main()"
     words = ["sweep", "scene.toml", "--over", "rows.csv", "--output", output, *more]
     (folder / "scene.toml").write_text(scene_text(PLANAR))
     rows = "\n".join(map(repr, SLOW["push.force.x"].tolist()))

@@ -1,0 +1,1 @@
+"""The discretisation that meets a tolerance at the least cost."""

@@ -1,0 +1,136 @@
+"""One discretisation for many load cases: what a controller needs, chosen beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.writing import scene_tables
+
+ROUNDS = 6
+"""Most times that a discretisation is refined because a case misses the tolerance on it."""
+
+Values = Mapping[str, npt.ArrayLike]
+Progress = Callable[[int, int], None]
+"""Told how many of how many solves are done; the total may grow."""
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """A discretisation that meets a tolerance over a set of load cases, or the best found.
+
+    Attributes:
+        scene: the scene with its modes, nodes and rotation integrator fixed.
+        solutions: of every case on that discretisation, each with its error estimate.
+        met: whether every case converged with an estimate within the tolerance.
+    """
+
+    scene: scenes.Scene
+    solutions: tuple[Solution, ...]
+    met: bool
+
+    @property
+    def worst(self) -> int:
+        """Index of the case with the largest error estimate; of the first that did not converge where one did not."""
+        return max(range(len(self.solutions)), key=lambda i: _error(self.solutions[i]))
+
+
+def tune(
+    scene: scenes.Scene, cases: Sequence[Values], tolerance: float | None = None, progress: Progress | None = None
+) -> Tuning:
+    """The smallest discretisation found that meets a tolerance at every load case.
+
+    Each case chooses for itself; the union of what they chose is tried on all, and refined while a case misses.
+
+    Args:
+        scene: a validated scene; modes and nodes that it fixes are chosen anew.
+        cases: inputs by name, at least one; those not named keep the scene's values.
+        tolerance: wanted error of the tip poses relative to length; the scene's own by default.
+        progress: told how many solves are done.
+
+    Raises:
+        SceneError: a value or the tolerance is refused.
+    """
+    wanted = scene.accuracy.tolerance if tolerance is None else tolerance
+    free = unfixed(scene, wanted)
+    done, total = 0, 2 * len(cases)
+
+    def told(one: scenes.Scene, values: Values) -> Solution:
+        nonlocal done
+        solution = solve_scene(one, values)
+        done += 1
+        if progress is not None:
+            progress(done, max(done, total))
+        return solution
+
+    alone = [told(free, values) for values in cases]
+    chosen, together = refine([(free, values) for values in cases], alone, told)
+    met = all(_error(solution) <= wanted for solution in together)
+    return Tuning(fixed(free, chosen), tuple(together), met)
+
+
+def refine(
+    cases: Sequence[tuple[scenes.Scene, Values]],
+    alone: Sequence[Solution],
+    solved: Callable[[scenes.Scene, Values], Solution] = solve_scene,
+) -> tuple[Discretisation, list[Solution]]:
+    """One discretisation for many cases: the union of what each chose alone, refined while a case misses.
+
+    Args:
+        cases: scenes that leave modes and nodes open, of one tolerance, each with inputs by name.
+        alone: solution of each case on a discretisation of its own.
+        solved: solves a scene whose discretisation is fixed.
+
+    Returns:
+        the discretisation, and the solution of every case on it.
+    """
+    chosen = _union([d for s in alone for d in s.model.discretisation.values()])
+    for _ in range(ROUNDS):
+        together = [solved(fixed(free, chosen), values) for free, values in cases]
+        met = all(_error(s) <= free.accuracy.tolerance for (free, _), s in zip(cases, together, strict=True))
+        if met or not all(solution.converged for solution in together):
+            break
+        chosen = Discretisation(tuple(m + 1 for m in chosen.modes), chosen.nodes + 2, transport=chosen.transport)
+    return chosen, together
+
+
+def _error(solution: Solution) -> float:
+    if not solution.converged or solution.error_estimate is None:
+        return float("inf")
+    return solution.error_estimate
+
+
+def _union(chosen: Sequence[Discretisation]) -> Discretisation:
+    """The least discretisation with all the modes and nodes of these; one number of modes where rods differ."""
+    counts = {len(d.modes) for d in chosen}
+    if len(counts) == 1:
+        modes = tuple(max(column) for column in zip(*[d.modes for d in chosen], strict=True))
+    else:
+        modes = (max(max(d.modes) for d in chosen),)
+    order = max(d.transport for d in chosen)
+    return Discretisation(modes, max(d.nodes for d in chosen), transport=order)
+
+
+def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
+    """The scene with its discretisation to be chosen for a tolerance."""
+    return _with_accuracy(scene, tolerance=tolerance, modes=None, nodes=None, rotation=None)
+
+
+def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
+    """The scene with all rods on one discretisation."""
+    modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
+    return _with_accuracy(scene, modes=modes, nodes=chosen.nodes, rotation=chosen.transport)
+
+
+def _with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
+    """The scene read again with other entries of its accuracy; None leaves one out."""
+    tables = scene_tables(scene)
+    entries = tables.get("accuracy", {}) | changes
+    tables["accuracy"] = {key: value for key, value in entries.items() if value is not None}
+    return scenes.scene_from_dict(tables)

@@ -1,1 +1,0 @@
-"""What acts on rods: one file an effect, and the registry."""

@@ -1,0 +1,153 @@
+"""What a solve found, with everything one may ask of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Poses of k sections in the world frame.
+
+    Attributes:
+        position: shape (k, 3), m.
+        rotation: world_R_section, shape (k, 3, 3).
+        quaternion: world_Q_section, w x y z, shape (k, 4).
+    """
+
+    position: FloatArray
+    rotation: FloatArray
+    quaternion: FloatArray
+
+
+@dataclass(frozen=True)
+class BaseWrench:
+    """What the clamp exerts on the rod, world frame, about the base point.
+
+    Attributes:
+        force: shape (3,), N.
+        moment: shape (3,), N m.
+    """
+
+    force: FloatArray
+    moment: FloatArray
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The end of a solve; an equilibrium only where ``converged`` says so.
+
+    Attributes:
+        model: the model that was solved.
+        inputs: stacked inputs it was solved for, shape (model.inputs.size,).
+        x: unknowns, shape (model.size,).
+        outcome: how the solve ended.
+        message: a sentence for the user.
+        residual_norm: relative norm of the dimensionless residual at x, computed again at the end.
+        iterations: Newton iterations, all load steps together.
+        load_factor: share of the loads that was reached, 1 unless the load stalled.
+        smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
+        stable: whether every admissible variation costs energy; None where that has no meaning.
+        error_estimate: estimated pose error of the tips relative to the rod length, of held rods at sections between
+            the ends too; None if not estimated.
+        shape_error_estimate: the same over all sections, those between nodes included.
+    """
+
+    model: Model
+    inputs: FloatArray
+    x: FloatArray
+    outcome: Outcome
+    message: str
+    residual_norm: float
+    iterations: int
+    load_factor: float = 1.0
+    smallest_eigenvalue: float | None = None
+    stable: bool | None = None
+    error_estimate: float | None = None
+    shape_error_estimate: float | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether x is an equilibrium to the solver's tolerance."""
+        return self.outcome is Outcome.CONVERGED
+
+    def tip(self, rod: str | None = None) -> Pose:
+        """Pose of a rod's tip."""
+        return self.pose(np.array([1.0]), rod)
+
+    def body(self, name: str | None = None) -> Pose:
+        """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
+
+        Raises:
+            KeyError: there is no such body, or there are several to choose from.
+        """
+        names = list(self.model.body)
+        chosen = names[0] if name is None and len(names) == 1 else name
+        if chosen not in names:
+            raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
+        position, quaternion, rotation = (m.full() for m in self.model.body[chosen](self.x, self.inputs))
+        return Pose(position.T, rotation[None], quaternion.T)
+
+    def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
+        """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
+
+        Args:
+            X: shape (k,).
+            rod: name of the rod; may be left out where there is one.
+        """
+        name = self.model.rod_name(rod)
+        matrix = self._interpolation(X, name)
+        nodal = self._fields(name)
+        position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
+        quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
+        return Pose(position, rotations(quaternion), quaternion)
+
+    def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
+        """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
+        name = self.model.rod_name(rod)
+        discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.rod_slices[name]
+        ratio = self.model.length_ratio(name, self.inputs)
+        strain: FloatArray = discrete_rod.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float)), ratio).full().T
+        return strain
+
+    def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
+        """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
+        name = self.model.rod_name(rod)
+        wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
+        return wrench
+
+    def base_wrench(self, rod: str | None = None) -> BaseWrench:
+        """Force and moment of the clamp on a rod."""
+        nodal = self._fields(self.model.rod_name(rod))
+        return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
+
+    def actuator(self, name: str) -> dict[str, float]:
+        """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
+        function = self.model.actuator[name]
+        values = function(self.x, self.inputs)
+        return {function.name_out(i): float(values[i]) for i in (0, 1)}
+
+    def _fields(self, rod: str) -> list[FloatArray]:
+        return [field.full() for field in self.model.fields[rod](self.x, self.inputs)]
+
+    def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
+        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+        return self.model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
+
+
+def rotations(q: FloatArray) -> FloatArray:
+    """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
+    w, x, y, z = q.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)

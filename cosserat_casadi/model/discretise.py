@@ -1,0 +1,57 @@
+"""Modes, nodes and element ends of every rod of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.rod.discretisation import Discretisation
+
+DEFAULT_MODES = 6
+"""Polynomials per strain component where neither the scene nor the tolerance says."""
+
+DEFAULT_TRANSPORT = "magnus6"
+"""Integration method of the rotation where nobody says."""
+
+
+def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
+    """Abscissae at which a rod is cut: its ends and where a load, or a rod that it carries, makes a jump."""
+    cuts = {0.0, 1.0}
+    for cause in scene.causes:
+        effect = EFFECTS[cause.kind]
+        if effect.acts_on(cause, rod):
+            cuts.update(effect.breaks(cause))
+    cuts.update(carried.base.at for carried in scene.rods if carried.base.rod == rod)
+    return tuple(sorted(cuts))
+
+
+def nodes_for(modes: int) -> int:
+    """Chebyshev intervals that resolve the shape of a rod whose strain has so many modes."""
+    return 2 * modes + 2
+
+
+def discretise(
+    scene: scenes.Scene,
+    modes: int | Sequence[int] | None = None,
+    nodes: int | None = None,
+    transport: str | None = None,
+) -> dict[str, Discretisation]:
+    """A discretisation for every rod: what is given here, else what the scene fixes, else a default.
+
+    Args:
+        scene: the scene.
+        modes: polynomials per component and element, one number or one for each admitted strain.
+        nodes: Chebyshev intervals per element.
+        transport: integration method of the rotation.
+    """
+    modes = scene.accuracy.modes if modes is None else modes
+    nodes = scene.accuracy.nodes if nodes is None else nodes
+    transport = transport or scene.accuracy.rotation or DEFAULT_TRANSPORT
+    chosen = DEFAULT_MODES if modes is None else modes
+    found = {}
+    for rod in scene.rods:
+        per_component = (chosen,) * len(rod.admitted) if isinstance(chosen, int) else tuple(chosen)
+        count = nodes if nodes is not None else nodes_for(max(per_component))
+        found[rod.name] = Discretisation(per_component, count, element_ends(scene, rod.name), transport)
+    return found

@@ -1,0 +1,73 @@
+"""Joints that hold too much or too little, told before anything is solved.
+
+Those that over-constrain show in the rank of the linearised gaps.
+
+Rods hold a body as far as their strains allow. Where the gaps' equations depend on each other for every shape of the
+rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch, clamped in one
+body, or planar rods of different planes. A few modes and a random shape show it.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.model.spins import free_spins
+from cosserat_casadi.model.system import Arguments, DiscreteScene, System, discrete_scene
+
+MODES, NODES, SEED = 4, 10, 20250711
+"""A discretisation that can bend every way a rod can, and the seed of its random shape."""
+
+RANK = 1e-8
+"""Share of the largest singular value below which one counts as zero."""
+
+
+@lru_cache(maxsize=64)
+def check_constraints(scene: scenes.Scene) -> None:
+    """Refuse a scene whose ties over-constrain, or leave a body free to turn.
+
+    Raises:
+        SceneError: with the first tie that has nothing of its own to hold, or every body that turns freely.
+    """
+    if not scene.joints and all(rod.base.rod is None for rod in scene.rods):
+        return
+    probe = discrete_scene(scene, input_layout(scene), discretise(scene, MODES, NODES, "magnus4"))
+    system = _at_a_random_shape(probe)
+    if spins := list(free_spins(system)):
+        raise SceneError(*spins)
+    gaps = _gap_rows(system)
+    if _rank(gaps) == len(gaps):
+        return
+    remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
+    for tie in probe.couplings.ties:
+        place = probe.tie_slices[tie.where]
+        upper = gaps[: place.stop - probe.strain_size]
+        if _rank(upper) < len(upper):
+            problem = f"over-constrains: {tie.what} is held already in a direction in which its rods cannot give"
+            raise SceneError(Problem(tie.where, problem, remedy))
+
+
+def _at_a_random_shape(probe: DiscreteScene) -> System:
+    """The equations at a shape that has nothing special, at the scene's inputs."""
+    x = np.zeros(probe.size)
+    x[: probe.strain_size] = 0.3 * np.random.default_rng(SEED).standard_normal(probe.strain_size)
+    return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
+
+
+def _gap_rows(system: System) -> FloatArray:
+    """Linearised gaps of supports and ties against strains and moving frames."""
+    probe, jacobian = system.discrete, ca.evalf(system.jacobian).full()
+    first, last = probe.strain_size, probe.strain_size + probe.multiplier_size
+    return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))
+
+
+def _rank(rows: FloatArray) -> int:
+    singular = np.linalg.svd(rows, compute_uv=False)
+    return int(np.sum(singular > RANK * singular[0])) if singular.size else 0

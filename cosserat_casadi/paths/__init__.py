@@ -1,0 +1,1 @@
+"""Equilibria along one input: limit points, bifurcations, branches."""

@@ -1,0 +1,1 @@
+"""Figures of solutions, paths and sweeps."""

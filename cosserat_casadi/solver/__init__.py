@@ -1,1 +1,0 @@
-"""Solving: outcomes, globalised Newton, load continuation, stability, accuracy."""

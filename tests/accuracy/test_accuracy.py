@@ -1,0 +1,214 @@
+"""The tolerance: what is picked for it meets it, and is no larger than it must be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
+from cosserat_casadi.accuracy.coarsen import Trim
+from cosserat_casadi.accuracy.cost import STRAIGHT, foreseen_operations, foreseen_time, spread_on
+from cosserat_casadi.accuracy.preview import Preview
+from cosserat_casadi.accuracy.refine import pose_distance
+from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.codegen.kernels import scalar
+from cosserat_casadi.rod.discretisation import Discretisation
+from tests.conftest import CASES
+from tests.reference.random_scenes import random_scene
+from tests.scenes import HOOK, WEIGHT, push, scene
+
+B1 = CASES / "rods" / "steel_b1_kirchhoff.toml"
+
+
+def fine(wanted: Scene, modes: int = 14, nodes: int = 36) -> Solution:
+    return solve(build(wanted, discretise(wanted, modes, nodes, "magnus8")))
+
+
+@pytest.mark.skipif(not B1.exists(), reason="the reference cases are not beside this checkout")
+def test_planar_load_takes_modes_in_its_plane_only() -> None:
+    wanted = read_scene(B1, ("accuracy.tolerance=1e-8",))
+    solution = solve_scene(wanted)
+    assert solution.converged
+    assert solution.model.size <= 10
+    assert pose_distance(solution, fine(wanted)) <= 1e-8
+
+
+@pytest.mark.parametrize("seed", range(300, 312))
+def test_tolerance_is_met(seed: int) -> None:
+    """And the estimate is not below the truth."""
+    tolerance = (1e-3, 1e-5, 1e-7, 1e-9)[seed % 4]
+    wanted = scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": tolerance}})
+    solution = solve_scene(wanted)
+    assert solution.converged, solution.message
+    chosen = solution.model.discretisation["rod"]
+    error = pose_distance(solution, fine(wanted, max(chosen.modes) + 7, 2 * chosen.nodes + 14))
+    assert solution.error_estimate is not None
+    assert error <= solution.error_estimate <= tolerance
+
+
+def test_unloaded_rod_takes_one_mode() -> None:
+    solution = solve_scene(scene(accuracy={"tolerance": 1e-9}))
+    assert solution.converged
+    assert solution.model.discretisation["rod"].modes == (1, 1, 1)
+    assert solution.error_estimate is not None
+    assert solution.error_estimate <= 1e-9
+    assert_allclose(solution.x, 0.0, rtol=0, atol=0)
+
+
+def test_fixed_modes_are_kept_and_nodes_follow() -> None:
+    solution = solve_scene(scene(push(), accuracy={"modes": [5, 5, 4], "tolerance": 1e-3}))
+    assert solution.model.discretisation["rod"].modes == (5, 5, 4)
+    assert solution.error_estimate is not None
+
+
+def test_modes_follow_the_inputs_given() -> None:
+    flat = solve_scene(scene(push(force=[0.9, 0.0, 0.0])))
+    turned = solve_scene(scene(push(force=[0.9, 0.0, 0.0])), {"push.force": [0.0, 0.9, 0.0]})
+    assert flat.model.discretisation["rod"].modes[::2] == (1, 1)
+    assert turned.model.discretisation["rod"].modes[1:] == (1, 1)
+    assert min(flat.model.discretisation["rod"].modes[1], turned.model.discretisation["rod"].modes[0]) > 2
+
+
+@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+def test_held_rod_is_right_between_its_ends(kind: str) -> None:
+    """Its tip is right with any modes, so the tip must not be what is looked at."""
+    held = {"rod": "rod", "kind": kind, "position": [0.2, 0.15, 0.6]}
+    pose = {"quaternion": [1.0, 0.0, 0.0, 0.0]} if kind == "clamped" else {}
+    wanted = scene(WEIGHT, supports=[{**held, **pose}], accuracy={"tolerance": 1e-3})
+    solution = solve_scene(wanted)
+    assert solution.converged, solution.message
+    assert pose_distance(solution, fine(wanted, 11, 26)) <= 1e-3
+
+
+def test_trimmed_model_is_where_the_witness_says() -> None:
+    """Previews against solved models, and the start that a trim hands over against the solution."""
+    wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT, HOOK, strain="reissner")
+    witness = fine(wanted, 9, 22)
+    preview = Preview(witness)
+    trimmed = Trim(preview, 1e-6).run()
+    solution = solve(build(wanted, trimmed.discretisation))
+    modes = {name: d.modes for name, d in trimmed.discretisation.items()}
+    start = preview.with_modes(modes)
+    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, trimmed.discretisation)
+    assert_allclose(Preview(solution).tips - preview.tips, foreseen, rtol=0, atol=2e-8)
+    assert np.abs(foreseen).max() <= 1.01e-6
+    assert_allclose(trimmed.start, solution.x, rtol=0, atol=1e-3)
+
+
+def test_witness_knows_its_own_error() -> None:
+    """Not too small, and not so large that the ladder climbs in vain."""
+    wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT)
+    truth = fine(wanted)
+    for modes, nodes in ((5, 30), (7, 30), (9, 10)):
+        witness = solve(build(wanted, discretise(wanted, modes, nodes, "magnus6")))
+        resolution = Resolution(Preview(witness))
+        true = pose_distance(witness, truth)
+        assert true <= resolution.modes_error + resolution.grid_error <= 100 * true
+
+
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+def test_foreseen_operations_vs_counted(strain: str) -> None:
+    """Ratios are what a choice needs."""
+    wanted = scene(push(), WEIGHT, strain=strain)
+    counted, foreseen = [], []
+    for modes, nodes in ((3, 5), (5, 8)):
+        model = build(wanted, discretise(wanted, modes, nodes))
+        counted.append(model.operations(model.jacobian))
+        foreseen.append(foreseen_operations(model.discrete.rods["rod"].properties, model.discretisation["rod"]).all)
+    assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.35)
+    assert_allclose(foreseen, counted, rtol=0.5)
+
+
+@pytest.mark.parametrize("seed", [301, 303, 306])
+def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
+    """Of the tip alone the same tolerance leaves other sections wrong by far more."""
+    wanted = [
+        scene_from_dict({**random_scene(seed), "accuracy": {"tolerance": 1e-7, "shape": shape}})
+        for shape in (False, True)
+    ]
+    of_tip, of_shape = (solve_scene(one) for one in wanted)
+    chosen = of_shape.model.discretisation["rod"]
+    truth, X = fine(wanted[1], max(chosen.modes) + 7, 2 * chosen.nodes + 14), np.linspace(0, 1, 101)
+    assert of_shape.converged
+    assert of_shape.shape_error_estimate is not None
+    assert pose_distance(of_shape, truth, X) <= 1e-7
+    assert pose_distance(of_shape, truth, X) <= 1.1 * of_shape.shape_error_estimate
+    assert pose_distance(of_tip, truth, X) > 2e-7
+
+
+WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": "body"}
+
+
+@pytest.mark.parametrize(
+    "magnitude", [{"force": [0.5, 0.0, 0.1]}, {"moment": [0.0, 0.1, 0.05]}], ids=["force", "moment"]
+)
+def test_foreseen_operations_of_spread_loads(magnitude: dict[str, list[float]]) -> None:
+    """What a spread load adds is a good part of the whole, and seen."""
+    counted, foreseen = [], []
+    for loads in ((push(),), (push(), {**WIND, **magnitude})):
+        wanted = scene(*loads)
+        model = build(wanted, discretise(wanted, 7, 14, "magnus4"))
+        rod, chosen = model.discrete.rods["rod"].properties, model.discretisation["rod"]
+        counted.append(model.operations(model.jacobian))
+        foreseen.append(foreseen_operations(rod, chosen, spread_on(wanted, "rod")).all)
+    assert counted[1] > 1.4 * counted[0]
+    assert_allclose(foreseen[1] / foreseen[0], counted[1] / counted[0], rtol=0.1, atol=0)
+
+
+@pytest.mark.parametrize("nodes", [6, 18])
+def test_loops_are_foreseen(nodes: int) -> None:
+    """Beyond the limit of straight-line code an interval takes several times as long."""
+    wanted = scene(push(), WEIGHT)
+    model = build(wanted, discretise(wanted, 6, nodes, "magnus6"))
+    rod, chosen = model.discrete.rods["rod"].properties, model.discretisation["rod"]
+    straight = scalar(model.path_jacobian, "jacobian").n_instructions() <= STRAIGHT
+    assert straight == (nodes == 6)
+    assert (foreseen_operations(rod, chosen).instructions <= STRAIGHT) == straight
+    assert (foreseen_time(rod, chosen) < 2.0 * nodes) == straight
+
+
+def test_components_give_up_modes_together() -> None:
+    """One mode less of one component is too many, one less of all does: their changes make up for each other."""
+    tables = random_scene(1005)
+    for load in tables["loads"]:
+        if load["kind"] == "tip_wrench":
+            load["force"] = [2 * v for v in load["force"]]
+    wanted = scene_from_dict({**tables, "accuracy": {"tolerance": 1e-5}})
+    solution, truth = solve_scene(wanted), fine(wanted)
+    chosen = solution.model.discretisation["rod"]
+    assert chosen.modes == (5, 5, 5)
+    assert pose_distance(solution, truth) <= 1e-5
+    assert pose_distance(solve(build(wanted, {"rod": replace(chosen, modes=(5, 6, 6))})), truth) > 1e-5
+
+
+def test_choice_is_cheaper_than_its_neighbours() -> None:
+    """One mode or one interval less, and the tolerance is missed."""
+    wanted = scene(push(force=[3.0, 0.0, -1.0]), accuracy={"tolerance": 1e-7})
+    solution, truth = solve_scene(wanted), fine(wanted)
+    chosen = solution.model.discretisation["rod"]
+    assert chosen.modes[::2] == (1, 1)
+    fewer = replace(chosen, modes=(1, chosen.modes[1] - 1, 1))
+    coarser = replace(chosen, nodes=chosen.nodes - 2)
+    for changed in (fewer, coarser):
+        assert pose_distance(solve(build(wanted, {"rod": changed})), truth) > 0.5e-7
+
+
+class _Blind:
+    """A preview that cannot foresee fewer modes."""
+
+    discretisation = {"rod": Discretisation((5,), 12)}
+    couplings = SimpleNamespace(ties=())
+    model = discrete = property(lambda self: self)
+
+    def mode_shift(self, modes: object) -> np.ndarray:
+        return np.full(12, np.nan)
+
+
+def test_what_cannot_be_foreseen_is_an_infinite_error() -> None:
+    resolution = Resolution(_Blind())  # type: ignore[arg-type]
+    assert resolution.modes_error == np.inf
+    assert resolution.modes_lacking(1e-3) > 0

@@ -1,0 +1,45 @@
+"""Tuning: one discretisation that holds over all load cases, and says so honestly."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import build, discretise, parse_scene, solve, solve_scene, tune
+from cosserat_casadi.accuracy.refine import pose_distance
+from cosserat_casadi.scene.writing import scene_text
+from tests.scenes import push, scene
+
+
+def test_tuned_discretisation_holds_at_every_case() -> None:
+    """Against a much finer solution of each case; neither case's own choice serves the other."""
+    wanted = scene(push(force=[0.4, 0.0, 0.0]), accuracy={"tolerance": 1e-5})
+    cases = [{"push.force": [1.5, 0.0, 0.0]}, {"push.force": [0.0, 1.0, -0.3]}, {"push.force": [0.0, 0.0, 0.0]}]
+    tuning = tune(wanted, cases)
+    assert tuning.met
+    own = [solve_scene(wanted, case).model.size for case in cases]
+    assert max(own) <= tuning.solutions[0].model.size
+    for case, solution in zip(cases, tuning.solutions, strict=True):
+        fine = solve(build(wanted, discretise(wanted, 14, 34, "magnus8")), case)
+        assert pose_distance(solution, fine) <= 1e-5
+    again = parse_scene(scene_text(tuning.scene))
+    assert again == tuning.scene
+    assert solve_scene(again).model.discretisation == tuning.solutions[0].model.discretisation
+
+
+def test_worst_case_is_the_one_with_the_largest_estimate() -> None:
+    wanted = scene(push(force=[0.4, 0.0, 0.0]))
+    cases = [{"push.force": [size, 0.0, 0.0]} for size in (0.1, 2.0, 0.5)]
+    tuning = tune(wanted, cases, 1e-4)
+    estimates = [solution.error_estimate for solution in tuning.solutions]
+    assert tuning.worst == int(np.argmax(np.array(estimates, dtype=float)))
+    assert_allclose(tuning.scene.accuracy.tolerance, 1e-4, rtol=0, atol=0)
+
+
+def test_a_case_without_equilibrium_is_not_met() -> None:
+    """A load beyond all numbers: the case is called the worst, and the tuning not met."""
+    cases = [{"push.force": [0.1, 0.0, 0.0]}, {"push.force": [1e200, 0.0, 0.0]}]
+    tuning = tune(scene(push(), strain="planar"), cases, 1e-2)
+    assert not tuning.met
+    assert tuning.worst == 1
+    assert not tuning.solutions[1].converged

@@ -1,0 +1,437 @@
+"""The command line as a user meets it: real processes, exit codes, files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, build, read_scene, solve
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.solution_file import result_text
+from tests.conftest import ROOT
+
+SCENE = """
+schema = 1
+title = "A wire"
+[[rods]]
+name = "wire"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
+section = { shape = "circle", radius = 0.5e-3 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "wire"
+force = [0.2, 0, 0]
+"""
+
+
+def cosserat(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()", *arguments]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
+
+
+@pytest.fixture
+def wire(tmp_path: Path) -> Path:
+    (tmp_path / "wire.toml").write_text(SCENE)
+    return tmp_path
+
+
+def test_solve_writes_result_and_figure(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--output", "r.json", "--plot", "f.png", cwd=wire)
+    assert done.returncode == 0, done.stderr
+    assert "Equilibrium found" in done.stdout
+    assert "tip position" in done.stdout
+    assert (wire / "f.png").read_bytes().startswith(b"\x89PNG")
+    result = json.loads((wire / "r.json").read_text())
+    assert result["converged"] is True
+    assert result["outcome"] == "converged"
+    assert sorted(p.name for p in wire.iterdir()) == ["f.png", "r.json", "wire.toml"]
+
+
+def test_result_file_vs_solution(wire: Path) -> None:
+    cosserat("solve", "wire.toml", "--output", "r.json", cwd=wire)
+    result = json.loads((wire / "r.json").read_text())
+    rod = result["rods"]["wire"]
+    discretisation = result["discretisation"]["wire"]
+    chosen = {
+        "modes": discretisation["modes"],
+        "nodes": discretisation["nodes"],
+        "rotation": json.dumps(discretisation["transport"]),
+    }
+    scene = read_scene(wire / "wire.toml", [f"accuracy.{key}={value}" for key, value in chosen.items()])
+    solution = solve(build(scene))
+    X = np.array(rod["X"])
+    assert X[0] == 0.0
+    assert X[-1] == 1.0
+    pose = solution.pose(X)
+    assert_allclose(rod["position"], pose.position, rtol=0, atol=1e-12)
+    assert_allclose(rod["quaternion"], pose.quaternion, rtol=0, atol=1e-12)
+    assert_allclose(rod["strain"], solution.strain(X), rtol=0, atol=1e-9)
+    assert_allclose(rod["internal_wrench"], solution.internal_wrench(X), rtol=0, atol=1e-9)
+    assert_allclose(rod["tip"]["position"], rod["position"][-1], rtol=0, atol=1e-15)
+    assert_allclose(rod["base_wrench"]["force"], [-0.2, 0, 0], rtol=0, atol=1e-12)
+    w, x, y, z = rod["quaternion"][-1]
+    tangent = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)]
+    assert_allclose(np.array(rod["tip"]["rotation"])[:, 2], tangent, rtol=0, atol=1e-12)
+
+
+def test_json_on_standard_output_is_pure(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--json", cwd=wire)
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["rods"]["wire"]["tip"]["position"][0] > 0
+
+
+def test_set_changes_a_load(wire: Path) -> None:
+    done = cosserat("solve", "wire.toml", "--set", "push.force=[0,0.2,0]", "--json", cwd=wire)
+    tip = json.loads(done.stdout)["rods"]["wire"]["tip"]["position"]
+    assert tip[1] > 0.01
+    assert_allclose(tip[0], 0.0, rtol=0, atol=1e-12)
+
+
+def test_check_prices_the_scene(wire: Path) -> None:
+    done = cosserat("check", "wire.toml", cwd=wire)
+    assert done.returncode == 0
+    for word in ("valid", "wire", "tip_wrench", "operations", "Jacobian"):
+        assert word in done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["solve", "missing.toml"], "missing.toml"),
+        (["solve", "."], "."),
+        (["solve", "wire.toml", "--set", "shove.force=[0,0,1]"], "--set shove.force"),
+        (["solve", "wire.toml", "--set", "push.force=[0,0,"], "--set push.force"),
+        (["solve", "wire.toml", "--output", "no/such/r.json"], "does not exist"),
+        (["solve", "wire.toml", "--output", "."], "is a folder"),
+        (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
+        (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
+        (["solve", "wire.toml", "--colour"], "colour"),
+        (["path", "wire.toml"], "--input"),
+        (["path", "wire.toml", "--input", "shove.force", "--to", "[0,0,1]"], "shove.force: is not an input"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "1.0"], "must have 3 numbers, got 1"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0]"], "must have 3 numbers, got 2"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,nan]"], "--to: must be finite"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,"], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", '["a",0,1]'], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "1], b = [2"], "--to: must be a number or a list"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--csv", "no/p.csv"], "--csv"),
+        (["path", "wire.toml", "--input", "push.force", "--to", "[0,0,1]", "--plot", "f.doc"], "--plot"),
+        (["inverse", "wire.toml", "--output", "r.json"], "targets: missing"),
+        (["inverse", "wire.toml", "--plot", "f.doc"], "--plot"),
+        (["sing"], "sing"),
+        (["bench", "missing.toml"], "missing.toml"),
+        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "'euler' is no method"),
+        (["bench", "wire.toml", "--methods", "euler,dial", "--output", "no/such"], "does not exist"),
+        (["bench", "wire.toml", "--points", "0", "--quick"], "must be at least 1, got 0"),
+        (["bench", "wire.toml", "--output", "wire.toml"], "is a file"),
+    ],
+)
+def test_refusals(wire: Path, arguments: list[str], words: str) -> None:
+    done = cosserat(*arguments, cwd=wire)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
+
+
+def test_no_equilibrium_is_exit_code_three_and_still_written(wire: Path) -> None:
+    """A rod that must reach a pose with its length exactly spent sideways: the support cannot be met."""
+    text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
+    (wire / "hard.toml").write_text(text)
+    done = cosserat("solve", "hard.toml", "--output", "r.json", cwd=wire)
+    assert done.returncode == 3, done.stdout + done.stderr
+    result = json.loads((wire / "r.json").read_text())
+    assert result["converged"] is False
+    assert result["outcome"] != "converged"
+    assert "Traceback" not in done.stderr
+
+
+COLUMN = """
+schema = 1
+title = "A column"
+accuracy = { modes = 8, nodes = 20 }
+[[rods]]
+name = "column"
+length = 2.0
+strain = "planar"
+stiffness = { bending_y = 4.0 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "column"
+force = [0, 0, -1.0]
+"""
+
+
+def test_path_writes_json_csv_and_figure(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    options = ["--input", "push.force", "--to", "[0, 0, -5.0]", "--branch"]
+    files = ["--output", "p.json", "--csv", "p.csv", "--plot", "p.png"]
+    done = cosserat("path", "column.toml", *options, *files, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "bifurcation" in done.stdout
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+    path = json.loads((tmp_path / "p.json").read_text())
+    assert (path["schema"], path["outcome"]) == (1, "converged")
+    first, last = path["path"][0], path["path"][-1]
+    assert (first["factor"], first["stable"], last["factor"], last["stable"]) == (0.0, True, 1.0, True)
+    (event,) = path["events"]
+    assert event["kind"] == "bifurcation"
+    assert_allclose(5 * event["factor"], np.pi**2 / 4, rtol=1e-8, atol=0)
+    assert len(last["rods"]["column"]["tip"]["position"]) == 3
+    assert len(last["rods"]["column"]["tip"]["quaternion"]) == 4
+    assert abs(last["rods"]["column"]["tip"]["position"][0]) > 0.5
+    head, *rows = (tmp_path / "p.csv").read_text().splitlines()
+    assert head.startswith("factor,stable,smallest_eigenvalue,column.x,")
+    assert len(rows) == len(path["path"])
+    assert_allclose(float(rows[-1].split(",")[3]), last["rods"]["column"]["tip"]["position"][0], rtol=1e-15, atol=0)
+
+
+def test_path_that_has_no_branch_is_exit_code_three_and_still_written(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    options = ["--input", "push.force", "--to", "[0, 0, -1.0]", "--branch", "--output", "p.json"]
+    done = cosserat("path", "column.toml", *options, cwd=tmp_path)
+    assert done.returncode == 3, done.stdout + done.stderr
+    path = json.loads((tmp_path / "p.json").read_text())
+    assert path["outcome"] == "no_bifurcation"
+    assert "before the bifurcation to leave at" in done.stdout
+
+
+def test_every_fault_of_a_path_comes_at_once(wire: Path) -> None:
+    options = ["--input", "shove.force", "--to", "up", "--output", "no/p.json", "--plot", "f.doc", "--bifurcation", "0"]
+    done = cosserat("path", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 2
+    assert "5 problems" in done.stderr
+    assert "--bifurcation" in done.stderr
+
+
+def test_not_finite_numbers_become_null(wire: Path) -> None:
+    found = solve(build(read_scene(wire / "wire.toml")))
+    broken = Solution(
+        found.model, found.inputs, np.full_like(found.x, np.nan), found.outcome, "broken", float("nan"), 0
+    )
+    text = result_text(broken)
+    assert "NaN" not in text
+    assert json.loads(text)["residual_norm"] is None
+
+
+def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "r.json"
+    target.write_text("old")
+
+    def interrupted(self: Path, other: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_atomically(target, b"new")
+    assert target.read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["r.json"]
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_solve(path: Path, tmp_path: Path) -> None:
+    done = cosserat("solve", str(path), "--output", "r.json", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert result["converged"]
+    assert result["error_estimate"] <= read_scene(path).accuracy.tolerance
+
+
+def test_inverse_writes_what_was_found(wire: Path) -> None:
+    """A wire of 0.2 m that keeps its length reaches one point, and not one that lies beyond it."""
+    target = 'inputs = ["push.force"]\n{}\n[[targets]]\nkind = "position"\nrod = "wire"\nposition = [{}, 0, 0.1]\n'
+    for name, x, code in (("near", 0.16, 0), ("far", 0.3, 3)):
+        (wire / f"{name}.toml").write_text(target.format("", x).replace("\n\n", SCENE, 1))
+        done = cosserat("inverse", f"{name}.toml", "--output", f"{name}.json", "--plot", "f.svg", cwd=wire)
+        assert done.returncode == code, done.stdout + done.stderr
+        found = json.loads((wire / f"{name}.json").read_text())
+        assert found["targets_met"] is (code == 0)
+        assert found["converged"] is True
+        assert found["targets"][0]["angle_gap"] is None
+        assert (wire / "f.svg").stat().st_size > 1000
+        assert ("The targets are met." in found["message"]) is (code == 0)
+    assert found["targets"][0]["position_gap"] == pytest.approx(np.hypot(0.3, 0.1) - 0.2, abs=1e-3)
+    assert "misses tip of wire" in found["message"]
+
+
+def test_demo_solves_every_example() -> None:
+    listed = (ROOT / "examples" / "demo.py").read_text()
+    for path in (ROOT / "examples").glob("*.toml"):
+        assert f'"{path.stem}"' in listed
+
+
+def test_tune_fixes_a_discretisation_for_a_set_of_loads(wire: Path) -> None:
+    (wire / "loads.csv").write_text("push.force.x,push.force.y\n0.1,0\n0,0.3\n")
+    done = cosserat(
+        "tune", "wire.toml", "--output", "tuned.toml", "--tolerance", "1e-4", "--over", "loads.csv", cwd=wire
+    )
+    assert done.returncode == 0, done.stderr
+    assert "All 2 load cases are within 0.0001" in done.stdout
+    tuned = read_scene(wire / "tuned.toml")
+    assert tuned.accuracy.modes is not None
+    assert tuned.accuracy.nodes is not None
+    assert solve(build(tuned)).converged
+
+
+def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
+    done = cosserat("tune", "wire.toml", "--output", "tuned.toml", "--range", "pull.x=0:1", cwd=wire)
+    assert done.returncode == 2
+    assert "'pull.x' is not an input of this scene" in done.stderr
+    both = cosserat("tune", "wire.toml", "--output", "tuned.toml", cwd=wire)
+    assert both.returncode == 2
+    assert not (wire / "tuned.toml").exists()
+
+
+# Export
+
+
+def test_export_writes_a_folder_and_says_how_to_go_on(wire: Path) -> None:
+    done = cosserat("export", "wire.toml", "--output", "c", "--set", "accuracy.tolerance=1e-3", cwd=wire)
+    assert done.returncode == 0, done.stdout + done.stderr
+    told = " ".join(done.stdout.split())
+    for words in ("A wire", "unknowns, 3 inputs", "estimated error", "wrote c;", "README.md says how to compile"):
+        assert words in told
+    assert "Traceback" not in done.stderr
+    manifest = json.loads((wire / "c" / "manifest.json").read_text())
+    assert manifest["files"] == sorted(path.name for path in (wire / "c").iterdir())
+    assert manifest["name"] == "wire"
+    assert manifest["tolerance"] == 1e-3
+    assert 0 < manifest["error_estimate"] <= 1e-3
+    assert (wire / "c" / "wire.h").exists()
+    assert sorted(p.name for p in wire.iterdir()) == ["c", "wire.toml"]
+
+
+def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> None:
+    """The folder holds the scene as it was changed; a fixed discretisation is used as it is."""
+    changes = ('wire.strain="planar"', "accuracy.modes=2", "accuracy.nodes=5")
+    fixed = ("--output", "c", *(word for change in changes for word in ("--set", change)))
+    first = cosserat("export", "wire.toml", *fixed, cwd=wire)
+    assert first.returncode == 0, first.stderr
+    second = cosserat(
+        "export",
+        "wire.toml",
+        *fixed,
+        "--name",
+        "arm",
+        "--set",
+        "push.force=[0.1,0,0]",
+        "--set",
+        "wire.length=0.3",
+        cwd=wire,
+    )
+    assert second.returncode == 0, second.stderr
+    names = {path.name for path in (wire / "c").iterdir()}
+    assert "arm.h" in names
+    assert not [name for name in names if name.startswith("wire")]
+    manifest = json.loads((wire / "c" / "manifest.json").read_text())
+    assert manifest["discretisation"]["wire"]["modes"] == [2]
+    assert manifest["discretisation"]["wire"]["nodes"] == 5
+    assert manifest["inputs"][0]["value"] == [0.1, 0, 0]
+    kept = read_scene(wire / "c" / "scene.toml")
+    assert kept.rods[0].length == 0.3
+    assert kept == read_scene(wire / "wire.toml", (*changes, "push.force=[0.1,0,0]", "wire.length=0.3"))
+
+
+def test_export_refuses_name_and_folder_at_once(wire: Path) -> None:
+    (wire / "thesis").mkdir()
+    (wire / "thesis" / "chapter.tex").write_text("mine")
+    done = cosserat("export", "wire.toml", "--output", "thesis", "--name", "2fast", cwd=wire)
+    assert done.returncode == 2
+    assert "Refused: 2 problems." in done.stderr
+    for words in (
+        "--name: '2fast' is no name for a C library",
+        "--output: ",
+        "chapter.tex",
+        "a new or an empty folder",
+    ):
+        assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert [p.name for p in (wire / "thesis").iterdir()] == ["chapter.tex"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["wire.toml"], "output"),
+        (["missing.toml", "--output", "c"], "missing.toml"),
+        (["wire.toml", "--output", "wire.toml"], "--output"),
+        (["wire.toml", "--output", "no/such"], "make it first"),
+        (["wire.toml", "--output", "c", "--name", "double"], "is a word of C or C++"),
+        (["wire.toml", "--output", "c", "--set", "push.force=[0,0"], "--set push.force"),
+        (["twins.toml", "--output", "c"], "differ in case alone"),
+    ],
+)
+def test_export_refusals(wire: Path, arguments: list[str], words: str) -> None:
+    twin = '[[loads]]\nname = "Push"\nkind = "tip_wrench"\nrod = "wire"\nforce = [0, 0, 1]\n'
+    (wire / "twins.toml").write_text(SCENE + twin)
+    done = cosserat("export", *arguments, cwd=wire)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert sorted(p.name for p in wire.iterdir()) == ["twins.toml", "wire.toml"]
+
+
+def test_export_of_what_cannot_be_solved_writes_nothing(wire: Path) -> None:
+    text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
+    (wire / "hard.toml").write_text(text)
+    done = cosserat("export", "hard.toml", "--output", "c", "--set", "accuracy.modes=3", cwd=wire)
+    assert done.returncode == 3, done.stdout + done.stderr
+    assert "Nothing was written." in done.stderr
+    assert "Traceback" not in done.stderr
+    assert sorted(p.name for p in wire.iterdir()) == ["hard.toml", "wire.toml"]
+
+
+def test_tune_refuses_a_tolerance_out_of_range(wire: Path) -> None:
+    options = ("--output", "tuned.toml", "--tolerance", "5", "--range", "push.force.x=0:1")
+    done = cosserat("tune", "wire.toml", *options, cwd=wire)
+    assert done.returncode == 2
+    assert "accuracy.tolerance: must be <= 0.1, got 5.0" in done.stderr
+    assert not (wire / "tuned.toml").exists()
+
+
+COLUMN = """
+schema = 1
+[[rods]]
+name = "column"
+length = 1.0
+strain = "planar"
+stiffness = { bending_y = 1.0 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "column"
+force = [0, 0, -5.0]
+"""
+
+
+def test_unstable_equilibrium_is_warned_of_and_stable_one_found(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN)
+    straight = cosserat("solve", "column.toml", "--output", "straight.json", cwd=tmp_path)
+    assert straight.returncode == 0
+    assert "--stable" in straight.stderr
+    bent = cosserat("solve", "column.toml", "--stable", "--output", "bent.json", cwd=tmp_path)
+    assert bent.returncode == 0, bent.stderr
+    assert "Warning" not in bent.stderr
+    results = [json.loads((tmp_path / f"{name}.json").read_text()) for name in ("straight", "bent")]
+    assert [result["stable"] for result in results] == [False, True]
+    assert results[0]["smallest_eigenvalue"] < 0.0 < results[1]["smallest_eigenvalue"]
+    assert "unstable" in results[0]["message"]
+
+
+def test_stable_is_refused_where_loads_have_no_potential(tmp_path: Path) -> None:
+    (tmp_path / "column.toml").write_text(COLUMN + 'frame = "body"\n')
+    done = cosserat("solve", "column.toml", "--stable", "--output", "r.json", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no potential" in done.stderr
+    assert not (tmp_path / "r.json").exists()

@@ -1,0 +1,126 @@
+"""Rods that a discretisation does not resolve are called so, and rods of many turns get what they need."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+from scipy.optimize import root
+
+from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve, solve_scene
+from cosserat_casadi.accuracy.node_residual import modes_to_see, node_residual
+from cosserat_casadi.accuracy.refine import largest_turn
+from tests.initial_value import integrate
+from tests.reference.closed_forms import roll_up
+from tests.scenes import push, rod, scene
+
+UNIT = {"planar": {"bending_y": 1.0}, "kirchhoff": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8}}
+
+
+def rolled(turns: float, strain: str = "planar", **changes: Any) -> Scene:
+    """A straight rod under the tip moment that rolls it up."""
+    straight = {"name": "rod", "length": 1.0, "strain": strain, "stiffness": UNIT[strain]}
+    return scene(push(force=[0, 0, 0], moment=[0, 2 * np.pi * turns, 0]), rods=[straight], **changes)
+
+
+def helical(share: float) -> Scene:
+    """Straight cantilever rolled into up to ten turns and pulled out of their plane: Ibrahimbegovic 1997."""
+    stiffness = dict.fromkeys(("bending_x", "bending_y", "torsion"), 100.0)
+    stiffness |= dict.fromkeys(("shear_x", "shear_y", "extension"), 1e4)
+    straight = {"name": "rod", "length": 10.0, "strain": "reissner", "stiffness": stiffness}
+    return scene(push(force=[0, 50 * share, 0], moment=[0, 200 * np.pi * share, 0]), rods=[straight])
+
+
+def spring(force: float) -> Scene:
+    """Ten turns of radius 1 and pitch 1/2, clamped at one end and pulled at the other across its first tangent."""
+    slope = 0.5 / (2 * np.pi)
+    curvature = [0.0, 1 / (1 + slope**2), slope / (1 + slope**2)]
+    coil = rod("kirchhoff", length=20 * np.pi * np.hypot(1, slope), intrinsic={"curvature": curvature})
+    return scene(push(force=[force, 0.0, 0.0]), rods=[{**coil, "stiffness": UNIT["kirchhoff"]}])
+
+
+@pytest.mark.parametrize("transport", ["magnus4", "magnus8"])
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+def test_coarseness_vs_quadrature_of_the_curvature(strain: str, transport: str) -> None:
+    """The largest ∫|K| ds over an interval, in units of 2 rad; what the Taylor coefficients bound it by is near it."""
+    wanted = rolled(0.0, strain)
+    model = build(wanted, discretise(wanted, 3, 8, transport))
+    x = np.random.default_rng(1).standard_normal(model.size)
+    solution = Solution(model, model.pack(), x, Outcome.CONVERGED, "", 0.0, 0)
+    nodes = model.discrete.rods["rod"].grid.nodes
+    turns = [quad(lambda X: float(np.linalg.norm(solution.strain([X])[0, :3])), a, b)[0] for a, b in pairwise(nodes)]
+    found = 2.0 * float(model.coarseness(x, model.pack()))
+    assert max(turns) * (1 - 1e-3) <= found <= 1.25 * max(turns)
+
+
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+def test_load_too_large_for_the_nodes_is_unresolved(strain: str) -> None:
+    """The discrete equations are solved, the rod is not: its tip lies far from where it must."""
+    wanted = rolled(5.0, strain)
+    coarse = solve(build(wanted, discretise(wanted, 2, 6, "magnus4")))
+    assert coarse.outcome is Outcome.UNRESOLVED
+    assert coarse.residual_norm <= 1e-11
+    assert coarse.stable is None
+    fine = solve(build(wanted, discretise(wanted, 2, 40, "magnus4")))
+    assert fine.converged
+    assert_allclose(fine.tip().position[0], roll_up(5.0)[0], rtol=0, atol=1e-9)
+    assert np.abs(coarse.tip().position[0] - roll_up(5.0)[0]).max() > 1e-2
+
+
+def test_literal_system_that_loses_the_unit_quaternion_is_unresolved() -> None:
+    wanted = rolled(5.0)
+    for nodes, outcome in ((8, Outcome.UNRESOLVED), (40, Outcome.CONVERGED)):
+        assert solve(build(wanted, discretise(wanted, 1, nodes, "permuted"))).outcome is outcome
+
+
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+@pytest.mark.parametrize("turns", [2, 5])
+def test_roll_up_vs_circles(strain: str, turns: int) -> None:
+    solution = solve_scene(rolled(turns, strain))
+    assert solution.converged
+    assert_allclose(solution.tip().position[0], roll_up(turns)[0], rtol=0, atol=1e-6)
+    assert float(solution.model.coarseness(solution.x, solution.inputs)) <= 1.0
+
+
+def shot(wanted: Scene, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
+    """Tip by shooting: the base moment near a given one with which the tip's load is left with nothing."""
+    found = root(lambda m: integrate(wanted, force, m).moment_left, moment, tol=1e-12)
+    return np.asarray(integrate(wanted, force, found.x).position)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.3, 0.5, 1.0])
+def test_helical_form_vs_shooting(share: float) -> None:
+    wanted = helical(share)
+    solution = solve_scene(wanted)
+    assert solution.converged
+    base = solution.base_wrench()
+    assert_allclose(solution.tip().position[0], shot(wanted, base.force, base.moment), rtol=0, atol=1e-5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("force", [5e-4, 4e-3])
+def test_spring_of_ten_turns_vs_shooting(force: float) -> None:
+    wanted = spring(force)
+    solution = solve_scene(wanted)
+    assert solution.converged
+    base = solution.base_wrench()
+    length = wanted.rods[0].length
+    assert_allclose(solution.tip().position[0], shot(wanted, base.force, base.moment), rtol=0, atol=1e-6 * length)
+
+
+@pytest.mark.slow
+def test_wave_that_few_modes_cannot_see_shows_at_the_nodes() -> None:
+    """Ten turns with seven modes: the equations hold, the balance of stress at the nodes does not."""
+    wanted = helical(1.0)
+    blind = solve(build(wanted, discretise(wanted, 7, 56, "magnus6")))
+    assert blind.converged
+    assert node_residual(blind) > 1e-2
+    assert modes_to_see(blind, largest_turn(blind), 1e-6) >= 25
+    circle = solve(build(rolled(5.0), discretise(rolled(5.0), 2, 40, "magnus4")))
+    assert node_residual(circle) < 1e-9
+    assert modes_to_see(circle, largest_turn(circle), 1e-6) == 0

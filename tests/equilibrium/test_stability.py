@@ -1,0 +1,227 @@
+"""Stable, unstable, neutral and critical equilibria: told apart, and stable ones found by settling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
+
+from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow_path, solve, solve_scene
+from cosserat_casadi.equilibrium.relax import energy_at
+from cosserat_casadi.equilibrium.stability import judged
+from cosserat_casadi.numerics.broyden import newton_step
+from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
+from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from tests.initial_value import integrate
+from tests.scenes import WEIGHT, push, rod, scene
+
+CRITICAL = np.pi**2 / 4
+"""Euler's load of a clamped-free column, in EI/L²."""
+
+ROUND = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.7}
+STIFFNESS = {"planar": {"bending_y": 1.0}, "kirchhoff": ROUND}
+
+
+def column(strain: str, *loads: dict[str, Any], **changes: Any) -> Scene:
+    """A rod of length 1 along z with unit bending stiffness, round where it is not planar."""
+    one = {"name": "rod", "length": 1.0, "strain": strain, "stiffness": STIFFNESS[strain], "linear_density": 1.0}
+    return scene(*loads, rods=[one], **changes)
+
+
+def standing(strain: str, weight: float, **changes: Any) -> Scene:
+    return column(strain, {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -weight]}, **changes)
+
+
+def held(kind: str, strain: str = "kirchhoff", **changes: Any) -> Scene:
+    """The round rod with its tip pushed 10 % towards its base, perfectly straight."""
+    pose = {"quaternion": [1, 0, 0, 0]} if kind == "clamped" else {}
+    support = {"rod": "rod", "kind": kind, "position": [0, 0, 0.9], **pose}
+    return column(strain, supports=[support], **changes)
+
+
+def buckled(ratio: float) -> tuple[float, float]:
+    """Tip of the column at P = ratio P_c, sideways and up: K(k) = π/2 √ratio, Timoshenko and Gere 1961, section 2.7."""
+    k = brentq(lambda k: ellipk(k**2) - np.pi / 2 * np.sqrt(ratio), 1e-6, 1 - 1e-14, xtol=1e-16)
+    return 2 * k / ellipk(k**2), 2 * ellipe(k**2) / ellipk(k**2) - 1
+
+
+def assert_integrates(solution: Solution, atol: float) -> None:
+    """An initial-value integration from the base wrench ends at the tip, and at the tip's load where it is free."""
+    base = solution.base_wrench()
+    tip = integrate(solution.model.scene, base.force, base.moment)
+    assert_allclose(tip.position, solution.tip().position[0], rtol=0, atol=atol)
+    if not solution.model.scene.supports:
+        assert_allclose([tip.force_left, tip.moment_left], np.zeros((2, 3)), rtol=0, atol=10 * atol)
+
+
+# What a solution says of itself
+
+
+@pytest.mark.parametrize("ratio", [1.02, pytest.param(2.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
+def test_column_beyond_its_load_is_unstable_by_default_and_buckled_if_stable_is_wanted(
+    strain: str, ratio: float
+) -> None:
+    wanted = column(strain, push(force=[0, 0, -ratio * CRITICAL]))
+    straight, bent = solve_scene(wanted), solve_scene(wanted, stable=True)
+    assert (straight.converged, straight.stable) == (True, False)
+    assert "It is unstable" in straight.message
+    assert straight.smallest_eigenvalue is not None
+    assert straight.smallest_eigenvalue < 0.0
+    assert (bent.converged, bent.stable) == (True, True)
+    x, y, z = bent.tip().position[0]
+    assert_allclose([np.hypot(x, y), z], buckled(ratio), rtol=0, atol=1e-6)
+    assert ("neutral" in bent.message) is (strain == "kirchhoff")
+    assert "settle" in bent.message
+
+
+@pytest.mark.parametrize(("weight", "stable"), [(7.8, True), (7.9, False)])
+def test_standing_column_about_its_critical_weight(weight: float, stable: bool) -> None:
+    """7.8373 EI/L³, Greenhill 1881. One mode would meet the straight tip and be too stiff to buckle."""
+    solution = solve_scene(standing("kirchhoff", weight))
+    assert solution.converged
+    assert solution.stable is stable
+
+
+def test_standing_column_beyond_its_weight_settles() -> None:
+    solution = solve_scene(standing("planar", 9.0), stable=True)
+    assert (solution.converged, solution.stable) == (True, True)
+    assert abs(solution.tip().position[0, 0]) > 0.3
+    assert_integrates(solution, 1e-5)
+
+
+@pytest.mark.parametrize("kind", [pytest.param("clamped", marks=pytest.mark.slow), "pinned"])
+def test_straight_round_rod_pushed_together_from_a_cold_start(kind: str) -> None:
+    solution = solve_scene(held(kind))
+    assert (solution.converged, solution.stable) == (True, True), solution.message
+    assert "neutral" in solution.message
+    assert_integrates(solution, 1e-5)
+
+
+def test_load_without_a_potential_is_refused_if_stable_is_wanted() -> None:
+    follower = scene(push(frame="body"), WEIGHT)
+    with pytest.raises(SceneError, match="no potential"):
+        solve_scene(follower, stable=True)
+    with pytest.raises(SceneError, match="no potential"):
+        solve(build(follower), stable=True)
+
+
+def test_solve_of_a_model_settles_only_if_asked() -> None:
+    wanted = column("planar", push(force=[0, 0, -2 * CRITICAL]))
+    model = build(wanted, discretise(wanted, 10, 20, "magnus6"))
+    assert solve(model).stable is False
+    bent = solve(model, stable=True)
+    assert bent.stable is True
+    assert_allclose(np.abs(bent.tip().position[0, [0, 2]]), buckled(2.0), rtol=0, atol=1e-7)
+    assert solve(model, {"push.force": [0.1, 0, 0]}, stable=True).message == Outcome.CONVERGED.value
+
+
+def test_dead_moment_in_the_plane_settles_without_a_written_energy() -> None:
+    """A column beyond its load with a small dead moment at its tip: it falls to the side of the moment, or stays."""
+    load = push(force=[0, 0, -2 * CRITICAL], moment=[0, 1e-3, 0])
+    wanted = column("planar", load)
+    solution = solve(build(wanted, discretise(wanted, 10, 20, "magnus6")), stable=True)
+    assert solution.stable is True
+    assert_integrates(solution, 1e-5)
+
+
+def test_critical_equilibrium_is_neither_called_stable_nor_neutral() -> None:
+    wanted = column("planar", push(force=[0, 0, -2 * CRITICAL]))
+    model = build(wanted, discretise(wanted, 8, 16, "magnus6"))
+    (event, *_) = follow_path(model, "push.force", [0, 0, -2 * CRITICAL]).events
+    there = solve(model, {"push.force": [0, 0, -2 * CRITICAL * event.factor]})
+    assert there.converged
+    assert there.stable is False
+    assert "critical" in there.message
+
+
+def test_verdict_of_eigenvalues() -> None:
+    assert judged(np.zeros(0)).stable
+    assert judged(np.array([0.1, 2.0])).stable
+    neutral = judged(np.array([-1e-12, 0.1, 5.0]))
+    assert (neutral.stable, neutral.neutral, neutral.zero) == (True, True, 1)
+    unstable = judged(np.array([-0.1, 1e-13, 1.0]))
+    assert (unstable.stable, unstable.neutral, unstable.negative) == (False, False, 1)
+
+
+# Steps where the tangent is singular
+
+
+def test_newton_step_of_a_nearly_singular_matrix_is_the_shortest() -> None:
+    rng = np.random.default_rng(3)
+    left, right = (np.linalg.qr(rng.standard_normal((6, 6)))[0] for _ in range(2))
+    matrix = left @ np.diag([3.0, 2.0, 1.0, 0.5, 0.3, 1e-15]) @ right.T
+    residual = rng.standard_normal(6)
+    step = newton_step(matrix, residual)
+    assert step is not None
+    assert_allclose(step, -np.linalg.pinv(matrix, rcond=1e-10) @ residual, rtol=0, atol=1e-12)
+    regular = left @ np.diag([3.0, 2.0, 1.0, 0.5, 0.3, 1e-9]) @ right.T
+    step = newton_step(regular, regular @ np.ones(6))
+    assert step is not None
+    assert_allclose(step, -np.ones(6), rtol=0, atol=1e-5)
+
+
+def test_newton_on_a_circle_of_equilibria_does_not_turn() -> None:
+    """Gradient of (|x|² − 1)²: every point of the circle is one, and turning about it costs nothing."""
+    equations = Equations(
+        lambda x: (x @ x - 1) * x, lambda x: (x @ x - 1) * np.eye(3) + 2 * np.outer(x, x) + np.diag([0, 0, 1e-18])
+    )
+    start = np.array([0.9, 0.5, 0.0])
+    found = newton(equations, start, NewtonSettings())
+    assert found.outcome is Outcome.CONVERGED
+    assert_allclose(found.x, start / np.linalg.norm(start), rtol=0, atol=1e-9)
+
+
+# The descent
+
+
+def test_step_in_the_ball_vs_brute_force() -> None:
+    rng = np.random.default_rng(4)
+    for k in range(20):
+        values = np.sort(rng.normal(scale=2.0, size=2))
+        slopes = np.array([0.0 if k % 4 == 0 else rng.normal(), rng.normal()])
+        step = ball_minimum(values, slopes, 0.7, 1.0)
+        assert np.linalg.norm(step) <= 0.7 * (1 + 1e-5)
+        radius, angle = np.meshgrid(np.linspace(0, 0.7, 200), np.linspace(0, 2 * np.pi, 721))
+        z = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+        least = (z @ slopes + z**2 @ values / 2).min()
+        assert step @ slopes + step**2 @ values / 2 <= least + 1e-4 * (1 + abs(least))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_descent_leaves_a_saddle_to_either_side(side: float) -> None:
+    """Double well (x² − 1)²/4 + y²: a saddle at zero, minima at x = ±1."""
+    energy = Energy(lambda x: np.array([x[0] ** 3 - x[0], 2 * x[1]]), lambda x: np.diag([3 * x[0] ** 2 - 1, 2.0]))
+    found = descend(energy, np.zeros(2), side, DescentSettings())
+    assert found is not None
+    assert_allclose(np.abs(found), [1.0, 0.0], rtol=0, atol=1e-7)
+    other = descend(energy, np.zeros(2), -side, DescentSettings())
+    assert other is not None
+    assert_allclose(other, -found, rtol=0, atol=1e-7)
+    assert_allclose(energy.change(np.zeros(2), found), -0.25, rtol=1e-12, atol=0)
+
+
+def test_descent_without_a_minimum_ends() -> None:
+    assert descend(Energy(lambda x: -x, lambda x: -np.eye(2)), np.ones(2), 1.0, DescentSettings(steps=20)) is None
+    nan = Energy(lambda x: np.full(2, np.nan), lambda x: np.eye(2))
+    assert descend(nan, np.ones(2), 1.0, DescentSettings()) is None
+
+
+@pytest.mark.parametrize("kind", ["clamped", "pinned"])
+def test_energy_with_springs_for_supports_has_this_gradient_and_hessian(kind: str) -> None:
+    """Its Hessian is symmetric and the derivative of its gradient: an energy exists."""
+    pose = {"position": [0.1, 0.2, 0.5], "quaternion": [0.9, 0.1, 0.3, -0.3]}
+    support = {"rod": "rod", "kind": kind, **({"position": pose["position"]} if kind == "pinned" else pose)}
+    wanted = scene(WEIGHT, rods=[rod("kirchhoff")], supports=[support])
+    model = build(wanted, discretise(wanted, 3, 6, "magnus4"))
+    energy = energy_at(model, model.pack(), 0.9)
+    q = 0.4 * np.random.default_rng(5).standard_normal(model.discrete.strain_size)
+    hessian = energy.hessian(q)
+    assert_allclose(hessian, hessian.T, rtol=0, atol=1e-10)
+    for direction in np.eye(len(q)):
+        slope = (energy.gradient(q + 1e-5 * direction) - energy.gradient(q - 1e-5 * direction)) / 2e-5
+        assert_allclose(hessian @ direction, slope, rtol=0, atol=1e-6)

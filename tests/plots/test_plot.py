@@ -1,0 +1,110 @@
+"""Figures: what they show is what was solved, and files are whole and the same every time."""
+
+from __future__ import annotations
+
+import builtins
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Outcome, SceneError, Solution, build, solve
+from cosserat_casadi.plots.scene_plot import SAMPLES, PlotUnavailableError, check_plot_path, plot_solution, save_plot
+from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
+
+
+@pytest.fixture(scope="module")
+def spatial() -> Solution:
+    return solve(build(scene(push(moment=[0.1, 0.2, 0.1]), WEIGHT, HOOK, WIND, strain="reissner")))
+
+
+@pytest.fixture(scope="module")
+def planar() -> Solution:
+    flat = {"force": [0.5, 0, -0.3], "moment": [0, 0.4, 0]}
+    return solve(build(scene(push(**flat), {**WEIGHT, "acceleration": [0, 0, -2.0]}, strain="planar")))
+
+
+def lines(axes: Any) -> dict[str, Any]:
+    return {line.get_label(): line for line in axes.get_lines()}
+
+
+def test_space_shows_rod_loads_and_frames(spatial: Solution) -> None:
+    scenery, *_ = plot_solution(spatial).axes
+    assert scenery.name == "3d"
+    labels = scenery.get_legend_handles_labels()[1]
+    assert {"unloaded", "deformed"} <= set(labels)
+    for load in ("push", "hook", "weight", "wind"):
+        assert any(label.startswith(load) for label in labels)
+    drawn = np.array(lines(scenery)["deformed"].get_data_3d()).T
+    assert_allclose(drawn, spatial.pose(SAMPLES).position, rtol=0, atol=1e-15)
+    # Nine section frames of three axes, the two shapes and the base.
+    assert len(scenery.get_lines()) == 9 * 3 + 3
+
+
+def test_a_plane_scene_is_drawn_in_its_plane(planar: Solution) -> None:
+    scenery, *_ = plot_solution(planar).axes
+    assert scenery.name == "rectilinear"
+    drawn = lines(scenery)["deformed"].get_xydata()
+    assert_allclose(drawn, planar.pose(SAMPLES).position[:, [0, 2]], rtol=0, atol=1e-15)
+    assert (scenery.get_xlabel(), scenery.get_ylabel()) == ("x, m", "z, m")
+    assert any(text.get_text() in "↺↻" for text in scenery.texts if text.get_text())
+
+
+def test_panels_hold_strain_moment_and_force(spatial: Solution) -> None:
+    _, strain, moment, force, linear = plot_solution(spatial).axes
+    assert_allclose(lines(strain)["K_y"].get_ydata(), spatial.strain(SAMPLES)[:, 1], rtol=0, atol=1e-15)
+    assert_allclose(lines(linear)["Γ_z − 1"].get_ydata(), spatial.strain(SAMPLES)[:, 5] - 1, rtol=0, atol=1e-15)
+    wrench = spatial.internal_wrench(SAMPLES)
+    assert_allclose(lines(moment)["M_x"].get_ydata(), wrench[:, 0], rtol=0, atol=1e-15)
+    assert_allclose(lines(force)["N_z"].get_ydata(), wrench[:, 5], rtol=0, atol=1e-15)
+
+
+def test_components_that_are_zero_are_not_drawn(planar: Solution) -> None:
+    _, strain, moment, _ = plot_solution(planar).axes
+    assert [line.get_label() for line in strain.get_lines()] == ["K_y"]
+    assert [line.get_label() for line in moment.get_lines()] == ["M_y"]
+
+
+def test_several_rods_are_named() -> None:
+    other = rod(name="other", base={"position": [0.3, 0, 0]})
+    solution = solve(build(scene(push(), rods=[rod(), other])))
+    labels = plot_solution(solution).axes[0].get_legend_handles_labels()[1]
+    assert {"rod", "other"} <= set(labels)
+
+
+def test_an_unconverged_solution_says_so_in_red(planar: Solution) -> None:
+    stalled = replace(planar, outcome=Outcome.LOAD_STALLED, message=Outcome.LOAD_STALLED.value)
+    title = plot_solution(stalled).axes[0].title
+    assert title.get_text() == Outcome.LOAD_STALLED.value
+    assert title.get_color() == "#cc3311"
+
+
+@pytest.mark.parametrize(("suffix", "signature"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_files_are_the_same_every_time(planar: Solution, tmp_path: Path, suffix: str, signature: bytes) -> None:
+    first, second = tmp_path / f"a.{suffix}", tmp_path / f"b.{suffix}"
+    save_plot(planar, first)
+    save_plot(planar, second)
+    assert first.read_bytes().startswith(signature)
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_unknown_suffix_is_refused_and_nothing_written(planar: Solution, tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"--plot: .*png"):
+        save_plot(planar, tmp_path / "figure.doc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_missing_matplotlib_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = builtins.__import__
+
+    def without(name: str, *rest: Any, **options: Any) -> Any:
+        if name.startswith("matplotlib"):
+            raise ImportError(name)
+        return real(name, *rest, **options)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(PlotUnavailableError, match=r"pip install 'cosserat-casadi\[plot\]'"):
+        check_plot_path("figure.png")
