@@ -122,7 +122,7 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
         entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
     for carrier, place in model.discrete.moving_slices.items():
         holders = [joint.rod for joint in model.scene.joints if carrier == ("body", joint.body)]
-        rod, frame = (holders or [carrier.name])[0], f"{carrier.kind} {carrier.name}"
+        rod, frame = (holders or [carrier.name])[0], str(carrier)
         entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
     for tendon, _ in model.discrete.cables:
         unit = model.discrete.tension_unit(tendon.rod)

@@ -44,6 +44,9 @@ class Carrier(NamedTuple):
     kind: str
     name: str
 
+    def __str__(self) -> str:
+        return f"{self.kind} {self.name}"
+
 
 @dataclass(frozen=True)
 class RigidPose:

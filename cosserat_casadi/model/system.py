@@ -6,13 +6,11 @@ one; what couples rods adds rows and columns, never instructions to the rods the
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.chamber import PRESSED, volume_rates
@@ -27,6 +25,7 @@ from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
 from cosserat_casadi.model.inputs import InputLayout, magnitude
 from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.model.rods import base_pose, rod_properties
+from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
 from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
@@ -35,6 +34,12 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, Routing, Wrench
+
+FORCE_WEIGHT = 0.1
+"""Bending by a joint's multiplier or a tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
+
+SUPPORT_WEIGHT = 2.0
+"""The same for multipliers of supports: a rod that is drawn to a place has many equilibria there, near each other."""
 
 
 @dataclass(frozen=True)
@@ -78,61 +83,85 @@ class DiscreteScene:
         return Couplings(self.scene, self.rods)
 
     @cached_property
-    def hold_slices(self) -> list[slice]:
-        """Where each support's multipliers stand in x."""
-        return _slices(self.strain_size, [hold.size for _, hold in self.holds])
+    def unknowns(self) -> Unknowns:
+        """What the unknowns x are and where they stand."""
+        blocks = [*self._strain_blocks(), *self._multiplier_blocks(), *self._pose_blocks(), *self._tension_blocks()]
+        return Unknowns(tuple(blocks))
 
-    @cached_property
-    def tie_slices(self) -> dict[str, slice]:
-        """Where each tie's multipliers stand in x."""
-        start, ties = self.strain_size + sum(hold.size for _, hold in self.holds), self.couplings.ties
-        places = _slices(start, [tie.joint.size for tie in ties])
-        return {tie.where: place for tie, place in zip(ties, places, strict=True)}
+    def _strain_blocks(self) -> Iterator[Block]:
+        for rod in self.rods.values():
+            name = rod.properties.name
+            yield Block(BlockKind.STRAIN, name, name, rod.size, rod.energy_unit, 1.0)
 
-    @cached_property
-    def moving_slices(self) -> dict[Carrier, slice]:
-        """Where each moving frame's deviation stands in x."""
-        start = self.strain_size + self.multiplier_size
-        places = _slices(start, [MovingFrame.SIZE] * len(self.couplings.moving))
-        return dict(zip(self.couplings.moving, places, strict=True))
+    def _multiplier_blocks(self) -> Iterator[Block]:
+        for support, hold in self.holds:
+            unit = self.rods[support.rod].energy_unit
+            yield Block(BlockKind.MULTIPLIER, self.where(support), support.rod, hold.size, unit, SUPPORT_WEIGHT)
+        for tie in self.couplings.ties:
+            yield Block(BlockKind.MULTIPLIER, tie.where, tie.rod, tie.joint.size, tie.joint.unit, FORCE_WEIGHT)
 
-    @cached_property
-    def multiplier_size(self) -> int:
-        """Number of multipliers of supports and ties."""
-        ties = sum(tie.joint.size for tie in self.couplings.ties)
-        return ties + sum(hold.size for _, hold in self.holds)
+    def _pose_blocks(self) -> Iterator[Block]:
+        for carrier, moving in self.couplings.moving.items():
+            yield Block(BlockKind.POSE, str(carrier), None, MovingFrame.SIZE, moving.unit, 1.0)
 
-    @cached_property
-    def rod_slices(self) -> dict[str, slice]:
-        """Where each rod's coordinates stand in x."""
-        ends = np.cumsum([0, *[discrete_rod.size for discrete_rod in self.rods.values()]])
-        return {n: slice(int(a), int(b)) for n, a, b in zip(self.rods, ends, ends[1:], strict=False)}
+    def _tension_blocks(self) -> Iterator[Block]:
+        for tendon, _ in self.cables:
+            unit = self.rods[tendon.rod].energy_unit
+            yield Block(BlockKind.TENSION, tendon.name, tendon.rod, 1, unit, FORCE_WEIGHT)
 
-    @cached_property
-    def strain_size(self) -> int:
-        """Number of strain coordinates of all rods."""
-        return sum(discrete_rod.size for discrete_rod in self.rods.values())
+    def where(self, support: scenes.Support) -> str:
+        """Path of a support's table in the scene."""
+        return f"supports[{self.scene.supports.index(support)}]"
 
-    @cached_property
+    @property
     def size(self) -> int:
         """Number of unknowns."""
-        moving = MovingFrame.SIZE * len(self.couplings.moving)
-        return self.strain_size + self.multiplier_size + moving + len(self.cables)
+        return self.unknowns.size
+
+    @property
+    def strain_size(self) -> int:
+        """Number of strain coordinates of all rods."""
+        return self.unknowns.count(BlockKind.STRAIN)
+
+    @property
+    def multiplier_size(self) -> int:
+        """Number of multipliers of supports and ties."""
+        return self.unknowns.count(BlockKind.MULTIPLIER)
+
+    @property
+    def rod_slices(self) -> dict[str, slice]:
+        """Where each rod's coordinates stand in x."""
+        return {block.owner: entries for block, entries in self.unknowns.of_kind(BlockKind.STRAIN)}
+
+    @property
+    def hold_slices(self) -> list[slice]:
+        """Where each support's multipliers stand in x."""
+        return [self.unknowns.slice_of(BlockKind.MULTIPLIER, self.where(support)) for support, _ in self.holds]
+
+    @property
+    def tie_slices(self) -> dict[str, slice]:
+        """Where each tie's multipliers stand in x."""
+        return {tie.where: self.unknowns.slice_of(BlockKind.MULTIPLIER, tie.where) for tie in self.couplings.ties}
+
+    @property
+    def moving_slices(self) -> dict[Carrier, slice]:
+        """Where each moving frame's deviation stands in x."""
+        return {c: self.unknowns.slice_of(BlockKind.POSE, str(c)) for c in self.couplings.moving}
+
+    @property
+    def tension_slices(self) -> list[slice]:
+        """Where the tensions of tendons of given length stand in x."""
+        return [entries for _, entries in self.unknowns.of_kind(BlockKind.TENSION)]
+
+    def tension_place(self, tendon: str) -> int:
+        """Where the tension of one of them stands in x."""
+        return int(self.unknowns.slice_of(BlockKind.TENSION, tendon).start)
 
     @cached_property
     def cables(self) -> list[tuple[scenes.Tendon, Routing]]:
         """Tendons of given length, whose tensions are unknowns, unit EI/ℓ² each."""
         held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
         return [(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in held]
-
-    @cached_property
-    def tension_slices(self) -> list[slice]:
-        """Where the tensions of tendons of given length stand in x."""
-        return _slices(self.size - len(self.cables), [1] * len(self.cables))
-
-    def tension_place(self, tendon: str) -> int:
-        """Where the tension of one of them stands in x."""
-        return int(self.tension_slices[[cable.name for cable, _ in self.cables].index(tendon)].start)
 
     def tension_unit(self, rod: str) -> float:
         """EI/ℓ² of a rod, N."""
@@ -157,11 +186,6 @@ def discrete_scene(
     """Constant matrices of every rod of a scene."""
     bases = {rod.name: DiscreteRod(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
     return DiscreteScene(scene, layout, bases)
-
-
-def _slices(start: int, sizes: Sequence[int]) -> list[slice]:
-    ends = np.cumsum([start, *sizes])
-    return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
 
 @dataclass(frozen=True)
@@ -311,21 +335,21 @@ class System:
         return HeldLength(
             cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.routing is routing),
             wanted=_value(self.discrete.layout, tendon, "length", whole),
-            tension=self.arguments.x[self.discrete.tension_place(tendon.name)],
+            tension=self.arguments.x[self.discrete.unknowns.slice_of(BlockKind.TENSION, tendon.name)],
             slack=tendon.slack,
             factor=self.arguments.factor,
         )
 
     def _among_strains(self, rod: str, columns: Matrix) -> Matrix:
         """Columns on the coordinates of one rod, among those of all."""
-        place, count = self.discrete.rod_slices[rod], columns.shape[1]
+        place, count = self.discrete.unknowns.strain(rod), columns.shape[1]
         pad = type(columns)
         before, after = pad(place.start, count), pad(self.discrete.strain_size - place.stop, count)
         return ca.vertcat(before, columns, after)
 
     def _rod(self, name: str) -> InverseGeometricModel:
         discrete_rod = self.discrete.rods[name]
-        q = self.arguments.x[self.discrete.rod_slices[name]]
+        q = self.arguments.x[self.discrete.unknowns.strain(name)]
         actions = rod_actions(self.discrete, name, self._base_R_world(name), self.arguments)
         actions += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
         ties = [tie for tie in self.discrete.couplings.ties if tie.rod == name]
@@ -335,7 +359,8 @@ class System:
 
     def _tension(self, tendon: scenes.Tendon) -> Matrix:
         """Unknown tension of a tendon of given length, N."""
-        return self.discrete.tension_unit(tendon.rod) * self.arguments.x[self.discrete.tension_place(tendon.name)]
+        tension = self.arguments.x[self.discrete.unknowns.slice_of(BlockKind.TENSION, tendon.name)]
+        return self.discrete.tension_unit(tendon.rod) * tension
 
     def _base_R_world(self, rod: str) -> Matrix:
         if self.discrete.couplings.carrier(rod) is not None:

@@ -1,0 +1,120 @@
+"""The unknowns x of a scene as records: what each run of entries is, whose it is, and where it stands.
+
+The order of x is settled here and nowhere else. Whoever needs a part of x asks for its block.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+
+class BlockKind(Enum):
+    """What a block of unknowns is."""
+
+    STRAIN = "strain"
+    """Strain coordinates of a rod."""
+    MULTIPLIER = "multiplier"
+    """Forces and moments of a support, a joint or the base of a carried rod."""
+    POSE = "pose"
+    """Deviation of a floating frame from where the unloaded scene has it."""
+    TENSION = "tension"
+    """Tension of a cable of given length."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """A run of unknowns of one kind and one owner.
+
+    Attributes:
+        kind: what the unknowns are.
+        owner: name of the rod, the floating frame or the tendon; path of the scene's table of a constraint.
+        rod: name of the rod that the block's equations are solved with; None for what several rods share.
+        size: number of unknowns.
+        unit: energy that the equations are divided by, J.
+        step_weight: how much one unit counts in the length of a continuation step.
+    """
+
+    kind: BlockKind
+    owner: str
+    rod: str | None
+    size: int
+    unit: float
+    step_weight: float
+
+    @property
+    def differential(self) -> bool:
+        """Whether the unknowns are coordinates that move; multipliers and tensions are algebraic."""
+        return self.kind in (BlockKind.STRAIN, BlockKind.POSE)
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """All unknowns of a scene.
+
+    Attributes:
+        blocks: in the order in which they stand in x.
+    """
+
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return sum(block.size for block in self.blocks)
+
+    @cached_property
+    def slices(self) -> dict[tuple[BlockKind, str], slice]:
+        """Where each block stands in x, by kind and owner."""
+        slices = {}
+        start = 0
+        for block in self.blocks:
+            slices[block.kind, block.owner] = slice(start, start + block.size)
+            start += block.size
+        return slices
+
+    def of_kind(self, *kinds: BlockKind) -> Iterator[tuple[Block, slice]]:
+        """The blocks of some kinds with where they stand in x."""
+        for block, entries in zip(self.blocks, self.slices.values(), strict=True):
+            if block.kind in kinds:
+                yield block, entries
+
+    def slice_of(self, kind: BlockKind, owner: str) -> slice:
+        """Where a block stands in x.
+
+        Raises:
+            KeyError: there is no such block.
+        """
+        return self.slices[kind, owner]
+
+    def strain(self, rod: str) -> slice:
+        """Where the strain coordinates of a rod stand in x."""
+        return self.slice_of(BlockKind.STRAIN, rod)
+
+    def count(self, *kinds: BlockKind) -> int:
+        """Number of unknowns of some kinds."""
+        return sum(block.size for block, _ in self.of_kind(*kinds))
+
+    @cached_property
+    def step_weights(self) -> FloatArray:
+        """How much each unknown counts in the length of a continuation step, shape (size,)."""
+        return self._each([block.step_weight for block in self.blocks])
+
+    @cached_property
+    def units(self) -> FloatArray:
+        """Energy that each equation is divided by, shape (size,), J."""
+        return self._each([block.unit for block in self.blocks])
+
+    @cached_property
+    def differential(self) -> FloatArray:
+        """Whether each unknown is a coordinate that moves, shape (size,)."""
+        return self._each([block.differential for block in self.blocks]).astype(bool)
+
+    def _each(self, values: Sequence[float]) -> FloatArray:
+        return np.repeat(np.asarray(values, dtype=float), [block.size for block in self.blocks])
