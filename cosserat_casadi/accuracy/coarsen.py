@@ -153,7 +153,7 @@ class Trim:
     def _alike(self) -> list[tuple[str, ...]]:
         """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
         discrete = self.preview.model.discrete
-        if not discrete.couplings.ties:
+        if not discrete.is_assembly:
             return [(name,) for name in discrete.rods]
         found: dict[object, tuple[str, ...]] = {}
         for name, discrete_rod in discrete.rods.items():

@@ -24,7 +24,8 @@ from cosserat_casadi.equilibrium.solution import Solution, rotations
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.system import Arguments, System, discrete_scene
+from cosserat_casadi.model.discrete_scene import discrete_scene
+from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -89,7 +90,7 @@ class Preview:
         """Unknowns of the witness that exist with these modes, shape (n,); multipliers always do."""
         mask = np.ones(self.model.size, dtype=bool)
         for name, discrete_rod in self.model.discrete.rods.items():
-            first = self.model.discrete.rod_slices[name].start
+            first = self.model.discrete.unknowns.strain(name).start
             for columns, full, count in zip(
                 discrete_rod.columns.values(), discrete_rod.discretisation.modes, modes[name], strict=True
             ):

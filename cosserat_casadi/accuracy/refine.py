@@ -31,6 +31,7 @@ from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, solv
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Progress
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -346,7 +347,7 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
     """Unknowns of a finer model of the same scene: the coefficients that exist, zeros for the rest."""
     parts = []
     for name, discrete_rod in solution.model.discrete.rods.items():
-        q = solution.x[solution.model.discrete.rod_slices[name]]
+        q = solution.x[solution.model.discrete.unknowns.strain(name)]
         fine = model.discrete.rods[name]
         for c, columns in discrete_rod.columns.items():
             coarse = q[columns].reshape(discrete_rod.grid.elements, -1)
@@ -354,7 +355,7 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
             padded = np.zeros((fine.grid.elements, width))
             padded[:, : coarse.shape[1]] = coarse
             parts.append(padded.ravel())
-    multipliers = solution.x[solution.model.discrete.strain_size :]
+    multipliers = solution.x[solution.model.discrete.unknowns.count(BlockKind.STRAIN) :]
     return np.concatenate([*parts, multipliers])
 
 

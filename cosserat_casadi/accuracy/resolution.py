@@ -72,7 +72,7 @@ class Resolution:
         return self.preview.model.discretisation
 
     def _without(self, count: int) -> float:
-        least = CLOSING if self.preview.model.discrete.couplings.ties else 1
+        least = CLOSING if self.preview.model.discrete.is_assembly else 1
         fewer = {n: tuple(max(min(m, least), m - count) for m in d.modes) for n, d in self._discretisation.items()}
         return _size(self.preview.mode_shift(fewer))
 

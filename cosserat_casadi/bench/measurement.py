@@ -154,7 +154,7 @@ class Trial:
     def _virtual_times(self) -> dict[str, Any]:
         x, inputs = self.solution.x, self.solution.inputs
         rod = self.model.scene.rods[0]
-        arguments = (x[self.model.discrete.rod_slices[rod.name]], *base_pose(rod), inputs)
+        arguments = (x[self.model.discrete.unknowns.strain(rod.name)], *base_pose(rod), inputs)
         igm = self.model.igm[rod.name]
         return {
             "vm_igm_us": _best(lambda: igm(*arguments)),

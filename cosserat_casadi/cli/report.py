@@ -91,8 +91,9 @@ def print_check(console: Console, model: Model) -> None:
         console.print(_load_table(model))
     if model.scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in model.scene.supports))
-    if model.discrete.couplings.ties:
-        console.print("Ties: " + "; ".join(tie.what for tie in model.discrete.couplings.ties), highlight=False)
+    if model.discrete.is_assembly:
+        closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
+        console.print("Ties: " + "; ".join(closing), highlight=False)
     with console.status("Counting operations"):
         cost = price(model)
     console.print(

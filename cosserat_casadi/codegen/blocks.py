@@ -7,14 +7,13 @@ is eliminated last: the work is linear in the number of rods. A front is a block
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.model.system import DiscreteScene
+from cosserat_casadi.model.discrete_scene import DiscreteScene
 
 BORDER = -1
 """Owner of what belongs to no rod."""
@@ -120,22 +119,15 @@ class Blocks:
 def blocks(frame: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
     """Blocks of a scene's Jacobian; None where there is one rod alone, or nothing couples them, or too much does."""
     literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in frame.rods.values())
-    if len(frame.rods) < 2 or not frame.couplings.moving or literal:
+    if len(frame.rods) < 2 or not frame.frames or literal:
         return None
     found = Blocks(_owners(frame), pattern)
     return found if found.separate else None
 
 
 def _owners(frame: DiscreteScene) -> list[int]:
-    numbers, owners = {rod: i for i, rod in enumerate(frame.rods)}, [BORDER] * frame.size
-    owned: list[tuple[str, slice]] = list(frame.rod_slices.items())
-    owned += _with_rods([support.rod for support, _ in frame.holds], frame.hold_slices)
-    owned += [(tie.rod, frame.tie_slices[tie.where]) for tie in frame.couplings.ties]
-    owned += _with_rods([tendon.rod for tendon, _ in frame.cables], frame.tension_slices)
-    for rod, place in owned:
-        owners[place] = [numbers[rod]] * (place.stop - place.start)
+    numbers: dict[str | None, int] = {rod: i for i, rod in enumerate(frame.rods)}
+    owners = []
+    for block in frame.unknowns.blocks:
+        owners += [numbers.get(block.rod, BORDER)] * block.size
     return owners
-
-
-def _with_rods(rods: Sequence[str], places: Sequence[slice]) -> list[tuple[str, slice]]:
-    return list(zip(rods, places, strict=True))

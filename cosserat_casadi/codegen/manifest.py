@@ -108,25 +108,25 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     """Unknowns in the order of their vector: strain coordinates, multipliers, moving frames, unknown tensions."""
     entries: list[dict[str, Any]] = []
     for rod, discrete_rod in model.discrete.rods.items():
-        first = model.discrete.rod_slices[rod].start
+        first = model.discrete.unknowns.strain(rod).start
         for component, columns in discrete_rod.columns.items():
             count = discrete_rod.at_nodes[component].shape[1]
             start = columns.start if isinstance(columns, slice) else columns[0]
             entries.append({"rod": rod, "strain": STRAINS[component], "first": int(first + start), "count": int(count)})
-    first = model.discrete.strain_size
-    for support, hold in model.discrete.holds:
-        entries.append({"rod": support.rod, "support": support.kind, "first": first, "count": hold.size})
-        first += hold.size
-    for tie in model.discrete.couplings.ties:
-        place = model.discrete.tie_slices[tie.where]
-        entries.append({"rod": tie.rod, "tie": tie.where, "first": place.start, "count": tie.joint.size})
-    for carrier, place in model.discrete.moving_slices.items():
-        holders = [joint.rod for joint in model.scene.joints if carrier == ("body", joint.body)]
-        rod, frame = (holders or [carrier.name])[0], str(carrier)
-        entries.append({"rod": rod, "frame": frame, "first": place.start, "count": place.stop - place.start})
-    for tendon, _ in model.discrete.cables:
+    supports = {support.rod: support.kind for support in model.scene.supports}
+    for placed in model.discrete.constraints:
+        what = {"tie": placed.where} if placed.closes_assembly else {"support": supports[placed.rod]}
+        first = model.discrete.multipliers(placed).start
+        entries.append({"rod": placed.rod, **what, "first": first, "count": placed.size})
+    for name in model.discrete.frames:
+        holders = [joint.rod for joint in model.scene.joints if name == ("body", joint.body)]
+        place = model.discrete.deviation(name)
+        rod = (holders or [name.name])[0]
+        entries.append({"rod": rod, "frame": str(name), "first": place.start, "count": place.stop - place.start})
+    for cable in model.discrete.cables:
+        tendon = cable.tendon
         unit = model.discrete.tension_unit(tendon.rod)
-        first = model.discrete.tension_place(tendon.name)
+        first = model.discrete.tension(cable).start
         entries.append({"rod": tendon.rod, "tendon": tendon.name, "first": first, "count": 1, "unit_N": unit})
     return entries
 

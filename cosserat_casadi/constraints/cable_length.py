@@ -1,7 +1,7 @@
 """A cable of given length, whose tension is what it takes.
 
-Where the cable may go slack, the smooth complementarity τ + g − √(τ² + g² + ε²) = 0 of the tension τ and the sag g
-holds both at zero or above and one of them at zero, up to τ g = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284,
+Where the cable may go slack, the smooth complementarity τ + s − √(τ² + s² + ε²) = 0 of the tension τ and the sag s
+holds both at zero or above and one of them at zero, up to τ s = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284,
 with C. Kanzow's smoothing.
 """
 
@@ -20,62 +20,63 @@ SMOOTHING = 1e-9
 
 
 @dataclass(frozen=True)
-class HeldLength:
+class CableLength:
     """The equation of one cable of given length.
 
     Attributes:
-        cable: the cable on its course.
+        cable: the cable on its routing.
         wanted: its length, 1×1, m.
         tension: the unknown, 1×1, in units of EI/ℓ².
         slack: whether it may sag.
-        factor: 1 is the scene; on the way to it a spring stands between the cable's length and the wanted one, from
-            limp at 0 to rigid.
     """
 
     cable: RoutedCable
     wanted: Matrix
     tension: Matrix
     slack: bool
-    factor: Matrix | float
+
+    @property
+    def rod(self) -> str:
+        """Name of the rod that the cable runs through."""
+        return self.cable.shape.rod.properties.name
 
     @cached_property
     def pull(self) -> Matrix:
         """Derivative of the rod's residual with respect to the tension, n×1: ∂L/∂q / ℓ."""
-        return self.cable.length_gradient / self._unit
+        return self.cable.length_gradient / self._rod_length
 
     @cached_property
     def sag(self) -> Matrix:
-        """What the wanted length exceeds that of the course by, relative to the rod's length, 1×1."""
-        sag = (self.wanted - self.cable.length) / self._unit
-        return sag if self._whole else self.factor * sag + (1 - self.factor) * self.tension
+        """What the wanted length exceeds that of the cable by, relative to the rod's length, 1×1."""
+        return (self.wanted - self.cable.length) / self._rod_length
 
     @cached_property
-    def gap(self) -> Matrix:
+    def residual(self) -> Matrix:
         """Zero where the cable has its length, or is slack, 1×1."""
-        return self.tension + self.sag - self._root if self.slack else -self.sag
+        return _kernel(self.slack)(self.sag, self.tension)[0]
 
     @cached_property
-    def gap_with_length(self) -> Matrix | float:
-        """Derivative of the gap with respect to L/ℓ, 1×1."""
-        rate = 1.0 if self._whole else self.factor
-        return rate * (self.sag / self._root - 1) if self.slack else rate
+    def strain_columns(self) -> Matrix:
+        """Derivative of the residual with the strain coordinates, 1×n."""
+        by_sag = _kernel(self.slack)(self.sag, self.tension)[1]
+        return -(by_sag * self.pull).T
 
     @cached_property
-    def gap_with_tension(self) -> Matrix:
-        """Derivative of the gap with respect to the tension, 1×1."""
-        if not self.slack:
-            return type(self.tension)(1, 1) if self._whole else self.factor - 1
-        own = 1 - self.tension / self._root
-        return own if self._whole else own + (1 - self.factor) * (1 - self.sag / self._root)
-
-    @cached_property
-    def _root(self) -> Matrix:
-        return ca.sqrt(self.tension**2 + self.sag**2 + SMOOTHING**2)
+    def tension_column(self) -> Matrix:
+        """Derivative of the residual with the tension, 1×1."""
+        return _kernel(self.slack)(self.sag, self.tension)[2]
 
     @property
-    def _unit(self) -> float:
+    def _rod_length(self) -> float:
         return self.cable.shape.rod.properties.length
 
-    @property
-    def _whole(self) -> bool:
-        return isinstance(self.factor, float) and self.factor == 1.0
+
+def _kernel(slack: bool) -> ca.Function:
+    """Sag and tension ↦ residual and its derivatives with both."""
+    sag = ca.SX.sym("sag")
+    tension = ca.SX.sym("tension")
+    residual = -sag
+    if slack:
+        residual = tension + sag - ca.sqrt(tension**2 + sag**2 + SMOOTHING**2)
+    derivatives = [ca.jacobian(residual, variable) for variable in (sag, tension)]
+    return ca.Function("cable_length", [sag, tension], ca.cse([residual, *derivatives]))

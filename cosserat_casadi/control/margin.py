@@ -20,6 +20,7 @@ from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
 
 WIDTH = 0.02
 """Width w of the soft minimum."""
@@ -85,8 +86,9 @@ def _growth(model: Model, x: Matrix) -> Matrix:
     """Variation of the length of each moving frame's quaternion, which moves nothing and is not admitted, k×size."""
     discrete = model.discrete
     rows = []
-    for carrier, place in discrete.moving_slices.items():
-        quaternion = ca.DM(discrete.couplings.moving[carrier].start.quaternion) + x[place][3:]
+    for name, frame in discrete.frames.items():
+        place = discrete.deviation(name)
+        quaternion = ca.DM(frame.start.quaternion) + x[place][3:]
         rows.append(ca.horzcat(ca.MX(1, place.start + 3), quaternion.T, ca.MX(1, model.size - place.stop)))
     return ca.vertcat(ca.MX(0, model.size), *rows)
 
@@ -95,7 +97,7 @@ def _elastic(model: Model) -> FloatArray:
     """Second variation of the elastic energy of the unloaded rods, n×n; zero for moving frames."""
     whole = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
     elastic = np.zeros_like(whole)
-    for place in model.discrete.rod_slices.values():
+    for _, place in model.discrete.unknowns.of_kind(BlockKind.STRAIN):
         elastic[place, place] = whole[place, place]
     free = variations(model).free
     scaled = _shares(model)[:, None] * elastic[np.ix_(free, free)]

@@ -44,15 +44,15 @@ def judge(
 
 def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
     """The widest gap between rods and what they are tied to, as a sentence; empty where nothing is tied."""
-    ties = model.discrete.couplings.ties
-    if not ties or not np.all(np.isfinite(x)):
+    closing = [placed for placed in model.discrete.constraints if placed.closes_assembly]
+    if not closing or not np.all(np.isfinite(x)):
         return ""
     gaps = column(model.path_residual(x, inputs, 1.0))
-    own = [gaps[model.discrete.tie_slices[tie.where]][: len(tie.joint.position_axes)] for tie in ties]
+    own = [gaps[model.discrete.multipliers(placed)][: placed.constraint.held.positions.shape[1]] for placed in closing]
     worst = int(np.argmax([length_of(gap) for gap in own]))
-    share, tie = length_of(own[worst]), ties[worst]
-    metres = share * tie.joint.rod.length
-    return f" The assembly is not closed: {tie.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
+    share, placed = length_of(own[worst]), closing[worst]
+    metres = share * placed.constraint.rod.length
+    return f" The assembly is not closed: {placed.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
 
 
 def _verdict(

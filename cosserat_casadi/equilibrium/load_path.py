@@ -10,12 +10,6 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import Path
 
-FORCE_SHARE = 0.1
-"""Bending by a joint's multiplier or a tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
-
-SUPPORT_SHARE = 2.0
-"""The same for multipliers of supports: a rod that is drawn to a place has many equilibria there, near each other."""
-
 FIRST = 0.25
 """Longest first step where frames move: the springs have fallen to (3/4)³ then."""
 
@@ -53,22 +47,17 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: where rods need not fit, the springs (1 − t)³ are no straight line."""
-    return FIRST if model.discrete.couplings.moving else 1.0
+    return FIRST if model.discrete.frames else 1.0
 
 
 def step_shares(model: Model) -> FloatArray:
     """How much each unknown counts in the length of a step, shape (size,); forces by a share."""
-    discrete, shares = model.discrete, np.ones(model.size)
-    forces = [*discrete.tie_slices.values(), *discrete.tension_slices]
-    for share, places in ((SUPPORT_SHARE, discrete.hold_slices), (FORCE_SHARE, forces)):
-        for place in places:
-            shares[place] = share
-    return shares
+    return model.discrete.unknowns.step_weights
 
 
 def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
     """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
-    return jacobian if model.discrete.couplings.ties else np.asarray(jacobian.full())
+    return jacobian if model.discrete.is_assembly else np.asarray(jacobian.full())
 
 
 def column(vector: ca.DM) -> FloatArray:

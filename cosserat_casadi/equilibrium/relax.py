@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import admissible_spectrum, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.continuation import Progress
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, descend
 from cosserat_casadi.numerics.newton import NewtonSettings, newton
@@ -47,7 +48,7 @@ def settled(solution: Solution, settings: NewtonSettings, progress: Progress | N
     """
     model = solution.model
     for k, (start, side) in enumerate(_tries(solution)):
-        q = _drawn(solution, start, side) if model.discrete.holds else _let_go(solution, start, side)
+        q = _drawn(solution, start, side) if model.discrete.constraints else _let_go(solution, start, side)
         found = None if q is None else _corrected(solution, q, settings)
         if found is not None and found.stable:
             return replace(found, message=found.message + PATH_OF_ENERGY)
@@ -58,13 +59,13 @@ def settled(solution: Solution, settings: NewtonSettings, progress: Progress | N
 
 def can_settle(model: Model) -> bool:
     """Whether a model's energy is a function of strains alone: no frames move, no cable has a length to keep."""
-    return not model.discrete.couplings.ties and not model.discrete.cables
+    return not model.discrete.is_assembly and not model.discrete.cables
 
 
 def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
     """Starts and sides: from where the path ended to both sides, then from beside it."""
-    n, model = solution.model.discrete.strain_size, solution.model
-    q = model.unloaded()[:n] if model.discrete.holds else solution.x[:n]
+    n, model = solution.model.discrete.unknowns.count(BlockKind.STRAIN), solution.model
+    q = model.unloaded()[:n] if model.discrete.constraints else solution.x[:n]
     for side in SIDES:
         yield q, side
     jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
@@ -98,7 +99,7 @@ def energy_at(model: Model, inputs: FloatArray, factor: float) -> Energy:
 
     Below factor 1 supports are springs, and their multipliers follow from the gaps.
     """
-    n = model.discrete.strain_size
+    n = model.discrete.unknowns.count(BlockKind.STRAIN)
 
     def gradient(q: FloatArray) -> FloatArray:
         return column(model.path_residual(_with_multipliers(model, inputs, factor, q), inputs, factor))[:n]
@@ -114,7 +115,7 @@ def energy_at(model: Model, inputs: FloatArray, factor: float) -> Energy:
 
 def _with_multipliers(model: Model, inputs: FloatArray, factor: float, q: FloatArray) -> FloatArray:
     """Unknowns with the multipliers that springs exert: (1 − factor) multiplier = −factor gap."""
-    n = model.discrete.strain_size
+    n = model.discrete.unknowns.count(BlockKind.STRAIN)
     if model.size == n:
         return q
     x = np.append(q, np.zeros(model.size - n))

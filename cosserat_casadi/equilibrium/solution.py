@@ -112,7 +112,7 @@ class Solution:
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
         name = self.model.rod_name(rod)
-        discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.rod_slices[name]
+        discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.unknowns.strain(name)
         ratio = self.model.length_ratio(name, self.inputs)
         strain: FloatArray = discrete_rod.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float)), ratio).full().T
         return strain

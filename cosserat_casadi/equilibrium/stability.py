@@ -29,13 +29,9 @@ class Variations:
 def variations(model: Model) -> Variations:
     """Variations of a model."""
     discrete = model.discrete
-    units = np.zeros(discrete.size)
-    for rod, place in discrete.rod_slices.items():
-        units[place] = discrete.rods[rod].energy_unit
-    for carrier, place in discrete.moving_slices.items():
-        units[place] = discrete.couplings.moving[carrier].unit
-    free = np.flatnonzero(units)
-    return Variations(free, np.flatnonzero(units == 0.0), units[free])
+    differential = discrete.unknowns.differential
+    free = np.flatnonzero(differential)
+    return Variations(free, np.flatnonzero(~differential), discrete.unknowns.units[free])
 
 
 ZERO = 1e-10

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import casadi as ca
@@ -56,6 +56,14 @@ class BodyAction:
     force: Matrix | None
     moment: Matrix | None
     follower: bool
+
+    def scaled(self, factor: Matrix | None) -> BodyAction:
+        """The load times a factor; itself where there is none."""
+        if factor is None:
+            return self
+        force = None if self.force is None else factor * self.force
+        moment = None if self.moment is None else factor * self.moment
+        return replace(self, force=force, moment=moment)
 
 
 class Effect(ABC):

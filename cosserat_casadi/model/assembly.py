@@ -1,43 +1,58 @@
-"""The equations that couple the rods of a scene: gaps of ties, balance of moving frames, and their derivatives.
+"""What floating frames and constraints add to the equations of a scene, and the Jacobian of the whole.
 
 The balance of a frame is the derivative of the Lagrangian with respect to its pose: −F ℓ for the position, and for the
 quaternion −Tᵀ M with δθ = T δQ, both in units of the frame's EI/ℓ. A quaternion has a length that no mechanics sees:
 the derivative (Q·Q − 1) Q of ¼ (Q·Q − 1)² is added, orthogonal to the rest, and makes it one. So no rotation is
-singular, and the Jacobian is symmetric but for units wherever the loads have a potential and the gaps are closed.
+singular. The Jacobian is symmetric but for units wherever the loads have a potential and the constraints are closed.
+
+The Jacobian follows by the chain rule. Every constraint gives derivatives with three motions [δθ; δr]: of its section,
+of the base of its rod, of the frame on its other side. Sections move with the strains (rod/tangent.py), frames with
+their unknowns. With u = (strains q, multipliers m, deviations d of frames, tensions τ) the blocks are
+
+               q                    m                  d                        τ
+    rod        tangent              −δᵀ W              turn of dead loads,      ∂L/∂q / ℓ
+                                                       W that turns
+    constraint c_section δ          0                  c_base B, c_frame B      0
+    frame      reaction of the      reactions          all that turns with it   0
+               rods it carries
+    cable      by ∂L/∂q             0                  0                        by τ
+
+where δ is the motion of the section with q, W the wrench of a unit of each multiplier, and B the motion of a frame
+with d. Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from cosserat_casadi.constraints.joint import Joint, Placement
-from cosserat_casadi.constraints.tip_support import Pose
+from cosserat_casadi.constraints.section_constraint import Variations
 from cosserat_casadi.loads.load import BodyAction
+from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame, Tie
+from cosserat_casadi.model.constraints import ASSEMBLED, PlacedConstraint
+from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
+from cosserat_casadi.model.homotopy import column_at, row_at, spring
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.reaction import Reaction
 
 if TYPE_CHECKING:
     from cosserat_casadi.model.system import System
 
 
-GIVE = 3
-"""Power of (1 − factor) with which springs vanish: what holds rods that do not fit is far stiffer than they are."""
-
-
 @dataclass
 class Blocks:
-    """A square matrix made of blocks, those that meet the same place added.
+    """A square matrix made of blocks, those that meet in the same rows and columns added.
 
     Attributes:
         ends: where the rows and columns of blocks end.
-        entries: blocks by their places.
+        entries: blocks by the first of their rows and the first of their columns.
     """
 
     ends: list[int]
@@ -45,22 +60,64 @@ class Blocks:
 
     def add(self, rows: slice, columns: slice, block: Matrix) -> None:
         """Add a block."""
-        place = (rows.start, columns.start)
-        self.entries[place] = self.entries[place] + block if place in self.entries else block
+        corner = (rows.start, columns.start)
+        self.entries[corner] = self.entries[corner] + block if corner in self.entries else block
 
     def matrix(self) -> Matrix:
         """The whole, sparse."""
-        places = list(zip([0, *self.ends], self.ends, strict=False))
+        starts = [0, *self.ends[:-1]]
         rows = []
-        for a, b in places:
-            row = [self.entries.get((a, c), ca.DM(b - a, d - c)) for c, d in places]
+        for top, bottom in zip(starts, self.ends, strict=True):
+            row = [
+                self.entries.get((top, left), ca.DM(bottom - top, right - left))
+                for left, right in zip(starts, self.ends, strict=True)
+            ]
             rows.append(ca.horzcat(*row))
         return ca.vertcat(*rows)
 
 
 @dataclass(frozen=True)
-class Coupled:
-    """Rods of a system with the frames that move and the ties between them.
+class FramePose:
+    """World pose of a floating frame from its unknowns.
+
+    Attributes:
+        position: 3×1, m.
+        quaternion: 4×1, not zero; only its direction counts.
+    """
+
+    position: Matrix
+    quaternion: Matrix
+
+    @cached_property
+    def pose(self) -> Pose:
+        """The pose, with the quaternion of norm 1."""
+        return Pose(self.position, self.quaternion / ca.sqrt(ca.sumsqr(self.quaternion)))
+
+
+def turn_matrix(quaternion: Matrix) -> Matrix:
+    """Matrix T from δQ to δθ in world axes, 3×4: δθ = 2 vec(δQ ⊗ Q*) / Q·Q."""
+    w, x, y, z = ca.vertsplit(2 * quaternion / ca.sumsqr(quaternion))
+    return ca.blockcat([[-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])
+
+
+def _turn_rows() -> ca.Function:
+    """(Q, M) ↦ rows of a frame's quaternion, (Q·Q − 1) Q − Tᵀ M, and their derivative with Q at fixed M.
+
+    M is the moment on the frame in units of its EI/ℓ.
+    """
+    quaternion = ca.SX.sym("quaternion", 4)
+    moment = ca.SX.sym("moment", 3)
+    rows = (ca.sumsqr(quaternion) - 1) * quaternion - turn_matrix(quaternion).T @ moment
+    results = ca.cse([rows, ca.jacobian(rows, quaternion)])
+    return ca.Function("turn_rows", [quaternion, moment], results)
+
+
+TURN_ROWS = _turn_rows()
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Rods of a system with their constraints and the floating frames.
 
     Attributes:
         system: the rods and the arguments of the equations.
@@ -69,258 +126,289 @@ class Coupled:
     system: System
 
     @property
-    def couplings(self) -> Couplings:
-        """What does not depend on the unknowns."""
-        return self.system.discrete.couplings
+    def frames(self) -> dict[FrameName, FloatingFrame]:
+        """The floating frames."""
+        return self.system.discrete.frames
+
+    @property
+    def constraints(self) -> list[PlacedConstraint]:
+        """The constraints."""
+        return self.system.discrete.constraints
 
     @cached_property
-    def placements(self) -> dict[Carrier, Placement]:
-        """Poses of the moving frames."""
-        return {carrier: self._placement(carrier, frame) for carrier, frame in self.couplings.moving.items()}
-
-    def base(self, rod: str) -> Placement:
-        """World pose of a rod's base."""
-        carrier = self.couplings.carrier(rod)
-        if carrier is not None:
-            return self.placements[carrier]
-        pose = self.system.base(rod)
-        return Placement(pose.position, pose.quaternion)
-
-    def multipliers(self, tie: Tie) -> Matrix:
-        """Multipliers of a tie."""
-        return self.system.arguments.x[self.system.discrete.tie_slices[tie.where]]
+    def poses(self) -> dict[FrameName, FramePose]:
+        """World poses of the floating frames."""
+        return {name: self._pose(name, frame) for name, frame in self.frames.items()}
 
     @cached_property
-    def gaps(self) -> list[Matrix]:
-        """Gap of every tie, on the way to the scene with the tie's give."""
-        return [self._closing(self.gap(tie), self.multipliers(tie)) for tie in self.couplings.ties]
-
-    def gap(self, tie: Tie) -> Matrix:
-        """What a tie has left to close, without unit."""
-        return tie.joint.gap(self._section(tie), self.base(tie.rod), self._other(tie))
+    def constraint_rows(self) -> list[Matrix]:
+        """Residual of every constraint, at the load factor."""
+        return [self._constraint_row(placed) for placed in self.constraints]
 
     @cached_property
-    def balances(self) -> list[Matrix]:
-        """Balance of every moving frame, 7×1, without unit."""
-        found = []
-        for carrier, frame in self.couplings.moving.items():
-            force, moment = self._resultants[carrier]
-            place = self.placements[carrier]
-            excess = ca.sumsqr(place.quaternion) - 1
-            rows = ca.vertcat(
-                -frame.length / frame.unit * force,
-                excess * place.quaternion - place.turn.T @ moment / frame.unit,
-            )
-            found.append(self._closing(rows, self._deviation(carrier)))
-        return found
+    def balance_rows(self) -> list[Matrix]:
+        """Balance of every floating frame, 7×1, without unit, at the load factor."""
+        rows = []
+        for name, frame in self.frames.items():
+            wrench = self._wrenches[name]
+            force_row = -frame.length / frame.unit * wrench[3:]
+            turn_row = TURN_ROWS(self.poses[name].quaternion, wrench[:3] / frame.unit)[0]
+            balance = ca.vertcat(force_row, turn_row)
+            rows.append(row_at(balance, self._deviation(name), ASSEMBLED, self._load_factor))
+        return rows
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x of the whole scene, sparse by blocks."""
         discrete = self.system.discrete
-        slices = [*discrete.rod_slices.values(), *discrete.hold_slices, *discrete.tie_slices.values()]
-        slices += [*discrete.moving_slices.values(), *discrete.tension_slices]
-        blocks = Blocks([place.stop for place in slices])
+        blocks = Blocks([entries.stop for entries in discrete.unknowns.slices.values()])
         for rod, tangent in self.system.tangents.items():
-            blocks.add(discrete.rod_slices[rod], discrete.rod_slices[rod], tangent.jacobian)
-        self._add_holds(blocks)
-        self._add_lengths(blocks)
-        for tie in self.couplings.ties:
-            self._add_gap(blocks, tie)
-            self._add_pull(blocks, tie)
-        for carrier in self.couplings.moving:
-            self._add_frame(blocks, carrier)
-        for carried in self.couplings.carried:
-            self._add_reaction(blocks, carried.name)
+            entries = discrete.unknowns.strain(rod)
+            blocks.add(entries, entries, tangent.jacobian)
+        for placed in self.constraints:
+            self._add_constraint(blocks, placed)
+            self._add_constraint_wrench(blocks, placed)
+        for carried in discrete.unloaded.carried:
+            self._add_turned_loads(blocks, carried.name)
+        for name in self.frames:
+            self._add_balance(blocks, name)
+        for cable in discrete.cables:
+            self._add_cable_length(blocks, cable.tendon.name)
+        self._add_springs(blocks)
         return blocks.matrix()
 
-    def _closing(self, equation: Matrix, unknown: Matrix) -> Matrix:
-        """Ties and frames on the way to the scene.
-
-        A tie is a spring between the section and its place, from limp to rigid; a frame is held where the unloaded
-        scene has it by a spring, from rigid to limp.
-        """
-        return equation if self.system.whole else self._scaled(equation) + self._give * unknown
+    # Rows of constraints
 
     @property
-    def _give(self) -> Matrix:
-        """Compliance of the springs of ties, stiffness of those of frames, without unit."""
-        return (1 - self.system.arguments.factor) ** GIVE
+    def _load_factor(self) -> Matrix | None:
+        return self.system.arguments.load_factor
 
-    def _placement(self, carrier: Carrier, frame: MovingFrame) -> Placement:
-        moved = self._deviation(carrier)
-        position = ca.DM(frame.start.position) + frame.length * moved[:3]
-        return Placement(position, ca.DM(frame.start.quaternion) + moved[3:])
+    def _pose(self, name: FrameName, frame: FloatingFrame) -> FramePose:
+        deviation = self._deviation(name)
+        position = ca.DM(frame.start.position) + frame.length * deviation[:3]
+        return FramePose(position, ca.DM(frame.start.quaternion) + deviation[3:])
 
-    def _deviation(self, carrier: Carrier) -> Matrix:
-        return self.system.arguments.x[self.system.discrete.moving_slices[carrier]]
+    def _deviation(self, name: FrameName) -> Matrix:
+        return self.system.arguments.x[self.system.discrete.deviation(name)]
 
-    def _section(self, tie: Tie) -> Pose:
-        place = self.system.rods[tie.rod].shape
-        return Pose(place.position_at(tie.node), place.quaternion[:, tie.node])
+    def _constraint_row(self, placed: PlacedConstraint) -> Matrix:
+        row = placed.constraint.residual(self.system.poses(placed))
+        return row_at(row, self.system.multipliers(placed), placed.compliance, self._load_factor)
 
-    def _other(self, tie: Tie) -> Placement:
-        if tie.other is None:
-            return Placement(ca.DM.zeros(3, 1), ca.DM([1, 0, 0, 0]))
-        return self.placements[tie.other]
+    def _add_constraint(self, blocks: Blocks, placed: PlacedConstraint) -> None:
+        """Rows of a constraint: c_section δ, c_base B, c_frame B."""
+        rows = self.system.discrete.multipliers(placed)
+        variations = placed.constraint.residual_variation(self.system.poses(placed))
+        by_strain = variations.section @ self._section_motion(placed)
+        strains = self.system.discrete.unknowns.strain(placed.rod)
+        blocks.add(rows, strains, column_at(by_strain, self._load_factor))
+        for name, derivative in self._by_frames(placed, variations):
+            columns = derivative @ self._frame_motion(name)
+            deviation = self.system.discrete.deviation(name)
+            blocks.add(rows, deviation, column_at(columns, self._load_factor))
+
+    def _section_motion(self, placed: PlacedConstraint) -> Matrix:
+        """δ: motion [δθ; δr] of a held section with the strains of its rod, 6×n, base axes."""
+        tangent = self.system.tangents[placed.rod]
+        return ca.vertcat(tangent.rotation_of(placed.node), tangent.position(placed.node))
+
+    def _frame_motion(self, name: FrameName) -> Matrix:
+        """B: motion [δθ; δr] of a floating frame with its unknowns, 6×7, world axes."""
+        turn = turn_matrix(self.poses[name].quaternion)
+        length = self.frames[name].length
+        return ca.blockcat([[ca.DM(3, 3), turn], [length * ca.DM.eye(3), ca.DM(3, 4)]])
+
+    def _by_frames(self, placed: PlacedConstraint, variations: Variations) -> list[tuple[FrameName, Matrix]]:
+        """Derivatives with the motions of those frames of a constraint that float."""
+        base = self.system.discrete.unloaded.floating_base(placed.rod)
+        candidates = ((base, variations.base), (placed.frame, variations.frame))
+        return [(name, derivative) for name, derivative in candidates if name is not None]
+
+    # Columns of the rods
+
+    def _add_constraint_wrench(self, blocks: Blocks, placed: PlacedConstraint) -> None:
+        """What multipliers do to the residual of their rod, −δᵀ W / (EI/ℓ), and W that turns with its place."""
+        constraint = placed.constraint
+        poses = self.system.poses(placed)
+        strains = self.system.discrete.unknowns.strain(placed.rod)
+        work = self._section_motion(placed).T / -constraint.unit
+        blocks.add(strains, self.system.discrete.multipliers(placed), work @ constraint.wrench_basis(poses))
+        if not constraint.held.turn_with_place:
+            return
+        turned = constraint.wrench_variation(poses, self.system.multipliers(placed))
+        for name, derivative in self._by_frames(placed, turned):
+            blocks.add(strains, self.system.discrete.deviation(name), work @ derivative @ self._frame_motion(name))
+
+    def _add_turned_loads(self, blocks: Blocks, rod: str) -> None:
+        """What the turn of a floating base does to its rod: dead loads turn the other way."""
+        name = FrameName("rod", rod)
+        world_R_base = self.poses[name].pose.rotation
+        residual, _, _ = self._reactions[rod].with_turn
+        turn = self._frame_motion(name)[:3, :]
+        strains = self.system.discrete.unknowns.strain(rod)
+        blocks.add(strains, self.system.discrete.deviation(name), residual @ world_R_base.T @ turn)
+
+    # Rows of floating frames
 
     @cached_property
-    def _resultants(self) -> dict[Carrier, tuple[Matrix, Matrix]]:
-        """Force (N) and moment about the origin (N m) on every moving frame, world axes."""
-        found: dict[Carrier, tuple[Matrix, Matrix]] = {}
-        for carrier in self.couplings.moving:
-            force, moment = ca.DM.zeros(3, 1), ca.DM.zeros(3, 1)
-            for one, other in self._wrenches(carrier):
-                force, moment = force + one, moment + other
-            found[carrier] = (force, moment)
-        return found
+    def _wrenches(self) -> dict[FrameName, Matrix]:
+        """Wrench [moment about the origin; force] on every floating frame, 6×1, world axes, N m and N."""
+        wrenches: dict[FrameName, Matrix] = {name: ca.DM.zeros(6, 1) for name in self.frames}
+        for placed in self.constraints:
+            if placed.frame is not None:
+                reaction = placed.constraint.reaction(self.system.poses(placed), self.system.multipliers(placed))
+                wrenches[placed.frame] = wrenches[placed.frame] + reaction
+        for name in self.frames:
+            if name.kind == "rod":
+                wrenches[name] = wrenches[name] + self._rod_reaction(name)
+            for action in self._body_actions(name):
+                wrenches[name] = wrenches[name] + self._body_wrench(name, action)
+        return wrenches
 
-    def _wrenches(self, carrier: Carrier) -> list[tuple[Matrix, Matrix]]:
-        """What acts on a moving frame: ties that hold on to it, the rod it is the base of, loads on the body."""
-        found = []
-        for tie in self.couplings.ties:
-            if tie.other == carrier:
-                force, moment = self._tie_wrench(tie)
-                arm = tie.joint.arm(self.placements[carrier])
-                found.append((-force, -ca.cross(arm, force) - moment))
-        if carrier.kind == "rod":
-            statics, rotation = self.system.rods[carrier.name].statics, self.placements[carrier].rotation
-            found.append((-(rotation @ statics.base_force), -(rotation @ statics.base_moment)))
-        for action in self._actions(carrier):
-            force, moment, arm = self._body_wrench(carrier, action)
-            found.append((force, ca.cross(arm, force) + moment))
-        return found
+    def _rod_reaction(self, name: FrameName) -> Matrix:
+        """Wrench of a carried rod on its own base, world axes."""
+        statics = self.system.rods[name.name].statics
+        world_R_base = self.poses[name].pose.rotation
+        return -ca.vertcat(world_R_base @ statics.base_moment, world_R_base @ statics.base_force)
 
-    def _tie_wrench(self, tie: Tie) -> tuple[Matrix, Matrix]:
-        """Force and moment of a tie on its section, world axes."""
-        rotation, multipliers = self.base(tie.rod).rotation, self.multipliers(tie)
-        moment = tie.joint.moment(multipliers)
-        turned = ca.DM.zeros(3, 1) if moment is None else rotation @ moment
-        return rotation @ tie.joint.force(multipliers), turned
+    @cached_property
+    def _reactions(self) -> dict[str, Reaction]:
+        """Variations of the base wrenches of carried rods."""
+        carried = [rod.name for rod in self.system.discrete.unloaded.carried]
+        return {rod: Reaction(self.system.tangents[rod], self.system.dead_wrenches(rod)) for rod in carried}
 
-    def _actions(self, carrier: Carrier) -> list[BodyAction]:
-        body, found = self.couplings.moving[carrier].body, []
+    def _add_balance(self, blocks: Blocks, name: FrameName) -> None:
+        """Rows of a frame's balance, from the variations of the wrench on it."""
+        frame = self.frames[name]
+        quaternion = self.poses[name].quaternion
+        rows = self.system.discrete.deviation(name)
+        turn = turn_matrix(quaternion)
+        # From a variation of the wrench [moment; force] to one of the rows [−F ℓ; −Tᵀ M].
+        to_rows = ca.blockcat(
+            [[ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3)], [-turn.T / frame.unit, ca.DM(4, 3)]]
+        )
+        for columns, variation in self._wrench_variations(name):
+            blocks.add(rows, columns, column_at(to_rows @ variation, self._load_factor))
+        own_turn = TURN_ROWS(quaternion, self._wrenches[name][:3] / frame.unit)[1]
+        blocks.add(rows, rows, column_at(ca.diagcat(ca.DM(3, 3), own_turn), self._load_factor))
+
+    def _wrench_variations(self, name: FrameName) -> list[tuple[slice, Matrix]]:
+        """Variation of the wrench on a frame with each block of unknowns that changes it, 6×k, world axes."""
+        discrete = self.system.discrete
+        variations: list[tuple[slice, Matrix]] = []
+        by_motion: dict[FrameName, Matrix] = defaultdict(lambda: ca.DM(6, 6))
+        for placed in self.constraints:
+            if placed.frame != name:
+                continue
+            by_multipliers, by_poses = placed.constraint.reaction_variation(
+                self.system.poses(placed), self.system.multipliers(placed)
+            )
+            variations.append((discrete.multipliers(placed), by_multipliers))
+            for frame, derivative in self._by_frames(placed, by_poses):
+                by_motion[frame] = by_motion[frame] + derivative
+            if placed.constraint.slides:
+                strains = discrete.unknowns.strain(placed.rod)
+                variations.append((strains, by_poses.section @ self._section_motion(placed)))
+        if name.kind == "rod":
+            variations += self._rod_reaction_variations(name, by_motion)
+        for action in self._body_actions(name):
+            by_motion[name] = by_motion[name] + self._body_wrench_variation(name, action)
+        for frame, derivative in by_motion.items():
+            variations.append((discrete.deviation(frame), derivative @ self._frame_motion(frame)))
+        return variations
+
+    def _rod_reaction_variations(
+        self, name: FrameName, by_motion: dict[FrameName, Matrix]
+    ) -> list[tuple[slice, Matrix]]:
+        """Variation of the wrench of a carried rod on its base with strains and multipliers; frames into by_motion."""
+        rod = name.name
+        discrete = self.system.discrete
+        statics = self.system.rods[rod].statics
+        reaction = self._reactions[rod]
+        rotation = self.poses[name].pose.rotation
+        to_world = ca.diagcat(rotation, rotation)
+        by_strain = ca.vertcat(reaction.moment_with_strain, reaction.force_with_strain)
+        variations = [(discrete.unknowns.strain(rod), -to_world @ by_strain)]
+        _, force, moment = reaction.with_turn
+        # In the axes of the base, dead loads turn back; the base wrench itself turns with the base.
+        by_turn = ca.vertcat(moment - hat(statics.base_moment), force - hat(statics.base_force))
+        by_motion[name] = by_motion[name] - ca.horzcat(to_world @ by_turn @ rotation.T, ca.DM(6, 3))
+        for placed in discrete.constraints_on(rod):
+            variations += self._passed_on(placed, to_world, by_motion)
+        return variations
+
+    def _passed_on(
+        self, placed: PlacedConstraint, to_world: Matrix, by_motion: dict[FrameName, Matrix]
+    ) -> list[tuple[slice, Matrix]]:
+        """What a constraint on a carried rod passes on to the rod's base."""
+        poses = self.system.poses(placed)
+        position = poses.section.position
+        lever = ca.blockcat([[ca.DM.eye(3), hat(position)], [ca.DM(3, 3), ca.DM.eye(3)]])
+        to_base = to_world @ lever
+        if placed.constraint.held.turn_with_place:
+            turned = placed.constraint.wrench_variation(poses, self.system.multipliers(placed))
+            for frame, derivative in self._by_frames(placed, turned):
+                by_motion[frame] = by_motion[frame] + to_base @ derivative
+        return [(self.system.discrete.multipliers(placed), to_base @ placed.constraint.wrench_basis(poses))]
+
+    # Loads on bodies
+
+    def _body_actions(self, name: FrameName) -> list[BodyAction]:
+        body = self.frames[name].body
         if body is None:
             return []
+        actions = []
         for load in self.system.discrete.scene.loads:
-            effect = EFFECTS[load.kind]
-            action = effect.on_body(load, body, self.system.values(load))
+            action = EFFECTS[load.kind].on_body(load, body, self.system.values(load))
             if action is not None:
-                found.append(action)
-        return found
+                actions.append(action.scaled(self._load_factor))
+        return actions
 
-    def _body_wrench(self, carrier: Carrier, action: BodyAction) -> tuple[Matrix, Matrix, Matrix]:
-        """Force, moment and arm of a load on a body, world axes."""
-        rotation = self.placements[carrier].rotation
-        none = ca.DM.zeros(3, 1)
-        force, moment = (none if vector is None else vector for vector in (action.force, action.moment))
+    def _body_wrench(self, name: FrameName, action: BodyAction) -> Matrix:
+        """Wrench of a load on a body about its origin, world axes, 6×1."""
+        force, moment, lever = self._body_vectors(name, action)
+        return ca.vertcat(ca.cross(lever, force) + moment, force)
+
+    def _body_wrench_variation(self, name: FrameName, action: BodyAction) -> Matrix:
+        """Its derivative with the motion of the body, 6×6: a follower turns with it, the lever always does."""
+        force, moment, lever = self._body_vectors(name, action)
         if action.follower:
-            force, moment = rotation @ force, rotation @ moment
+            by_turn = ca.vertcat(-hat(ca.cross(lever, force) + moment), -hat(force))
+        else:
+            by_turn = ca.vertcat(hat(force) @ hat(lever), ca.DM(3, 3))
+        return ca.horzcat(by_turn, ca.DM(6, 3))
+
+    def _body_vectors(self, name: FrameName, action: BodyAction) -> tuple[Matrix, Matrix, Matrix]:
+        """Force, moment and lever of a load on a body, world axes."""
+        rotation = self.poses[name].pose.rotation
+        zero = ca.DM.zeros(3, 1)
+        force = zero if action.force is None else action.force
+        moment = zero if action.moment is None else action.moment
+        if action.follower:
+            force = rotation @ force
+            moment = rotation @ moment
         return force, moment, rotation @ ca.DM(action.position)
 
-    def _add_holds(self, blocks: Blocks) -> None:
+    # Cables of given length
+
+    def _add_cable_length(self, blocks: Blocks, tendon: str) -> None:
+        """Row of a cable of given length, and its tension's column in the residual of its rod."""
+        equation = self.system.cable_lengths[tendon]
+        strains = self.system.discrete.unknowns.strain(equation.rod)
+        tension = self.system.discrete.unknowns.slice_of(BlockKind.TENSION, tendon)
+        blocks.add(strains, tension, equation.pull)
+        blocks.add(tension, strains, column_at(equation.strain_columns, self._load_factor))
+        blocks.add(tension, tension, column_at(equation.tension_column, self._load_factor))
+
+    # The way to the scene
+
+    def _add_springs(self, blocks: Blocks) -> None:
+        """Derivatives of the springs that constraints, frames and cables are on the way to the scene."""
         discrete = self.system.discrete
-        for (support, hold, _), place in zip(self.system.holds, discrete.hold_slices, strict=True):
-            tangent, rod = self.system.tangents[support.rod], discrete.rod_slices[support.rod]
-            moved, turned = tangent.position(-1), tangent.rotation_of(-1)
-            blocks.add(rod, place, hold.force_variation(moved, turned))
-            blocks.add(place, rod, self._scaled(hold.gap_variation(self.system.tip(support.rod), moved, turned)))
-            if not self.system.whole:
-                blocks.add(place, place, (1 - self.system.arguments.factor) * ca.MX.eye(hold.size))
-
-    def _add_lengths(self, blocks: Blocks) -> None:
-        """Rows of the cables of given length, and their tensions' columns in the rods' residuals."""
-        discrete = self.system.discrete
-        for length, place in zip(self.system.lengths, discrete.tension_slices, strict=True):
-            rod = discrete.rod_slices[length.cable.shape.rod.properties.name]
-            blocks.add(rod, place, length.pull)
-            blocks.add(place, rod, (length.gap_with_length * length.pull).T)
-            blocks.add(place, place, length.gap_with_tension)
-
-    def _add_gap(self, blocks: Blocks, tie: Tie) -> None:
-        """Rows of a tie's gap, and its multipliers' columns in the rod's residual."""
-        discrete, tangent = self.system.discrete, self.system.tangents[tie.rod]
-        rows, rod, joint = discrete.tie_slices[tie.where], discrete.rod_slices[tie.rod], tie.joint
-        moved, turned = tangent.position(tie.node), tangent.rotation_of(tie.node)
-        sides = (self._section(tie), self.base(tie.rod), self._other(tie))
-        blocks.add(rod, rows, joint.force_with_strain(moved, turned))
-        blocks.add(rows, rod, self._scaled(joint.gap_with_strain(*sides, moved, turned)))
-        own = self.couplings.carrier(tie.rod)
-        for carrier, columns in ((own, joint.gap_with_base), (tie.other, joint.gap_with_other)):
-            if carrier is not None:
-                blocks.add(rows, discrete.moving_slices[carrier], self._scaled(columns(*sides) @ self._motion(carrier)))
-        self._add_give(blocks, rows)
-
-    def _add_pull(self, blocks: Blocks, tie: Tie) -> None:
-        """What a tie does to the frame on its other side."""
-        if tie.other is None:
-            return
-        base, other, joint = self.base(tie.rod), self.placements[tie.other], tie.joint
-        columns, arm = self.system.discrete.tie_slices[tie.where], hat(joint.arm(other))
-        force, moment = (base.rotation @ unit for unit in joint.units())
-        self._add_rows(blocks, tie.other, columns, -force, -(arm @ force) - moment)
-        pulled, twisted = map(hat, self._tie_wrench(tie))
-        self._add_turn(blocks, tie.other, tie.other, ca.DM(3, 3), -(pulled @ arm))
-        carrier = self.couplings.carrier(tie.rod)
-        if carrier is not None:
-            self._add_turn(blocks, tie.other, carrier, pulled, arm @ pulled + twisted)
-
-    def _add_frame(self, blocks: Blocks, carrier: Carrier) -> None:
-        """What a frame's own turn does to its balance, the length of its quaternion, loads on the body."""
-        frame, place = self.couplings.moving[carrier], self.placements[carrier]
-        _, moment = self._resultants[carrier]
-        q, rows = place.quaternion, self.system.discrete.moving_slices[carrier]
-        own = (ca.sumsqr(q) - 1) * ca.DM.eye(4) + 2 * q @ q.T - place.turned_moment(moment) / frame.unit
-        blocks.add(rows, rows, self._scaled(ca.diagcat(ca.DM(3, 3), own)))
-        for action in self._actions(carrier):
-            force, couple, arm = self._body_wrench(carrier, action)
-            if action.follower:
-                turning = -hat(ca.cross(arm, force) + couple)
-                self._add_turn(blocks, carrier, carrier, -hat(force), turning)
-            else:
-                self._add_turn(blocks, carrier, carrier, ca.DM(3, 3), hat(force) @ hat(arm))
-        self._add_give(blocks, rows)
-
-    def _add_reaction(self, blocks: Blocks, name: str) -> None:
-        """A carried rod: what it does to its base, and what the turn of its base does to it."""
-        discrete, carrier, igm = self.system.discrete, Carrier("rod", name), self.system.rods[name]
-        rotation, rod = self.placements[carrier].rotation, discrete.rod_slices[name]
-        reaction = Reaction(self.system.tangents[name], self.system.dead_wrenches(name))
-        strained = (reaction.force_with_strain, reaction.moment_with_strain)
-        self._add_rows(blocks, carrier, rod, *(-(rotation @ columns) for columns in strained))
-        residual, force, moment = reaction.with_turn
-        blocks.add(rod, discrete.moving_slices[carrier], residual @ rotation.T @ self._motion(carrier)[3:, :])
-        force, moment = force - hat(igm.statics.base_force), moment - hat(igm.statics.base_moment)
-        self._add_turn(blocks, carrier, carrier, *(-(rotation @ m @ rotation.T) for m in (force, moment)))
-        for tie in self.couplings.ties:
-            if tie.rod == name:
-                self._add_passed(blocks, carrier, tie, tie.joint)
-
-    def _add_passed(self, blocks: Blocks, carrier: Carrier, tie: Tie, joint: Joint) -> None:
-        """What a tie on a carried rod passes on to the rod's base."""
-        rotation, (force, moment) = self.placements[carrier].rotation, joint.units()
-        levered = hat(self._section(tie).position) @ force + moment
-        columns = self.system.discrete.tie_slices[tie.where]
-        self._add_rows(blocks, carrier, columns, rotation @ force, rotation @ levered)
-
-    def _motion(self, carrier: Carrier) -> Matrix:
-        """δp (m) and δθ (rad, world axes) of a moving frame from its unknowns, 6×7."""
-        return ca.diagcat(self.couplings.moving[carrier].length * ca.DM.eye(3), self.placements[carrier].turn)
-
-    def _add_turn(self, blocks: Blocks, carrier: Carrier, turning: Carrier, force: Matrix, moment: Matrix) -> None:
-        """Variations of force and moment on a frame with the turn of a frame, 3×3 each, world axes."""
-        turn = self._motion(turning)[3:, :]
-        self._add_rows(blocks, carrier, self.system.discrete.moving_slices[turning], force @ turn, moment @ turn)
-
-    def _add_rows(self, blocks: Blocks, carrier: Carrier, columns: slice, force: Matrix, moment: Matrix) -> None:
-        """Variations of force and moment on a frame, 3×k each, as rows of its balance."""
-        frame, turn = self.couplings.moving[carrier], self.placements[carrier].turn
-        rows = ca.vertcat(-frame.length / frame.unit * force, turn.T @ moment / -frame.unit)
-        blocks.add(self.system.discrete.moving_slices[carrier], columns, self._scaled(rows))
-
-    def _add_give(self, blocks: Blocks, rows: slice) -> None:
-        if not self.system.whole:
-            blocks.add(rows, rows, self._give * ca.MX.eye(rows.stop - rows.start))
-
-    def _scaled(self, rows: Matrix) -> Matrix:
-        return rows if self.system.whole else self.system.arguments.factor * rows
+        rows = [(discrete.multipliers(placed), placed.compliance) for placed in self.constraints]
+        rows += [(discrete.deviation(name), ASSEMBLED) for name in self.frames]
+        rows += [(discrete.tension(cable), cable.compliance) for cable in discrete.cables]
+        for entries, compliance in rows:
+            block = spring(entries.stop - entries.start, compliance, self._load_factor)
+            if block is not None:
+                blocks.add(entries, entries, block)

@@ -13,11 +13,12 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.system import Arguments, DiscreteScene, discrete_scene, ratio_of
+from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -178,13 +179,17 @@ class Model:
             if EFFECTS[cause.kind].acts_on(cause, discrete_rod.properties.name)
         )
         return on_rods and all(
-            EFFECTS[load.kind].has_potential_on_bodies(load, values[load.name], flat=self.discrete.couplings.all_flat)
+            EFFECTS[load.kind].has_potential_on_bodies(
+                load, values[load.name], flat=self.discrete.unloaded.all_in_parallel_planes
+            )
             for load in self.scene.loads
         )
 
     def _turning(self, rod: RodProperties) -> RodProperties:
         """A rod as it turns in the world: one that is carried about may turn about every axis."""
-        still = self.discrete.couplings.carrier(rod.name) is None or self.discrete.couplings.flat(rod.name) is not None
+        still = (
+            self.discrete.unloaded.floating_base(rod.name) is None or self.discrete.unloaded.plane(rod.name) is not None
+        )
         return rod if still else replace(rod, admitted=(0, 1, 2))
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:

@@ -10,8 +10,9 @@ import numpy as np
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.couplings import Carrier
-from cosserat_casadi.model.system import Arguments, DiscreteScene, System, balance, ratio_of, rod_actions
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.system import Arguments, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.transport import largest_turn
 
@@ -35,7 +36,7 @@ def _path_arguments(discrete: DiscreteScene) -> Arguments:
 
 
 def _listed(arguments: Arguments) -> list[Matrix]:
-    return [arguments.x, arguments.inputs, arguments.factor]
+    return [arguments.x, arguments.inputs, arguments.load_factor]
 
 
 def _name(word: str, rod: str) -> str:
@@ -82,7 +83,7 @@ def path_rate(discrete: DiscreteScene) -> ca.Function:
     """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
     a = _path_arguments(discrete)
     inputs_rate, factor_rate = ca.MX.sym("inputs_rate", discrete.layout.size), ca.MX.sym("factor_rate")
-    moving, speed = ca.vertcat(a.inputs, a.factor), ca.vertcat(inputs_rate, factor_rate)
+    moving, speed = ca.vertcat(a.inputs, a.load_factor), ca.vertcat(inputs_rate, factor_rate)
     joined = ca.MX.sym("inputs_and_factor", moving.shape[0])
     parts = Arguments(a.x, joined[:-1], joined[-1])
     rate = ca.substitute(ca.jtimes(System(discrete, parts).residual, joined, speed), joined, moving)
@@ -161,7 +162,7 @@ def tip_jacobian(discrete: DiscreteScene, rod: str) -> ca.Function:
     a = _arguments(discrete)
     system = System(discrete, a)
     base = system.base(rod)
-    moving = discrete.couplings.carrier(rod) is not None
+    moving = discrete.unloaded.floating_base(rod) is not None
     if moving or discrete.rods[rod].discretisation.transport == "permuted":
         pose = ca.vertcat(*tip(discrete, rod)(a.x, a.inputs)[:2])
         own = ca.jacobian(pose, a.x)
@@ -172,7 +173,7 @@ def tip_jacobian(discrete: DiscreteScene, rod: str) -> ca.Function:
         turned = quaternion_product(spin, quaternion) / 2
         world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
         moved = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
-        place = discrete.rod_slices[rod]
+        place = discrete.unknowns.strain(rod)
         before, after = ca.DM(7, place.start), ca.DM(7, discrete.size - place.stop)
         own = ca.horzcat(before, ca.vertcat(moved, world), after)
     directly = ca.DM.zeros(7, discrete.layout.size)
@@ -237,8 +238,8 @@ def actuator(discrete: DiscreteScene, name: str) -> ca.Function:
 def body(discrete: DiscreteScene, name: str) -> ca.Function:
     """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
     a = _arguments(discrete)
-    place = System(discrete, a).coupled.placements[Carrier("body", name)]
-    outputs = [place.position, place.direction, place.rotation]
+    place = System(discrete, a).frame(FrameName("body", name))
+    outputs = [place.position, place.quaternion, place.rotation]
     names = ["position", "quaternion", "rotation"]
     return ca.Function(_name("body", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
 
@@ -272,7 +273,7 @@ def coarseness(discrete: DiscreteScene) -> ca.Function:
     a = _arguments(discrete)
     shares: list[Matrix] = [ca.MX(0.0)]
     for rod, discrete_rod in discrete.rods.items():
-        q, ratio = a.x[discrete.rod_slices[rod]], ratio_of(discrete, rod, a)
+        q, ratio = a.x[discrete.unknowns.strain(rod)], ratio_of(discrete, rod, a)
         if discrete_rod.discretisation.transport == "permuted":
             tip = kinematics.shape(discrete_rod, q, ratio).quaternion[:, -1]
             shares.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)

@@ -17,10 +17,12 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.spins import free_spins
-from cosserat_casadi.model.system import Arguments, DiscreteScene, System, discrete_scene
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.unknowns import BlockKind
 
 MODES, NODES, SEED = 4, 10, 20250711
 """A discretisation that can bend every way a rod can, and the seed of its random shape."""
@@ -46,25 +48,27 @@ def check_constraints(scene: scenes.Scene) -> None:
     if _rank(gaps) == len(gaps):
         return
     remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
-    for tie in probe.couplings.ties:
-        place = probe.tie_slices[tie.where]
-        upper = gaps[: place.stop - probe.strain_size]
+    for placed in probe.constraints:
+        upper = gaps[: probe.multipliers(placed).stop - probe.unknowns.count(BlockKind.STRAIN)]
         if _rank(upper) < len(upper):
-            problem = f"over-constrains: {tie.what} is held already in a direction in which its rods cannot give"
-            raise SceneError(Problem(tie.where, problem, remedy))
+            problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
+            raise SceneError(Problem(placed.where, problem, remedy))
 
 
 def _at_a_random_shape(probe: DiscreteScene) -> System:
     """The equations at a shape that has nothing special, at the scene's inputs."""
     x = np.zeros(probe.size)
-    x[: probe.strain_size] = 0.3 * np.random.default_rng(SEED).standard_normal(probe.strain_size)
+    strains = probe.unknowns.count(BlockKind.STRAIN)
+    x[:strains] = 0.3 * np.random.default_rng(SEED).standard_normal(strains)
     return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
 
 
 def _gap_rows(system: System) -> FloatArray:
     """Linearised gaps of supports and ties against strains and moving frames."""
-    probe, jacobian = system.discrete, ca.evalf(system.jacobian).full()
-    first, last = probe.strain_size, probe.strain_size + probe.multiplier_size
+    unknowns = system.discrete.unknowns
+    jacobian = ca.evalf(system.jacobian).full()
+    first = unknowns.count(BlockKind.STRAIN)
+    last = first + unknowns.count(BlockKind.MULTIPLIER)
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from cosserat_casadi.actuators.chamber import Chamber
 from cosserat_casadi.actuators.tendon import Tendon
-from cosserat_casadi.constraints.tip_support import Clamped, Pinned, Support
 from cosserat_casadi.loads.body_wrench import BodyWrench
 from cosserat_casadi.loads.distributed_wrench import DistributedWrench
 from cosserat_casadi.loads.gravity import Gravity
@@ -25,6 +24,3 @@ EFFECTS: dict[str, Effect] = {
     )
 }
 """Loads and actuators by the word of the scene format."""
-
-SUPPORTS: dict[str, Support] = {support.kind: support for support in (Clamped(), Pinned())}
-"""Supports by the word of the scene format."""

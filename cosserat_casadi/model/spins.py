@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.couplings import FLAT, Carrier
+from cosserat_casadi.model.floating_frames import FLAT, FrameName
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import System
 
@@ -33,10 +33,11 @@ def free_spins(system: System) -> Iterator[Problem]:
 
 def _joints(system: System, body: scenes.Body) -> FloatArray | None:
     """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
-    ties = [tie for tie in system.discrete.couplings.ties if tie.other == Carrier("body", body.name)]
-    if any(tie.joint.rotation_axes for tie in ties):
+    frame = FrameName("body", body.name)
+    joints = [placed.constraint for placed in system.discrete.constraints if placed.frame == frame]
+    if any(joint.held.rotations.size for joint in joints):
         return None
-    return np.array([np.asarray(tie.joint.place.position).ravel() for tie in ties])
+    return np.array([joint.place.position for joint in joints])
 
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:

@@ -1,13 +1,18 @@
-"""The equations of a scene as expressions: rods side by side, coupled by the wrenches of supports.
+"""The equations of a scene as expressions: rods side by side, coupled by constraints.
 
-Unknowns x: the strain coordinates of every rod, then the multipliers of every support. A single rod is the case of
-one; what couples rods adds rows and columns, never instructions to the rods themselves.
+A single rod is the case of one; what couples rods adds rows and columns, never instructions to the rods themselves.
+The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
+
+    rods          K q + Q_ad = 0, the report's (2.20), under loads and multipliers
+    constraints   what is left to close = 0
+    frames        balance of every floating frame = 0
+    cables        length, or slack = 0
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -15,31 +20,27 @@ import casadi as ca
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.chamber import PRESSED, volume_rates
 from cosserat_casadi.actuators.routing import routing
-from cosserat_casadi.constraints.cable_length import HeldLength
-from cosserat_casadi.constraints.tip_support import Hold, Pose
+from cosserat_casadi.constraints.cable_length import CableLength
+from cosserat_casadi.constraints.section_constraint import Poses
 from cosserat_casadi.loads.load import Site, constant
+from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.assembly import Coupled
-from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
+from cosserat_casadi.model.assembly import Assembly
+from cosserat_casadi.model.constraints import PlacedConstraint
+from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.homotopy import LoadFactor, row_at, scaled
 from cosserat_casadi.model.inputs import InputLayout, magnitude
-from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
-from cosserat_casadi.model.rods import base_pose, rod_properties
-from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.cable import RoutedCable
-from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.statics import Statics
-from cosserat_casadi.rod.strain import DiscreteRod, Ratio
+from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, Routing, Wrench
-
-FORCE_WEIGHT = 0.1
-"""Bending by a joint's multiplier or a tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
-
-SUPPORT_WEIGHT = 2.0
-"""The same for multipliers of supports: a rod that is drawn to a place has many equilibria there, near each other."""
+from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, PointWrench, Wrench
 
 
 @dataclass(frozen=True)
@@ -49,143 +50,12 @@ class Arguments:
     Attributes:
         x: unknowns.
         inputs: stacked inputs.
-        factor: 0 is the unloaded scene, 1 the scene itself; between them loads are scaled and supports yield.
+        load_factor: λ from 0, the unloaded scene, to 1; None for the scene itself.
     """
 
     x: Matrix
     inputs: Matrix
-    factor: Matrix | float = 1.0
-
-
-@dataclass(frozen=True)
-class DiscreteScene:
-    """A scene with everything that does not depend on the unknowns settled.
-
-    Attributes:
-        scene: the scene.
-        layout: its inputs.
-        rods: the constant matrices of each rod.
-    """
-
-    scene: scenes.Scene
-    layout: InputLayout
-    rods: dict[str, DiscreteRod]
-
-    @cached_property
-    def holds(self) -> list[tuple[scenes.Support, Hold]]:
-        """Supports of rods that start in the world, each as the scene and as the mechanics have it."""
-        still = [support for support in self.scene.supports if self.couplings.carrier(support.rod) is None]
-        return [(support, self.hold(support)) for support in still]
-
-    @cached_property
-    def couplings(self) -> Couplings:
-        """What couples the rods."""
-        return Couplings(self.scene, self.rods)
-
-    @cached_property
-    def unknowns(self) -> Unknowns:
-        """What the unknowns x are and where they stand."""
-        blocks = [*self._strain_blocks(), *self._multiplier_blocks(), *self._pose_blocks(), *self._tension_blocks()]
-        return Unknowns(tuple(blocks))
-
-    def _strain_blocks(self) -> Iterator[Block]:
-        for rod in self.rods.values():
-            name = rod.properties.name
-            yield Block(BlockKind.STRAIN, name, name, rod.size, rod.energy_unit, 1.0)
-
-    def _multiplier_blocks(self) -> Iterator[Block]:
-        for support, hold in self.holds:
-            unit = self.rods[support.rod].energy_unit
-            yield Block(BlockKind.MULTIPLIER, self.where(support), support.rod, hold.size, unit, SUPPORT_WEIGHT)
-        for tie in self.couplings.ties:
-            yield Block(BlockKind.MULTIPLIER, tie.where, tie.rod, tie.joint.size, tie.joint.unit, FORCE_WEIGHT)
-
-    def _pose_blocks(self) -> Iterator[Block]:
-        for carrier, moving in self.couplings.moving.items():
-            yield Block(BlockKind.POSE, str(carrier), None, MovingFrame.SIZE, moving.unit, 1.0)
-
-    def _tension_blocks(self) -> Iterator[Block]:
-        for tendon, _ in self.cables:
-            unit = self.rods[tendon.rod].energy_unit
-            yield Block(BlockKind.TENSION, tendon.name, tendon.rod, 1, unit, FORCE_WEIGHT)
-
-    def where(self, support: scenes.Support) -> str:
-        """Path of a support's table in the scene."""
-        return f"supports[{self.scene.supports.index(support)}]"
-
-    @property
-    def size(self) -> int:
-        """Number of unknowns."""
-        return self.unknowns.size
-
-    @property
-    def strain_size(self) -> int:
-        """Number of strain coordinates of all rods."""
-        return self.unknowns.count(BlockKind.STRAIN)
-
-    @property
-    def multiplier_size(self) -> int:
-        """Number of multipliers of supports and ties."""
-        return self.unknowns.count(BlockKind.MULTIPLIER)
-
-    @property
-    def rod_slices(self) -> dict[str, slice]:
-        """Where each rod's coordinates stand in x."""
-        return {block.owner: entries for block, entries in self.unknowns.of_kind(BlockKind.STRAIN)}
-
-    @property
-    def hold_slices(self) -> list[slice]:
-        """Where each support's multipliers stand in x."""
-        return [self.unknowns.slice_of(BlockKind.MULTIPLIER, self.where(support)) for support, _ in self.holds]
-
-    @property
-    def tie_slices(self) -> dict[str, slice]:
-        """Where each tie's multipliers stand in x."""
-        return {tie.where: self.unknowns.slice_of(BlockKind.MULTIPLIER, tie.where) for tie in self.couplings.ties}
-
-    @property
-    def moving_slices(self) -> dict[Carrier, slice]:
-        """Where each moving frame's deviation stands in x."""
-        return {c: self.unknowns.slice_of(BlockKind.POSE, str(c)) for c in self.couplings.moving}
-
-    @property
-    def tension_slices(self) -> list[slice]:
-        """Where the tensions of tendons of given length stand in x."""
-        return [entries for _, entries in self.unknowns.of_kind(BlockKind.TENSION)]
-
-    def tension_place(self, tendon: str) -> int:
-        """Where the tension of one of them stands in x."""
-        return int(self.unknowns.slice_of(BlockKind.TENSION, tendon).start)
-
-    @cached_property
-    def cables(self) -> list[tuple[scenes.Tendon, Routing]]:
-        """Tendons of given length, whose tensions are unknowns, unit EI/ℓ² each."""
-        held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
-        return [(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in held]
-
-    def tension_unit(self, rod: str) -> float:
-        """EI/ℓ² of a rod, N."""
-        return self.rods[rod].energy_unit / self.rods[rod].properties.length
-
-    def base(self, rod: str) -> Pose:
-        """World pose of a rod's base."""
-        position, quaternion = base_pose(next(r for r in self.scene.rods if r.name == rod))
-        return Pose(ca.DM(position), ca.DM(quaternion))
-
-    def hold(self, support: scenes.Support) -> Hold:
-        """The support as the mechanics see it."""
-        discrete_rod, kind = self.rods[support.rod], SUPPORTS[support.kind]
-        return Hold(
-            discrete_rod.properties, discrete_rod.energy_unit, kind.turns, kind.target(support, self.base(support.rod))
-        )
-
-
-def discrete_scene(
-    scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]
-) -> DiscreteScene:
-    """Constant matrices of every rod of a scene."""
-    bases = {rod.name: DiscreteRod(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
-    return DiscreteScene(scene, layout, bases)
+    load_factor: LoadFactor = None
 
 
 @dataclass(frozen=True)
@@ -211,72 +81,99 @@ class System:
         return {name: Tangent(igm) for name, igm in self.rods.items()}
 
     @cached_property
-    def residual(self) -> Matrix:
-        """Residuals of the rods, gaps of supports and ties, balance of moving frames, gaps of cables: without unit."""
-        gaps = [self.closing(hold.gap(self.tip(s.rod)), multipliers) for s, hold, multipliers in self.holds]
-        rods = [igm.residual for igm in self.rods.values()]
-        lengths = [length.gap for length in self.lengths]
-        return ca.vertcat(*rods, *gaps, *self.coupled.gaps, *self.coupled.balances, *lengths)
+    def assembly(self) -> Assembly:
+        """What floating frames and constraints add."""
+        return Assembly(self)
 
     @cached_property
-    def coupled(self) -> Coupled:
-        """What moving frames and ties add."""
-        return Coupled(self)
+    def residual(self) -> Matrix:
+        """Residuals of rods, constraints, floating frames and cables of given length, without unit, size×1."""
+        rods = [igm.residual for igm in self.rods.values()]
+        lengths = [self._length_row(cable) for cable in self.discrete.cables]
+        return ca.vertcat(*rods, *self.assembly.constraint_rows, *self.assembly.balance_rows, *lengths)
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂x from its structure, exact for the discrete model; sparse by rods."""
-        if any(b.discretisation.transport == "permuted" for b in self.discrete.rods.values()):
+        if any(rod.discretisation.transport == "permuted" for rod in self.discrete.rods.values()):
             return ca.jacobian(self.residual, self.arguments.x)
-        if self.discrete.couplings.ties or self.discrete.holds or self.discrete.cables:
-            return self.coupled.jacobian
+        if self.discrete.constraints or self.discrete.cables:
+            return self.assembly.jacobian
         return ca.diagcat(*[tangent.jacobian for tangent in self.tangents.values()])
+
+    def section(self, rod: str, node: int) -> Pose:
+        """Pose of a node's section in the base of its rod."""
+        rod_shape = self.rods[rod].shape
+        return Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node])
 
     def tip(self, rod: str) -> Pose:
         """Pose of a rod's tip in its base frame."""
-        place = self.rods[rod].shape
-        return Pose(place.position_at(-1), place.quaternion[:, -1])
-
-    def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
-        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
-        one = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
-        place, discrete_rod = self.rods[one.rod].shape, self.discrete.rods[one.rod]
-        if one.kind == "chamber":
-            rates = ca.DM(
-                volume_rates(one, discrete_rod.grid) * discrete_rod.properties.length * discrete_rod.grid.weights
-            )
-            effort, extent, gradient = self._effort(one, "pressure"), *place.strain_work(PRESSED, rates)
-        else:
-            cable = RoutedCable(place, routing(one, discrete_rod.grid))
-            held = one.length is not None
-            effort = self._tension(one) if held else self._effort(one, "tension")
-            effort = ca.fmax(effort, 0.0) if one.slack else effort
-            extent, gradient = cable.length, cable.length_gradient
-        rest = type(self.arguments.x)(self.discrete.size - self.discrete.strain_size, 1)
-        return effort, extent, ca.vertcat(self._among_strains(one.rod, gradient), rest).T
-
-    def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
-        value = _value(self.discrete.layout, actuator, field, self.arguments)
-        return ca.DM(0.0) if value is None else value
+        return self.section(rod, -1)
 
     def base(self, rod: str) -> Pose:
         """World pose of a rod's base."""
-        if self.discrete.couplings.carrier(rod) is None:
-            return self._still_base(rod)
-        place = self.coupled.base(rod)
-        return Pose(place.position, place.direction)
+        frame = self.discrete.unloaded.floating_base(rod)
+        return self._still_base(rod) if frame is None else self.frame(frame)
+
+    def frame(self, name: FrameName) -> Pose:
+        """World pose of a floating frame."""
+        return self.assembly.poses[name].pose
+
+    def poses(self, placed: PlacedConstraint) -> Poses:
+        """The poses that a constraint reads."""
+        frame = IDENTITY.pose if placed.frame is None else self.frame(placed.frame)
+        return Poses(self.section(placed.rod, placed.node), self.base(placed.rod), frame)
+
+    def multipliers(self, placed: PlacedConstraint) -> Matrix:
+        """Multipliers of a constraint."""
+        return self.arguments.x[self.discrete.multipliers(placed)]
+
+    def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
+        """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
+        actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
+        rod_shape = self.rods[actuator.rod].shape
+        rod = self.discrete.rods[actuator.rod]
+        if actuator.kind == "chamber":
+            rates = ca.DM(volume_rates(actuator, rod.grid) * rod.properties.length * rod.grid.weights)
+            effort = self._effort(actuator, "pressure")
+            conjugate, gradient = rod_shape.strain_work(PRESSED, rates)
+        else:
+            cable = RoutedCable(rod_shape, routing(actuator, rod.grid))
+            effort = self._cable_tension(actuator)
+            effort = ca.fmax(effort, 0.0) if actuator.slack else effort
+            conjugate = cable.length
+            gradient = cable.length_gradient
+        return effort, conjugate, self._among_unknowns(actuator.rod, gradient).T
+
+    def _cable_tension(self, tendon: scenes.Tendon) -> Matrix:
+        """Tension of a tendon, N: an input, or unknown where its length is given."""
+        if tendon.length is None:
+            return self._effort(tendon, "tension")
+        return self._unknown_tension(self._cable(tendon.name))
+
+    def _cable(self, name: str) -> CableOfLength:
+        return next(cable for cable in self.discrete.cables if cable.tendon.name == name)
+
+    def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
+        value = self._value(actuator, field)
+        return ca.DM(0.0) if value is None else value
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
-        pose = self.discrete.base(rod)
-        position, quaternion = (self._input(f"{rod}.base.{word}") for word in ("position", "quaternion"))
-        turn = pose.quaternion if quaternion is None else quaternion / ca.sqrt(ca.sumsqr(quaternion))
-        return Pose(pose.position if position is None else position, turn)
+        record = self.discrete.unloaded.records[rod]
+        position, quaternion = (ca.DM(part) for part in base_pose(record))
+        free_position = self._input(f"{rod}.base.position")
+        free_quaternion = self._input(f"{rod}.base.quaternion")
+        if free_position is not None:
+            position = free_position
+        if free_quaternion is not None:
+            quaternion = free_quaternion / ca.sqrt(ca.sumsqr(free_quaternion))
+        return Pose(position, quaternion)
 
     def _input(self, name: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
-        place = self.discrete.layout.slices.get(name)
-        return None if place is None else self.arguments.inputs[place]
+        entries = self.discrete.layout.slices.get(name)
+        return None if entries is None else self.arguments.inputs[entries]
 
     def energy(self) -> Matrix:
         """Elastic energy of all rods, J."""
@@ -285,131 +182,131 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.discrete.scene.supports or self.discrete.couplings.ties or any(term is None for term in terms):
+        if self.discrete.constraints or any(term is None for term in terms):
             return None
         return ca.sum1(ca.vertcat(*terms))
 
-    @property
-    def whole(self) -> bool:
-        """Whether the equations are those of the scene itself, not of a point on the way to it."""
-        return isinstance(self.arguments.factor, float) and self.arguments.factor == 1.0
-
-    def closing(self, gap: Matrix, multipliers: Matrix) -> Matrix:
-        """A support on the way to the scene: a spring between the tip and its target, from limp to rigid."""
-        factor = self.arguments.factor
-        return gap if self.whole else factor * gap + (1 - factor) * multipliers
-
     def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
         """Magnitudes of a load in these arguments; None where one is zero for good."""
-        magnitudes = EFFECTS[load.kind].magnitudes
-        return {field: _value(self.discrete.layout, load, field, self.arguments) for field in magnitudes}
+        return {field: self._value(load, field) for field in EFFECTS[load.kind].magnitudes}
 
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
-        actions = rod_actions(self.discrete, rod, self._base_R_world(rod), self.arguments)
+        actions = [scaled(action, self.arguments.load_factor) for action in self._actions(rod)]
         return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
 
     @cached_property
-    def holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
-        """Supports of rods that start in the world, with their multipliers."""
-        found, start = [], self.discrete.strain_size
-        for support, fixed in self.discrete.holds:
-            hold = self._held(support, fixed)
-            found.append((support, hold, self.arguments.x[start : start + hold.size]))
-            start += hold.size
-        return found
+    def cable_lengths(self) -> dict[str, CableLength]:
+        """Equations of the cables of given length by the names of their tendons."""
+        return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
 
-    def _held(self, support: scenes.Support, hold: Hold) -> Hold:
-        """A support as the rod sees it from a base that inputs may move."""
-        if not any(f"{support.rod}.base.{word}" in self.discrete.layout.slices for word in ("position", "quaternion")):
-            return hold
-        return replace(hold, target=SUPPORTS[support.kind].target(support, self.base(support.rod)))
-
-    @cached_property
-    def lengths(self) -> list[HeldLength]:
-        """Equations of the cables of given length."""
-        return [self._held_length(tendon, routing) for tendon, routing in self.discrete.cables]
-
-    def _held_length(self, tendon: scenes.Tendon, routing: Routing) -> HeldLength:
-        whole = replace(self.arguments, factor=1.0)
-        return HeldLength(
-            cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.routing is routing),
-            wanted=_value(self.discrete.layout, tendon, "length", whole),
-            tension=self.arguments.x[self.discrete.unknowns.slice_of(BlockKind.TENSION, tendon.name)],
-            slack=tendon.slack,
-            factor=self.arguments.factor,
+    def _cable_length(self, cable: CableOfLength) -> CableLength:
+        cables = self.rods[cable.tendon.rod].cables
+        return CableLength(
+            cable=next(routed for _, routed in cables if routed.routing is cable.routing),
+            wanted=self._value(cable.tendon, "length"),
+            tension=self.arguments.x[self.discrete.tension(cable)],
+            slack=cable.tendon.slack,
         )
 
-    def _among_strains(self, rod: str, columns: Matrix) -> Matrix:
-        """Columns on the coordinates of one rod, among those of all."""
-        place, count = self.discrete.unknowns.strain(rod), columns.shape[1]
-        pad = type(columns)
-        before, after = pad(place.start, count), pad(self.discrete.strain_size - place.stop, count)
+    def _length_row(self, cable: CableOfLength) -> Matrix:
+        equation = self.cable_lengths[cable.tendon.name]
+        return row_at(equation.residual, equation.tension, cable.compliance, self.arguments.load_factor)
+
+    def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:
+        """Columns on the coordinates of one rod, among those of all unknowns."""
+        entries = self.discrete.unknowns.strain(rod)
+        count = columns.shape[1]
+        zeros = type(columns)
+        before = zeros(entries.start, count)
+        after = zeros(self.discrete.size - entries.stop, count)
         return ca.vertcat(before, columns, after)
 
     def _rod(self, name: str) -> InverseGeometricModel:
-        discrete_rod = self.discrete.rods[name]
+        rod = self.discrete.rods[name]
         q = self.arguments.x[self.discrete.unknowns.strain(name)]
-        actions = rod_actions(self.discrete, name, self._base_R_world(name), self.arguments)
-        actions += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
-        ties = [tie for tie in self.discrete.couplings.ties if tie.rod == name]
-        actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
-        actions += [Cable(routing, self._tension(t)) for t, routing in self.discrete.cables if t.rod == name]
-        return balance(shape(discrete_rod, q, ratio_of(self.discrete, name, self.arguments)), actions)
+        actions = [scaled(action, self.arguments.load_factor) for action in self._actions(name)]
+        actions += [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
+        cables = [cable for cable in self.discrete.cables if cable.tendon.rod == name]
+        actions += [Cable(cable.routing, self._unknown_tension(cable)) for cable in cables]
+        return balance(shape(rod, q, ratio_of(self.discrete, name, self.arguments)), actions)
 
-    def _tension(self, tendon: scenes.Tendon) -> Matrix:
-        """Unknown tension of a tendon of given length, N."""
-        tension = self.arguments.x[self.discrete.unknowns.slice_of(BlockKind.TENSION, tendon.name)]
-        return self.discrete.tension_unit(tendon.rod) * tension
+    def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:
+        """Wrench of a constraint on its section, in the axes of the rod's base."""
+        constraint = placed.constraint
+        held = constraint.held
+        multipliers = self.multipliers(placed)
+        if held.turn_with_place:
+            wrench = constraint.wrench_basis(self._frames_of(placed)) @ multipliers
+            return PointWrench(constraint.at, wrench[3:], wrench[:3], follower=False)
+        displacements = held.positions.shape[1]
+        force = constraint.unit / constraint.rod.length * (_sparse(held.positions) @ multipliers[:displacements])
+        moment = constraint.unit * (_sparse(held.rotations) @ multipliers[displacements:])
+        return PointWrench(constraint.at, force, moment if held.rotations.size else None, follower=False)
+
+    def _frames_of(self, placed: PlacedConstraint) -> Poses:
+        """The poses that the direction of a constraint's wrench hangs on; the section's is not among them."""
+        frame = IDENTITY.pose if placed.frame is None else self.frame(placed.frame)
+        return Poses(IDENTITY.pose, self.base(placed.rod), frame)
+
+    def _unknown_tension(self, cable: CableOfLength) -> Matrix:
+        """Tension of a cable of given length, N."""
+        return self.discrete.tension_unit(cable.tendon.rod) * self.arguments.x[self.discrete.tension(cable)]
+
+    def _actions(self, rod: str) -> list[Action]:
+        return rod_actions(self.discrete, rod, self._base_R_world(rod), self.arguments)
 
     def _base_R_world(self, rod: str) -> Matrix:
-        if self.discrete.couplings.carrier(rod) is not None:
-            return self.coupled.base(rod).rotation.T
-        rotation = quaternion_to_matrix(self._still_base(rod).quaternion)
+        rotation = quaternion_to_matrix(self.base(rod).quaternion)
         return ca.sparsify(rotation, 1e-16).T if isinstance(rotation, ca.DM) else rotation.T
 
+    def _value(self, load: scenes.Load | scenes.Actuator, field: str) -> Matrix | None:
+        return _value(self.discrete.layout, load, field, self.arguments.inputs)
 
-def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
+
+def balance(rod_shape: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
     """Balance of a rod of this shape under these actions."""
     wrenches = [action for action in actions if not isinstance(action, Actuation)]
     actuation = tuple(action for action in actions if isinstance(action, Actuation))
-    return InverseGeometricModel(Statics(place, wrenches), actuation)
+    return InverseGeometricModel(Statics(rod_shape, wrenches), actuation)
 
 
 def rod_actions(discrete: DiscreteScene, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
     """What the scene's loads and actuators do to one rod, in its base frame."""
     discrete_rod = discrete.rods[rod]
     site = Site(discrete_rod.properties, discrete_rod.grid, base_R_world)
-    found: list[Action] = []
     ratio = ratio_of(discrete, rod, arguments)
+    actions: list[Action] = []
     for cause in discrete.scene.causes:
         effect = EFFECTS[cause.kind]
         if effect.acts_on(cause, rod):
-            values = {field: _value(discrete.layout, cause, field, arguments) for field in effect.magnitudes}
-            found.extend(drawn_out(action, ratio) for action in effect.actions(cause, site, values))
-    return found
+            values = {f: _value(discrete.layout, cause, f, arguments.inputs) for f in effect.magnitudes}
+            actions.extend(per_length(action, ratio) for action in effect.actions(cause, site, values))
+    return actions
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
     """Length of a rod relative to the scene's where it is an input, else None."""
-    place = discrete.layout.slices.get(f"{rod}.length") if rod in discrete.layout.rods else None
-    return None if place is None else arguments.inputs[place] / discrete.rods[rod].properties.length
+    if rod not in discrete.layout.rods:
+        return None
+    entries = discrete.layout.slices.get(f"{rod}.length")
+    return None if entries is None else arguments.inputs[entries] / discrete.rods[rod].properties.length
 
 
-def drawn_out(action: Action, ratio: Ratio) -> Action:
+def per_length(action: Action, ratio: Ratio) -> Action:
     """An action on a rod whose length is free: what acts per length acts on more or less of it."""
     if ratio is None or not isinstance(action, LineWrench):
         return action
-    force, moment = (part if part is None else part * ratio for part in (action.force, action.moment))
-    return replace(action, force=force, moment=moment)
+    return scaled(action, ratio)
 
 
-def _value(
-    layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, arguments: Arguments
-) -> Matrix | None:
-    place = layout.slices.get(f"{cause.name}.{field}")
+def _value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, inputs: Matrix) -> Matrix | None:
+    entries = layout.slices.get(f"{cause.name}.{field}")
     default = magnitude(cause, field)
-    value = constant(default) if place is None else ca.reshape(arguments.inputs[place], *default.shape)
-    if value is None or (isinstance(arguments.factor, float) and arguments.factor == 1.0):
-        return value
-    return arguments.factor * value
+    if entries is None:
+        return constant(default)
+    return ca.reshape(inputs[entries], *default.shape)
+
+
+def _sparse(vectors: Matrix) -> ca.DM:
+    return ca.sparsify(ca.DM(vectors))

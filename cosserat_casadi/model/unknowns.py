@@ -11,6 +11,7 @@ from enum import Enum
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -112,9 +113,9 @@ class Unknowns:
         return self._each([block.unit for block in self.blocks])
 
     @cached_property
-    def differential(self) -> FloatArray:
+    def differential(self) -> npt.NDArray[np.bool_]:
         """Whether each unknown is a coordinate that moves, shape (size,)."""
-        return self._each([block.differential for block in self.blocks]).astype(bool)
+        return self._each([block.differential for block in self.blocks]) > 0.0
 
     def _each(self, values: Sequence[float]) -> FloatArray:
         return np.repeat(np.asarray(values, dtype=float), [block.size for block in self.blocks])

@@ -185,7 +185,7 @@ def _draw_scenery(axes: Any, solution: Solution, plane: tuple[int, int] | None) 
         _line(axes, unloaded, plane, color="0.55", linestyle="--", linewidth=1.2, label=None if i else "unloaded")
         shape = solution.pose(SAMPLES, name).position
         _line(axes, shape, plane, color=colour, linewidth=3.5, label=name if several else "deformed")
-        clamped = solution.model.discrete.couplings.carrier(name) is None
+        clamped = solution.model.discrete.unloaded.floating_base(name) is None
         style = {"color": "0.2", "marker": "s", "markersize": 9} if clamped else JOINTS["fixed"]
         _line(axes, shape[:1], plane, linestyle="none", **style)
         _draw_frames(axes, solution, name, plane, 0.06 * size)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -201,7 +200,7 @@ class _Blind:
     """A preview that cannot foresee fewer modes."""
 
     discretisation = {"rod": Discretisation((5,), 12)}
-    couplings = SimpleNamespace(ties=())
+    is_assembly = False
     model = discrete = property(lambda self: self)
 
     def mode_shift(self, modes: object) -> np.ndarray:

@@ -16,6 +16,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Discretisation, Model, build, discretise
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.properties import STRAINS
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
@@ -104,7 +105,7 @@ def test_unknowns(exported: Exported) -> None:
     strains = [entry for entry in manifest["unknowns"] if "strain" in entry]
     assert [e["rod"] for e in strains] == [r.name for r in model.scene.rods for _ in r.admitted]
     for entry in strains:
-        basis, place = model.discrete.rods[entry["rod"]], model.discrete.rod_slices[entry["rod"]]
+        basis, place = model.discrete.rods[entry["rod"]], model.discrete.unknowns.strain(entry["rod"])
         assert STRAINS.index(entry["strain"]) in basis.columns
         x = np.zeros(model.size)
         x[entry["first"] : entry["first"] + entry["count"]] = 1.0
@@ -115,7 +116,7 @@ def test_unknowns(exported: Exported) -> None:
         assert np.count_nonzero(x) == len(x[place][columns])
     supports = [entry for entry in manifest["unknowns"] if "strain" not in entry]
     assert [(e["rod"], e["support"]) for e in supports] == [(s.rod, s.kind) for s in model.scene.supports]
-    assert sum(e["count"] for e in supports) == model.size - model.discrete.strain_size
+    assert sum(e["count"] for e in supports) == model.size - model.discrete.unknowns.count(BlockKind.STRAIN)
 
 
 def test_discretisation_builds_the_same_model(exported: Exported) -> None:

@@ -14,6 +14,7 @@ from cosserat_casadi import Model, Scene, SceneError, build, solve
 from cosserat_casadi.control import lifted, stability_margin
 from cosserat_casadi.control.spectrum import Spectrum
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
+from cosserat_casadi.model.unknowns import BlockKind
 from tests.scenes import push, scene
 
 CRITICAL = np.pi**2 / 4
@@ -129,7 +130,10 @@ def test_margin_vs_the_judgement_of_a_solve(name: str) -> None:
     model = MODELS[name]()
     solution = solve(model, raise_on_failure=True)
     jacobian, allowed = model.jacobian(solution.x, solution.inputs)[0].full(), variations(model)
-    strains, size = np.arange(model.discrete.strain_size), model.discrete.strain_size
+    strains, size = (
+        np.arange(model.discrete.unknowns.count(BlockKind.STRAIN)),
+        model.discrete.unknowns.count(BlockKind.STRAIN),
+    )
     whole = allowed.units[:, None] * jacobian[np.ix_(allowed.free, allowed.free)]
     start = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()[:size, :size]
     basis = null_space(jacobian[np.ix_(allowed.held, allowed.free)], rcond=1e-12)

@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi import Model, Scene, SceneError, build, scene_from_dict, solve
-from cosserat_casadi.model.couplings import Carrier
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.scene.writing import scene_tables
 from tests.scenes import STIFFNESS
 
@@ -105,8 +106,8 @@ def test_derivatives_finite_at_any_turn_of_a_frame(angle: float) -> None:
     model = loaded()
     x, inputs, symbol = model.unloaded(), model.pack(), ca.MX.sym("x", model.size)
     turned = np.array([np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)])
-    for carrier, place in model.discrete.moving_slices.items():
-        x[place][3:] = turned - model.discrete.couplings.moving[carrier].start.quaternion
+    for name, frame in model.discrete.frames.items():
+        x[model.discrete.deviation(name)][3:] = turned - frame.start.quaternion
     jacobian = model.path_jacobian(symbol, inputs, 1.0)
     second = ca.Function("second", [symbol], [ca.jtimes(jacobian @ np.ones(model.size), symbol, np.ones(model.size))])
     ad = ca.Function("ad", [symbol], [ca.jacobian(model.path_residual(symbol, inputs, 1.0), symbol)])(x).full()
@@ -137,13 +138,14 @@ def test_residual_vs_gradient_of_energy() -> None:
     """Without multipliers, and with quaternions of length one, the residual is the gradient of the energy."""
     model = conservative()
     x = unknowns(model, 2)
-    x[model.discrete.strain_size : model.discrete.strain_size + model.discrete.multiplier_size] = 0.0
-    places = {**{n: (s, model.discrete.rods[n].energy_unit) for n, s in model.discrete.rod_slices.items()}}
-    for carrier, place in model.discrete.moving_slices.items():
-        frame = model.discrete.couplings.moving[carrier]
+    unknowns_of = model.discrete.unknowns
+    for _, entries in unknowns_of.of_kind(BlockKind.MULTIPLIER):
+        x[entries] = 0.0
+    places = {(b.kind, b.owner): (s, b.unit) for b, s in unknowns_of.of_kind(BlockKind.STRAIN, BlockKind.POSE)}
+    for name, frame in model.discrete.frames.items():
+        place = model.discrete.deviation(name)
         q = frame.start.quaternion + x[place][3:]
         x[place.start + 3 : place.stop] = q / np.linalg.norm(q) - frame.start.quaternion
-        places[carrier] = (place, frame.unit)
     residual, h = model.residual(x, model.pack()).full()[:, 0], 1e-5
     for place, unit in places.values():
         for i in range(place.start, place.stop):
@@ -163,16 +165,9 @@ def test_multipliers_are_conjugate_to_closed_gaps() -> None:
     }
     model = build(scene_from_dict(tables))
     matrix = model.path_jacobian(model.unloaded(), model.pack(), 1.0).full()  # unloaded, these ties are closed
-    units = np.ones(model.size)
-    for name, place in model.discrete.rod_slices.items():
-        units[place] = model.discrete.rods[name].energy_unit
-    for tie in model.discrete.couplings.ties:
-        units[model.discrete.tie_slices[tie.where]] = tie.joint.unit
-    for carrier, place in model.discrete.moving_slices.items():
-        units[place] = model.discrete.couplings.moving[carrier].unit
-    matrix = units[:, None] * matrix
-    first = model.discrete.strain_size
-    gaps = slice(first, first + model.discrete.multiplier_size)
+    matrix = model.discrete.unknowns.units[:, None] * matrix
+    first = model.discrete.unknowns.count(BlockKind.STRAIN)
+    gaps = slice(first, first + model.discrete.unknowns.count(BlockKind.MULTIPLIER))
     assert_allclose(matrix[gaps], -matrix[:, gaps].T, rtol=0, atol=1e-14)
 
 
@@ -182,7 +177,7 @@ def test_body_starts_where_the_unloaded_rods_want_it() -> None:
     rods = [rod(n, 0.5, base={"position": [x, 0, 0]}) for n, x in (("a", 0.0), ("b", 0.1))]
     joints = [joint("a", position=[0, 0, 0], quaternion=turn), joint("b", quaternion=turn, position=[0.1, 0, 0])]
     model = build(scene_from_dict({"schema": 1, "rods": rods, "bodies": [{"name": "plate"}], "joints": joints}))
-    start = model.discrete.couplings.moving[Carrier("body", "plate")].start
+    start = model.discrete.frames[FrameName("body", "plate")].start
     assert_allclose(start.position, [0, 0, 0.5], rtol=0, atol=1e-15)
     assert_allclose(start.quaternion, [np.cos(0.2), -np.sin(0.2), 0, 0], rtol=0, atol=1e-15)
     assert_allclose(model.residual(model.unloaded(), model.pack()).full(), 0.0, rtol=0, atol=1e-14)
@@ -212,7 +207,7 @@ def test_joints_are_checked_at_the_lengths_of_the_scene() -> None:
     """Where lengths are inputs too: at length zero every joint over-constrains."""
     legs = (leg("a", 0.0, "kirchhoff"), leg("b", 0.1, "kirchhoff"), leg("c", 0.2, "kirchhoff"))
     tables = {**scene_tables(held_by(*legs)), "inputs": [f"{name}.length" for name in "abc"]}
-    assert [tie.joint.size for tie in build(scene_from_dict(tables)).discrete.couplings.ties] == [6, 6, 6]
+    assert [placed.size for placed in build(scene_from_dict(tables)).discrete.constraints] == [6, 6, 6]
 
 
 HANGING = {"name": "plate", "mass": 0.1, "centre_of_mass": [0.05, 0.0, -0.1]}
@@ -252,7 +247,7 @@ def test_bodies_that_turn_freely_are_refused(case: str) -> None:
         f"nothing holds the orientation of 'plate': it turns freely about {about}",
     )
     if len(places) > 1:
-        assert len(build(hung(places, changes, 0.2)).discrete.couplings.ties) == len(places) + 1
+        assert len(build(hung(places, changes, 0.2)).discrete.constraints) == len(places) + 1
 
 
 def test_a_body_that_hangs_from_a_line_is_held_by_its_weight() -> None:
@@ -280,4 +275,4 @@ def test_planar_rods_of_one_plane_hold_a_body_in_it() -> None:
     legs = (leg("a", 0.0, "planar"), leg("b", 0.1, "planar"))
     for kind, sizes in (("fixed", [6, 3]), ("spherical", [5, 2])):
         model = build(held_by(*legs, kind=kind))
-        assert [tie.joint.size for tie in model.discrete.couplings.ties] == sizes
+        assert [placed.size for placed in model.discrete.constraints] == sizes

@@ -1,0 +1,216 @@
+"""Constraints that hold a section of a rod to a place on another frame: the world, a body, the base of a carried rod.
+
+The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
+wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
+
+The multipliers are the force (unit EI/ℓ²) and the moment (unit EI/ℓ) on the section along the held directions, so
+they are of the order of the dimensionless residual. The opposite wrench acts on the other frame.
+Variations of poses are [δθ; δr] and wrenches [moment; force], the angular part first: their product is the work.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.pose import NumericPose, Pose
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.properties import RodProperties
+
+
+@dataclass(frozen=True)
+class HeldDirections:
+    """Directions along and about which a section is held.
+
+    Attributes:
+        positions: unit vectors of the held displacements, shape (3, k).
+        rotations: unit vectors of the held rotations, shape (3, m).
+        turn_with_place: whether the vectors are given in the axes of the place and turn with it; else they are given
+            in the axes of the rod's base.
+    """
+
+    positions: FloatArray
+    rotations: FloatArray
+    turn_with_place: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of multipliers."""
+        return int(self.positions.shape[1] + self.rotations.shape[1])
+
+
+class Variations(NamedTuple):
+    """Derivatives with the motions [δθ; δr] of the poses that a constraint reads, each with 6 columns.
+
+    The section moves in the axes of the rod's base, the other two in world axes.
+    """
+
+    section: Matrix
+    base: Matrix
+    frame: Matrix
+
+
+class Poses(NamedTuple):
+    """The poses that a constraint reads.
+
+    Attributes:
+        section: the held section in the rod's base.
+        base: the rod's base in the world.
+        frame: the other frame in the world.
+    """
+
+    section: Pose
+    base: Pose
+    frame: Pose
+
+    @property
+    def stacked(self) -> list[Matrix]:
+        """Positions and quaternions, as the kernels take them."""
+        return [part for pose in self for part in (pose.position, pose.quaternion)]
+
+
+@dataclass(frozen=True)
+class SectionConstraint:
+    """A section of a rod held to a place on another frame.
+
+    Attributes:
+        rod: the rod.
+        unit: EI/ℓ of the rod, J.
+        at: abscissa of the section, a break of the rod's grid.
+        held: the directions that are held.
+        place: pose of the section in the other frame that closes the constraint.
+    """
+
+    rod: RodProperties
+    unit: float
+    at: float
+    held: HeldDirections
+    place: NumericPose
+
+    @property
+    def size(self) -> int:
+        """Number of multipliers."""
+        return self.held.size
+
+    @property
+    def slides(self) -> bool:
+        """Whether the section may move along the place, so that its wrench acts where the section is."""
+        return self.held.turn_with_place and self.held.positions.shape[1] < 3
+
+    def residual(self, poses: Poses) -> Matrix:
+        """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
+        return self._residual_kernel(*poses.stacked)[0]
+
+    def residual_variation(self, poses: Poses) -> Variations:
+        """Derivative of the residual with the poses, size×6 each."""
+        return Variations(*self._residual_kernel(*poses.stacked)[1:])
+
+    def wrench_basis(self, poses: Poses) -> Matrix:
+        """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
+        force = self.unit / self.rod.length * self.held.positions
+        moment = self.unit * self.held.rotations
+        basis = np.zeros((6, self.size))
+        basis[3:, : force.shape[1]] = force
+        basis[:3, force.shape[1] :] = moment
+        constant = ca.sparsify(ca.DM(basis))
+        if not self.held.turn_with_place:
+            return constant
+        rotation = self._target(poses).rotation
+        return ca.diagcat(rotation, rotation) @ constant
+
+    def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
+        """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
+        if not self.held.turn_with_place:
+            none = ca.DM(6, 6)
+            return Variations(none, none, none)
+        return Variations(*self._wrench_kernel(*poses.stacked, multipliers)[1:])
+
+    def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
+        """Wrench on the other frame about its origin, world axes, 6×1."""
+        return self._reaction_kernel(*poses.stacked, multipliers)[0]
+
+    def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
+        """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
+        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, multipliers)
+        return by_multipliers, Variations(*by_poses)
+
+    def _target(self, poses: Poses) -> Pose:
+        """The pose that the section is held to, in the rod's base."""
+        return poses.base.seen(poses.frame.then(self.place.pose))
+
+    def _residual(self, poses: Poses) -> Matrix:
+        target = self._target(poses)
+        back = quaternion_conjugate(target.quaternion)
+        displacement = poses.section.position - target.position
+        turn = quaternion_product(poses.section.quaternion, back)
+        if self.held.turn_with_place:
+            displacement = target.rotation.T @ displacement
+            turn = quaternion_product(back, poses.section.quaternion)
+        along = ca.DM(self.held.positions).T @ displacement / self.rod.length
+        # The vector part of a quaternion is half the rotation that is left, to first order.
+        about = 2 * ca.DM(self.held.rotations).T @ turn[1:]
+        return ca.vertcat(along, about)
+
+    def _wrench(self, poses: Poses, multipliers: Matrix) -> Matrix:
+        return self.wrench_basis(poses) @ multipliers
+
+    def _reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
+        """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
+        wrench = self._wrench(poses, multipliers)
+        moment = poses.base.rotation @ wrench[:3]
+        force = poses.base.rotation @ wrench[3:]
+        lever = poses.frame.rotation @ ca.DM(self.place.position)
+        if self.slides:
+            lever = poses.base.then(poses.section).position - poses.frame.position
+        return -ca.vertcat(ca.cross(lever, force) + moment, force)
+
+    @cached_property
+    def _residual_kernel(self) -> ca.Function:
+        """Poses ↦ residual and its variations."""
+        poses, motions = _symbols()
+        moved = self._residual(_moved(poses, motions))
+        results = [self._residual(poses), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint", poses.stacked, ca.cse(results))
+
+    @cached_property
+    def _wrench_kernel(self) -> ca.Function:
+        """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
+        poses, motions = _symbols()
+        multipliers = ca.SX.sym("multipliers", self.size)
+        moved = self._wrench(_moved(poses, motions), multipliers)
+        results = [self._wrench(poses, multipliers), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint_wrench", [*poses.stacked, multipliers], ca.cse(results))
+
+    @cached_property
+    def _reaction_kernel(self) -> ca.Function:
+        """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
+        poses, motions = _symbols()
+        multipliers = ca.SX.sym("multipliers", self.size)
+        moved = self._reaction(_moved(poses, motions), multipliers)
+        derivatives = _at_rest(moved, [multipliers, *motions], motions)
+        results = [self._reaction(poses, multipliers), *derivatives]
+        return ca.Function("constraint_reaction", [*poses.stacked, multipliers], ca.cse(results))
+
+
+def _symbols() -> tuple[Poses, list[ca.SX]]:
+    """Symbols of the three poses and of their motions."""
+    names = Poses._fields
+    poses = Poses(*[Pose(ca.SX.sym(f"{name}_position", 3), ca.SX.sym(f"{name}_quaternion", 4)) for name in names])
+    motions = [ca.SX.sym(f"{name}_motion", 6) for name in names]
+    return poses, motions
+
+
+def _moved(poses: Poses, motions: list[ca.SX]) -> Poses:
+    return Poses(*[pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)])
+
+
+def _at_rest(expression: ca.SX, variables: list[ca.SX], motions: list[ca.SX]) -> list[ca.SX]:
+    """Derivatives of an expression with some variables where all motions are zero."""
+    rest = ca.DM.zeros(sum(motion.numel() for motion in motions))
+    derivatives = [ca.jacobian(expression, variable) for variable in variables]
+    return [ca.sparsify(d) for d in ca.substitute(derivatives, [ca.vertcat(*motions)], [rest])]

@@ -1,0 +1,91 @@
+"""Poses: position and rotation of a frame in another, as expressions and as numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A pose as expressions.
+
+    Attributes:
+        position: 3×1, m.
+        quaternion: of norm 1, 4×1.
+    """
+
+    position: Matrix
+    quaternion: Matrix
+
+    @cached_property
+    def rotation(self) -> Matrix:
+        """Rotation matrix outer_R_inner, 3×3."""
+        return quaternion_to_matrix(self.quaternion)
+
+    def then(self, inner: Pose) -> Pose:
+        """Pose of a frame whose pose in this one is given."""
+        position = self.position + rotate(self.quaternion, inner.position)
+        return Pose(position, quaternion_product(self.quaternion, inner.quaternion))
+
+    def seen(self, outer: Pose) -> Pose:
+        """Pose of a frame of the outer frame, given in that, as this frame sees it."""
+        back = quaternion_conjugate(self.quaternion)
+        position = rotate(back, outer.position - self.position)
+        return Pose(position, quaternion_product(back, outer.quaternion))
+
+    def varied(self, variation: Matrix) -> Pose:
+        """This pose after a small motion [δθ; δr] in the axes it is given in, 6×1, exact to first order."""
+        spin = ca.vertcat(0, variation[:3] / 2)
+        quaternion = self.quaternion + quaternion_product(spin, self.quaternion)
+        return Pose(self.position + variation[3:], quaternion)
+
+
+@dataclass(frozen=True)
+class NumericPose:
+    """A pose as numbers.
+
+    Attributes:
+        position: shape (3,), m.
+        quaternion: of norm 1, shape (4,).
+    """
+
+    position: FloatArray
+    quaternion: FloatArray
+
+    @property
+    def pose(self) -> Pose:
+        """The same for expressions."""
+        return Pose(ca.DM(self.position), ca.DM(self.quaternion))
+
+    @cached_property
+    def rotation(self) -> FloatArray:
+        """Rotation matrix outer_R_inner, shape (3, 3)."""
+        return np.asarray(self.pose.rotation.full())
+
+    def then(self, inner: NumericPose) -> NumericPose:
+        """Pose of a frame whose pose in this one is given."""
+        return numeric(self.pose.then(inner.pose))
+
+    @cached_property
+    def inverse(self) -> NumericPose:
+        """Pose of the outer frame in this one."""
+        back = quaternion_conjugate(ca.DM(self.quaternion))
+        position = rotate(back, ca.DM(-self.position))
+        return numeric(Pose(position, back))
+
+
+def numeric(pose: Pose) -> NumericPose:
+    """The numbers of a pose whose expressions are constant."""
+    position, quaternion = (ca.evalf(ca.MX(ca.densify(part))).full()[:, 0] for part in (pose.position, pose.quaternion))
+    return NumericPose(np.asarray(position), np.asarray(quaternion))
+
+
+IDENTITY = NumericPose(np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
+"""The pose of a frame in itself."""

@@ -1,0 +1,70 @@
+"""The way from the unloaded scene to the scene: one load factor λ around finished equations.
+
+At λ = 0 nothing acts and every constraint is a limp spring; at λ = 1 the loads have grown to their values and the
+springs are rigid. A row r of a constraint, with its own unknown u, becomes λ r + (1 − λ)^p s u: the spring's
+compliance falls from one to zero. So do the rows of a floating frame, which a spring holds where the unloaded scene
+has it, from rigid to limp. The mechanics know nothing of λ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.wrenches import Action, ActuationStress, Cable
+
+ActionType = TypeVar("ActionType", bound=Action)
+
+LoadFactor = Matrix | None
+"""λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """How a block of equations yields on the way to the scene.
+
+    Attributes:
+        power: p of (1 − λ)^p; 3 for what holds rods that do not fit, which is far stiffer than they are.
+        sign: s, so that the spring pulls towards its target.
+    """
+
+    power: int
+    sign: float = 1.0
+
+    def at(self, load_factor: Matrix) -> Matrix:
+        """Compliance (1 − λ)^p s, 1×1."""
+        return self.sign * (1 - load_factor) ** self.power
+
+
+def scaled(action: ActionType, load_factor: LoadFactor) -> ActionType:
+    """A load or an actuator at a load factor."""
+    if load_factor is None:
+        return action
+    if isinstance(action, Cable):
+        return replace(action, tension=load_factor * action.tension)
+    if isinstance(action, ActuationStress):
+        return replace(action, stress=load_factor * action.stress)
+    vectors = {"force": action.force, "moment": action.moment}
+    return replace(action, **{name: load_factor * v for name, v in vectors.items() if v is not None})
+
+
+def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: LoadFactor) -> Matrix:
+    """An equation at a load factor."""
+    if load_factor is None:
+        return row
+    return load_factor * row + compliance.at(load_factor) * unknown
+
+
+def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
+    """Derivatives of an equation at a load factor, but for those of its own spring."""
+    return columns if load_factor is None else load_factor * columns
+
+
+def spring(size: int, compliance: Compliance, load_factor: LoadFactor) -> Matrix | None:
+    """Derivative of the springs of some equations with their own unknowns, size×size; None at the scene itself."""
+    if load_factor is None:
+        return None
+    return compliance.at(load_factor) * ca.MX.eye(size)
