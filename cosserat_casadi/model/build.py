@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -24,7 +23,7 @@ from cosserat_casadi.rod.properties import RodProperties
 
 
 @dataclass(frozen=True)
-class Model:
+class Model(functions.ModelFunctions):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
@@ -56,96 +55,6 @@ class Model:
     def discretisation(self) -> dict[str, Discretisation]:
         """Modes, nodes and element ends of every rod."""
         return {name: discrete_rod.discretisation for name, discrete_rod in self.discrete.rods.items()}
-
-    @cached_property
-    def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return functions.residual(self.discrete)
-
-    @cached_property
-    def jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        return functions.jacobian(self.discrete)
-
-    @cached_property
-    def input_jacobian(self) -> ca.Function:
-        """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        return functions.input_jacobian(self.discrete)
-
-    @cached_property
-    def path_residual(self) -> ca.Function:
-        """(x, inputs, factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return functions.path_residual(self.discrete)
-
-    @cached_property
-    def path_jacobian(self) -> ca.Function:
-        """(x, inputs, factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return functions.path_jacobian(self.discrete)
-
-    @cached_property
-    def path_rate(self) -> ca.Function:
-        """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
-        return functions.path_rate(self.discrete)
-
-    @cached_property
-    def path_tangent(self) -> ca.Function:
-        """Inputs ↦ dx/dfactor of the unloaded scene, where the Jacobian is constant."""
-        return functions.path_tangent(self.discrete)
-
-    @cached_property
-    def coarseness(self) -> ca.Function:
-        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
-        return functions.coarseness(self.discrete)
-
-    @cached_property
-    def igm(self) -> dict[str, ca.Function]:
-        """For each rod (q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment)."""
-        return {rod: functions.igm(self.discrete, rod) for rod in self.discrete.rods}
-
-    @cached_property
-    def tip(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
-        return {rod: functions.tip(self.discrete, rod) for rod in self.discrete.rods}
-
-    @cached_property
-    def tip_jacobian(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ derivatives of the tip's position and quaternion with x and with inputs."""
-        return {rod: functions.tip_jacobian(self.discrete, rod) for rod in self.discrete.rods}
-
-    @cached_property
-    def shape(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs, X) ↦ (position, quaternion) at any abscissa: the interpolant itself."""
-        return {rod: functions.shape(self.discrete, rod) for rod in self.discrete.rods}
-
-    @cached_property
-    def fields(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ position, quaternion, internal wrench at the nodes and the base wrench."""
-        return {rod: functions.fields(self.discrete, rod) for rod in self.discrete.rods}
-
-    @cached_property
-    def actuator(self) -> dict[str, ca.Function]:
-        """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and the derivative with x."""
-        return {one.name: functions.actuator(self.discrete, one.name) for one in self.scene.actuators}
-
-    @cached_property
-    def body(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ (position, quaternion, rotation), world frame."""
-        return {body.name: functions.body(self.discrete, body.name) for body in self.scene.bodies}
-
-    @cached_property
-    def body_jacobian(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ derivatives of its position and quaternion with x and with inputs."""
-        return {body.name: functions.body_jacobian(self.discrete, body.name) for body in self.scene.bodies}
-
-    @cached_property
-    def energy(self) -> ca.Function:
-        """(x, inputs) ↦ elastic energy of all rods, J."""
-        return functions.energy(self.discrete)
-
-    @cached_property
-    def potential(self) -> ca.Function | None:
-        """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
-        return functions.potential(self.discrete)
 
     def operations(self, function: ca.Function) -> int:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""

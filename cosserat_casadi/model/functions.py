@@ -1,17 +1,21 @@
-"""The named functions of a model, one maker each."""
+"""The named functions of a model: one method each, which is all there is of a function.
+
+Every method gives the expressions of its results; the decorator says the rest. See model/function_table.py.
+All functions are exact for the discrete model and can be differentiated again.
+"""
 
 from __future__ import annotations
-
-import re
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
+from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.system import Arguments, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.transport import largest_turn
@@ -25,262 +29,272 @@ Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magn
 RESOLVED_NORM = 1e-2
 """Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
 
+PATH = ("x", "inputs", "load_factor")
+"""Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
 
-def _arguments(discrete: DiscreteScene) -> Arguments:
-    return Arguments(ca.MX.sym("x", discrete.size), ca.MX.sym("inputs", discrete.layout.size))
-
-
-def _path_arguments(discrete: DiscreteScene) -> Arguments:
-    symbols = _arguments(discrete)
-    return Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
+POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
+POSE_DERIVATIVES = (Output("d_pose_d_x"), Output("d_pose_d_inputs"))
 
 
-def _listed(arguments: Arguments) -> list[Matrix]:
-    return [arguments.x, arguments.inputs, arguments.load_factor]
+def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
+    """Effort and conjugate of an actuator by their own names, and the derivative of the conjugate."""
+    kind = next(actuator.kind for actuator in discrete.scene.actuators if actuator.name == name)
+    effort, conjugate = {
+        "tendon": (Output("tension", "N"), Output("length", "m")),
+        "chamber": (Output("pressure", "Pa"), Output("volume", "m³")),
+    }[kind]
+    return effort, conjugate, Output(f"d_{conjugate.name}_d_x")
 
 
-def _name(word: str, rod: str) -> str:
-    """Name of a rod's function; CasADi takes no two underscores in a row."""
-    return re.sub("_+", "_", f"{word}_{rod}")
+class ModelFunctions:
+    """The named functions of a model.
+
+    Attributes:
+        discrete: the scene with its constant matrices.
+    """
+
+    discrete: DiscreteScene
+
+    @scene_function(Output("residual"))
+    def residual(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
+        return [written.system.residual]
+
+    @scene_function(Output("jacobian"), Output("residual"))
+    def jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
+        return [written.system.jacobian, written.system.residual]
+
+    @scene_function(Output("input_jacobian"))
+    def input_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
+        return [ca.jacobian(written.system.residual, written["inputs"])]
+
+    @scene_function(Output("residual"), arguments=PATH, kernel="residual")
+    def path_residual(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
+        return [written.system.residual]
+
+    @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
+    def path_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
+        return [written.system.jacobian]
+
+    @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
+    def path_rate(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
+        moving = ca.vertcat(written["inputs"], written["load_factor"])
+        speed = ca.vertcat(written["inputs_rate"], written["load_factor_rate"])
+        # One symbol for all that moves, so that one derivative in one direction is taken.
+        joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
+        system = System(written.discrete, Arguments(written["x"], joined[:-1], joined[-1]))
+        return [ca.substitute(ca.jtimes(system.residual, joined, speed), joined, moving)]
+
+    @scene_function(Output("tangent"), arguments=("inputs",), kernel="tangent")
+    def path_tangent(self, written: Expressions) -> list[Matrix]:
+        """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
+        return [_unloaded_response(self, written["inputs"])]
+
+    @scene_function(Output("coarseness"), kernel="coarseness")
+    def coarseness(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
+        return [_resolution_index(written)]
+
+    @owned_functions(
+        Owner.ROD,
+        (Output("generalised_force", "EI/L"), Output("base_force", "N"), Output("base_moment", "N m")),
+        arguments=("q", "base_position", "base_quaternion", "inputs"),
+        kernel="igm",
+    )
+    def igm(self, written: Expressions) -> list[Matrix]:
+        """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
+
+        Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
+        forces in units of EI/ℓ. Wrenches of constraints are unknowns of the scene, not loads, and are left out.
+        """
+        return _inverse_geometric_model(written)
+
+    @owned_functions(Owner.ROD, POSE, kernel="tip", kernel_outputs=2)
+    def tip(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
+        tip = _tip_in_world(written)
+        return [tip.position, tip.quaternion, tip.rotation]
+
+    @owned_functions(Owner.ROD, POSE_DERIVATIVES, kernel="tip_jacobian")
+    def tip_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs."""
+        return _tip_derivatives(written)
+
+    @owned_functions(Owner.ROD, POSE[:2], arguments=("x", "inputs", "X"), kernel="shape")
+    def shape(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame: the interpolant itself.
+
+        The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and
+        exact derivatives with respect to X too.
+        """
+        rod_shape = written.system.rods[written.owner].shape
+        weights = _interpolation_weights(written.discrete, written.owner, written["X"])
+        quaternion = rod_shape.quaternion @ weights
+        unit_quaternion = quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        section = _in_world(written.system.base(written.owner), Pose(rod_shape.position @ weights, unit_quaternion))
+        return [section.position, section.quaternion]
+
+    @owned_functions(
+        Owner.ROD,
+        (
+            Output("position", "m"),
+            Output("quaternion"),
+            Output("internal_wrench"),
+            Output("base_force", "N"),
+            Output("base_moment", "N m"),
+        ),
+    )
+    def fields(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ position, quaternion and internal wrench at the nodes, and the base wrench.
+
+        World frame but for the internal wrench [moment; force], N m and N, which is in the section's.
+        """
+        rod = written.system.rods[written.owner]
+        base = written.system.base(written.owner)
+        count = written.discrete.rods[written.owner].grid.size
+        rotation = quaternion_to_matrix(base.quaternion)
+        quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+        return [
+            ca.repmat(base.position, 1, count) + rotation @ rod.shape.position,
+            quaternion_product(quaternions, ca.densify(rod.shape.quaternion)),
+            rod.statics.internal_wrench(),
+            rotation @ rod.statics.base_force,
+            rotation @ rod.statics.base_moment,
+        ]
+
+    @owned_functions(Owner.ACTUATOR, _actuator_outputs, kernel="actuator")
+    def actuator(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ effort of an actuator, its conjugate, and the derivative of the conjugate with x, 1×size.
+
+        Tension and length of a tendon, pressure and volume of a chamber.
+        The derivative is what a unit of effort does.
+        """
+        return [ca.densify(ca.MX(value)) for value in written.system.actuator(written.owner)]
+
+    @owned_functions(Owner.BODY, POSE, kernel="body", kernel_outputs=2)
+    def body(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
+        frame = written.system.frame(FrameName("body", written.owner))
+        return [frame.position, frame.quaternion, frame.rotation]
+
+    @owned_functions(Owner.BODY, POSE_DERIVATIVES, kernel="body_jacobian")
+    def body_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
+        frame = written.system.frame(FrameName("body", written.owner))
+        pose = ca.vertcat(frame.position, frame.quaternion)
+        return [ca.densify(ca.jacobian(pose, written[argument])) for argument in ("x", "inputs")]
+
+    @scene_function(Output("energy", "J"))
+    def energy(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ elastic energy of all rods, J."""
+        return [written.system.energy()]
+
+    @scene_function(Output("potential", "J"))
+    def potential(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ energy whose gradient the residual is, J; None unless every load is a dead force."""
+        potential = written.system.potential()
+        return None if potential is None else [potential]
 
 
-def residual(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs) ↦ residual."""
-    a = _arguments(discrete)
-    return ca.Function("residual", [a.x, a.inputs], [System(discrete, a).residual], ["x", "inputs"], ["residual"])
-
-
-def jacobian(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs) ↦ (jacobian, residual)."""
-    a = _arguments(discrete)
-    system = System(discrete, a)
-    outputs = [system.jacobian, system.residual]
-    return ca.Function("jacobian", [a.x, a.inputs], outputs, ["x", "inputs"], ["jacobian", "residual"])
-
-
-def input_jacobian(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs) ↦ ∂ residual / ∂ inputs."""
-    a = _arguments(discrete)
-    derivative = ca.jacobian(System(discrete, a).residual, a.inputs)
-    return ca.Function("input_jacobian", [a.x, a.inputs], [derivative], ["x", "inputs"], ["input_jacobian"])
-
-
-def path_residual(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs, factor) ↦ residual."""
-    a = _path_arguments(discrete)
-    outputs = [System(discrete, a).residual]
-    return ca.Function("path_residual", _listed(a), outputs, ["x", "inputs", "factor"], ["residual"])
-
-
-def path_jacobian(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs, factor) ↦ ∂ residual / ∂x."""
-    a = _path_arguments(discrete)
-    outputs = [System(discrete, a).jacobian]
-    return ca.Function("path_jacobian", _listed(a), outputs, ["x", "inputs", "factor"], ["jacobian"])
-
-
-def path_rate(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs, factor, inputs_rate, factor_rate) ↦ rate of the residual at fixed x."""
-    a = _path_arguments(discrete)
-    inputs_rate, factor_rate = ca.MX.sym("inputs_rate", discrete.layout.size), ca.MX.sym("factor_rate")
-    moving, speed = ca.vertcat(a.inputs, a.load_factor), ca.vertcat(inputs_rate, factor_rate)
-    joined = ca.MX.sym("inputs_and_factor", moving.shape[0])
-    parts = Arguments(a.x, joined[:-1], joined[-1])
-    rate = ca.substitute(ca.jtimes(System(discrete, parts).residual, joined, speed), joined, moving)
-    names = ["x", "inputs", "factor", "inputs_rate", "factor_rate"]
-    return ca.Function("path_rate", [*_listed(a), inputs_rate, factor_rate], [rate], names, ["residual_rate"])
-
-
-def path_tangent(discrete: DiscreteScene) -> ca.Function:
-    """Inputs ↦ dx/dfactor of the unloaded scene: its linear response.
+def _unloaded_response(model: ModelFunctions, inputs: ca.MX) -> Matrix:
+    """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
     lengths and bases of rods are inputs, it is the map's linear part at the scene's own values.
     """
-    size, inputs = discrete.layout.size, ca.MX.sym("inputs", discrete.layout.size)
-    unloaded, still, rest = np.zeros(discrete.size), np.zeros(size), np.zeros(size)
+    discrete = model.discrete
+    size = discrete.layout.size
+    unloaded = np.zeros(discrete.size)
+    no_rate = np.zeros(size)
+    origin = np.zeros(size)
     geometry = discrete.layout.geometry
-    rest[geometry] = discrete.layout.pack()[geometry]
-    jacobian = path_jacobian(discrete)(unloaded, rest, 0.0)
-    rate, probes = path_rate(discrete), np.hstack([np.zeros((size, 1)), np.eye(size)])
+    origin[geometry] = discrete.layout.pack()[geometry]
+    jacobian = model.path_jacobian(unloaded, origin, 0.0)
+    # The rate at the origin, and with one input at a time set to one.
+    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
     probes[:, 1:][:, geometry] = 0.0
-    rates = rate.map(size + 1)(unloaded, rest[:, None] + probes, 0.0, still, 1.0).full()
+    rates = model.path_rate.map(size + 1)(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
     if geometry:
-        slope = ca.Function("slope", [inputs], [ca.jacobian(rate(unloaded, inputs, 0.0, still, 1.0), inputs)])
+        rate = model.path_rate(unloaded, inputs, 0.0, no_rate, 1.0)
+        slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
         rates[:, 1:][:, geometry] = rates[:, :1] + slope(discrete.layout.pack()).full()[:, geometry]
     response = -np.linalg.solve(jacobian.full(), rates) if discrete.size else rates
     matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
-    moved = inputs - ca.DM(rest) if geometry else inputs
-    return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ moved], ["inputs"], ["tangent"])
+    moved = inputs - ca.DM(origin) if geometry else inputs
+    return ca.DM(response[:, 0]) + matrix @ moved
 
 
-def igm(discrete: DiscreteScene, rod: str) -> ca.Function:
-    """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
-
-    Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
-    forces in units of EI/ℓ. Wrenches of supports are unknowns of the scene, not loads, and are left out.
-    """
-    discrete_rod = discrete.rods[rod]
-    q, inputs = ca.MX.sym("q", discrete_rod.size), ca.MX.sym("inputs", discrete.layout.size)
-    position, quaternion = ca.MX.sym("base_position", 3), ca.MX.sym("base_quaternion", 4)
-    rotation = quaternion_to_matrix(quaternion)
-    arguments = Arguments(q, inputs)
-    place = kinematics.shape(discrete_rod, q, ratio_of(discrete, rod, arguments))
-    model = balance(place, rod_actions(discrete, rod, rotation.T, arguments))
-    actuated = model.actuation_force
-    outputs = [
-        model.generalised_force if actuated is None else model.generalised_force + actuated,
-        rotation @ model.statics.base_force,
-        rotation @ model.statics.base_moment,
-    ]
-    return ca.Function(
-        _name("igm", rod),
-        [q, position, quaternion, inputs],
-        outputs,
-        ["q", "base_position", "base_quaternion", "inputs"],
-        ["generalised_force", "base_force", "base_moment"],
-    )
+def _resolution_index(written: Expressions) -> Matrix:
+    """Largest turn of an interval over what can be resolved; in the literal system the error of the tip's |Q|."""
+    indices: list[Matrix] = [ca.MX(0.0)]
+    for name, rod in written.discrete.rods.items():
+        q = written["x"][written.discrete.unknowns.strain(name)]
+        ratio = ratio_of(written.discrete, name, written.arguments)
+        if rod.discretisation.transport == "permuted":
+            tip = kinematics.shape(rod, q, ratio).quaternion[:, -1]
+            indices.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)
+        elif rod.properties.turning_axes:
+            indices.append(largest_turn(rod, q, ratio) / RESOLVED_TURN)
+    return ca.mmax(ca.vertcat(*indices))
 
 
-def tip(discrete: DiscreteScene, rod: str) -> ca.Function:
-    """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
-    a = _arguments(discrete)
-    system = System(discrete, a)
-    pose, base = system.tip(rod), system.base(rod)
-    quaternion = quaternion_product(ca.MX(base.quaternion), pose.quaternion)
-    position = base.position + rotate(ca.MX(base.quaternion), pose.position)
-    outputs = [position, quaternion, quaternion_to_matrix(quaternion)]
-    names = ["position", "quaternion", "rotation"]
-    return ca.Function(_name("tip", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
+def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
+    rod = written.discrete.rods[written.owner]
+    arguments = Arguments(written["q"], written["inputs"])
+    rotation = quaternion_to_matrix(written["base_quaternion"])
+    rod_shape = kinematics.shape(rod, written["q"], ratio_of(written.discrete, written.owner, arguments))
+    model = balance(rod_shape, rod_actions(written.discrete, written.owner, rotation.T, arguments))
+    force = model.generalised_force
+    if model.actuation_force is not None:
+        force = force + model.actuation_force
+    return [force, rotation @ model.statics.base_force, rotation @ model.statics.base_moment]
 
 
-def tip_jacobian(discrete: DiscreteScene, rod: str) -> ca.Function:
-    """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
+def _in_world(base: Pose, section: Pose) -> Pose:
+    """World pose of a section given in the base of its rod."""
+    return Pose(ca.MX(base.position), ca.MX(base.quaternion)).then(section)
 
-    From the variations of the rod's fields: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q.
-    """
-    a = _arguments(discrete)
-    system = System(discrete, a)
-    base = system.base(rod)
-    moving = discrete.unloaded.floating_base(rod) is not None
-    if moving or discrete.rods[rod].discretisation.transport == "permuted":
-        pose = ca.vertcat(*tip(discrete, rod)(a.x, a.inputs)[:2])
-        own = ca.jacobian(pose, a.x)
+
+def _tip_in_world(written: Expressions) -> Pose:
+    return _in_world(written.system.base(written.owner), written.system.tip(written.owner))
+
+
+def _tip_derivatives(written: Expressions) -> list[Matrix]:
+    """From the variations of the rod's fields where its base rests: δr of the tip, and δQ = ½ (0, δθ) ⊗ Q."""
+    discrete = written.discrete
+    tip = _tip_in_world(written)
+    pose = ca.vertcat(tip.position, tip.quaternion)
+    floats = discrete.unloaded.floating_base(written.owner) is not None
+    literal = discrete.rods[written.owner].discretisation.transport == "permuted"
+    if floats or literal:
+        by_unknowns = ca.jacobian(pose, written["x"])
     else:
-        tangent, count = system.tangents[rod], discrete.rods[rod].size
-        quaternion = ca.repmat(ca.densify(system.tip(rod).quaternion), 1, count)
-        spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
-        turned = quaternion_product(spin, quaternion) / 2
-        world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
-        moved = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
-        place = discrete.unknowns.strain(rod)
-        before, after = ca.DM(7, place.start), ca.DM(7, discrete.size - place.stop)
-        own = ca.horzcat(before, ca.vertcat(moved, world), after)
-    directly = ca.DM.zeros(7, discrete.layout.size)
+        by_unknowns = _by_strains(written)
+    by_inputs = ca.DM.zeros(7, discrete.layout.size)
     if discrete.layout.geometry:
-        directly = ca.densify(ca.jacobian(ca.vertcat(*tip(discrete, rod)(a.x, a.inputs)[:2]), a.inputs))
-    outputs = [ca.densify(own), directly]
-    names = ["d_pose_d_x", "d_pose_d_inputs"]
-    return ca.Function(_name("tip_jacobian", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
+        by_inputs = ca.densify(ca.jacobian(pose, written["inputs"]))
+    return [ca.densify(by_unknowns), by_inputs]
 
 
-def shape(discrete: DiscreteScene, rod: str) -> ca.Function:
-    """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame.
-
-    The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and exact
-    derivatives with respect to X too.
-    """
-    a, X = _arguments(discrete), ca.MX.sym("X")
-    system = System(discrete, a)
-    place, base = system.rods[rod].shape, system.base(rod)
-    row = _interpolation_row(discrete, rod, X)
-    position = base.position + rotate(ca.MX(base.quaternion), place.position @ row)
-    local = place.quaternion @ row
-    quaternion = quaternion_product(ca.MX(base.quaternion), local / ca.sqrt(ca.sumsqr(local)))
-    names = ["position", "quaternion"]
-    return ca.Function(_name("shape", rod), [a.x, a.inputs, X], [position, quaternion], ["x", "inputs", "X"], names)
-
-
-def fields(discrete: DiscreteScene, rod: str) -> ca.Function:
-    """(x, inputs) ↦ fields at the nodes, world frame but for the internal wrench, which is in the section's."""
-    a = _arguments(discrete)
-    system = System(discrete, a)
-    model, base = system.rods[rod], system.base(rod)
-    count = discrete.rods[rod].grid.size
-    turn = ca.repmat(base.quaternion, 1, count)
-    rotation = quaternion_to_matrix(base.quaternion)
-    outputs = [
-        ca.repmat(base.position, 1, count) + rotation @ model.shape.position,
-        quaternion_product(ca.MX(turn), ca.densify(model.shape.quaternion)),
-        model.statics.internal_wrench(),
-        rotation @ model.statics.base_force,
-        rotation @ model.statics.base_moment,
-    ]
-    names = ["position", "quaternion", "internal_wrench", "base_force", "base_moment"]
-    return ca.Function(_name("fields", rod), [a.x, a.inputs], outputs, ["x", "inputs"], names)
-
-
-def actuator(discrete: DiscreteScene, name: str) -> ca.Function:
-    """(x, inputs) ↦ (tension, length) of a tendon, N and m, or (pressure, volume) of a chamber, Pa and m³.
-
-    Third comes the derivative of the length or the volume with x, 1×size: what a unit of tension or pressure does.
-    """
-    a = _arguments(discrete)
-    effort, extent, gradient = System(discrete, a).actuator(name)
-    kind = next(one.kind for one in discrete.scene.actuators if one.name == name)
-    names = {"tendon": ["tension", "length"], "chamber": ["pressure", "volume"]}[kind]
-    outputs = [ca.densify(ca.MX(value)) for value in (effort, extent, gradient)]
-    return ca.Function(
-        _name("actuator", name), [a.x, a.inputs], outputs, ["x", "inputs"], [*names, f"d_{names[1]}_d_x"]
-    )
-
-
-def body(discrete: DiscreteScene, name: str) -> ca.Function:
-    """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
-    a = _arguments(discrete)
-    place = System(discrete, a).frame(FrameName("body", name))
-    outputs = [place.position, place.quaternion, place.rotation]
-    names = ["position", "quaternion", "rotation"]
-    return ca.Function(_name("body", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
-
-
-def body_jacobian(discrete: DiscreteScene, name: str) -> ca.Function:
-    """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
-    a = _arguments(discrete)
-    pose = ca.vertcat(*body(discrete, name)(a.x, a.inputs)[:2])
-    outputs = [ca.densify(ca.jacobian(pose, a.x)), ca.densify(ca.jacobian(pose, a.inputs))]
-    names = ["d_pose_d_x", "d_pose_d_inputs"]
-    return ca.Function(_name("body_jacobian", name), [a.x, a.inputs], outputs, ["x", "inputs"], names)
-
-
-def energy(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs) ↦ elastic energy, J."""
-    a = _arguments(discrete)
-    return ca.Function("energy", [a.x, a.inputs], [System(discrete, a).energy()], ["x", "inputs"], ["energy"])
-
-
-def potential(discrete: DiscreteScene) -> ca.Function | None:
-    """(x, inputs) ↦ elastic energy less the work of dead forces, J; None where a load has no such energy."""
-    a = _arguments(discrete)
-    value = System(discrete, a).potential()
-    if value is None:
-        return None
-    return ca.Function("potential", [a.x, a.inputs], [value], ["x", "inputs"], ["potential"])
-
-
-def coarseness(discrete: DiscreteScene) -> ca.Function:
-    """(x, inputs) ↦ largest turn of an interval over what can be resolved; in the literal system error of tip's |Q|."""
-    a = _arguments(discrete)
-    shares: list[Matrix] = [ca.MX(0.0)]
-    for rod, discrete_rod in discrete.rods.items():
-        q, ratio = a.x[discrete.unknowns.strain(rod)], ratio_of(discrete, rod, a)
-        if discrete_rod.discretisation.transport == "permuted":
-            tip = kinematics.shape(discrete_rod, q, ratio).quaternion[:, -1]
-            shares.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)
-        elif discrete_rod.properties.turning_axes:
-            shares.append(largest_turn(discrete_rod, q, ratio) / RESOLVED_TURN)
-    largest = ca.mmax(ca.vertcat(*shares))
-    return ca.Function("coarseness", [a.x, a.inputs], [largest], ["x", "inputs"], ["coarseness"])
+def _by_strains(written: Expressions) -> Matrix:
+    system = written.system
+    tangent = system.tangents[written.owner]
+    base = system.base(written.owner)
+    count = written.discrete.rods[written.owner].size
+    quaternion = ca.repmat(ca.densify(system.tip(written.owner).quaternion), 1, count)
+    spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
+    turned = quaternion_product(spin, quaternion) / 2
+    turned_in_world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
+    moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
+    strains = written.discrete.unknowns.strain(written.owner)
+    before = ca.DM(7, strains.start)
+    after = ca.DM(7, written.discrete.size - strains.stop)
+    return ca.horzcat(before, ca.vertcat(moved_in_world, turned_in_world), after)
 
 
 def operations(function: ca.Function) -> int:
@@ -304,7 +318,7 @@ def _operations(scalar: ca.Function) -> int:
     return total
 
 
-def _interpolation_row(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
+def _interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
     """Weights of the nodal values at X, M×1: Chebyshev series of the element that holds X."""
     grid = discrete.rods[rod].grid
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))

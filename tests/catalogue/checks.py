@@ -37,12 +37,12 @@ def initial_value_error(solution: Solution) -> float:
     """
     (rod,) = solution.model.discrete.rods.values()
     base, reached = solution.base_wrench(), integrate(solution.model.scene, *_wrench(solution))
-    error = float(np.abs(reached.position - solution.tip().position[0]).max()) / rod.rod.length
+    error = float(np.abs(reached.position - solution.tip().position[0]).max()) / rod.properties.length
     error = max(error, float(np.abs(reached.rotation - solution.tip().rotation[0]).max()))
     if solution.model.scene.supports:
         return error
-    size = rod.energy_unit + np.abs(base.moment).max() + rod.rod.length * np.abs(base.force).max()
-    left = max(np.abs(reached.moment_left).max(), rod.rod.length * np.abs(reached.force_left).max())
+    size = rod.energy_unit + np.abs(base.moment).max() + rod.properties.length * np.abs(base.force).max()
+    left = max(np.abs(reached.moment_left).max(), rod.properties.length * np.abs(reached.force_left).max())
     return max(error, float(left / size))
 
 

@@ -1,0 +1,236 @@
+"""What a named function of a model is, and the table of all of them.
+
+A function is one method of :class:`cosserat_casadi.model.functions.ModelFunctions` with one of the decorators below.
+The model's members, the manifest, the kernels in C with their headers, and what ``load`` offers follow from the table.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+from typing import Any, Generic, TypeVar
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.system import Arguments, System
+
+Result = TypeVar("Result")
+
+ARGUMENT_UNITS: dict[str, str] = {"inputs": "inputs", "base_position": "m", "inputs_rate": "inputs"}
+"""Units of the arguments that have one; "inputs" stands for those of the stacked inputs."""
+
+
+class Owner(Enum):
+    """What there is one function for each of."""
+
+    SCENE = "scene"
+    ROD = "rod"
+    ACTUATOR = "actuator"
+    BODY = "body"
+
+
+@dataclass(frozen=True)
+class Output:
+    """A result of a function.
+
+    Attributes:
+        name: in Python, in C and in the manifest.
+        unit: "1" where it has none.
+    """
+
+    name: str
+    unit: str = "1"
+
+
+@dataclass(frozen=True)
+class Expressions:
+    """What a function is written in.
+
+    Attributes:
+        discrete: the scene.
+        owner: name of the rod, the actuator or the body; empty for a function of the scene.
+        symbols: the arguments by name.
+    """
+
+    discrete: DiscreteScene
+    owner: str
+    symbols: Mapping[str, ca.MX]
+
+    def __getitem__(self, argument: str) -> Matrix:
+        """The symbol of an argument."""
+        return self.symbols[argument]
+
+    @cached_property
+    def arguments(self) -> Arguments:
+        """Unknowns, inputs and load factor, as far as they are arguments."""
+        return Arguments(self.symbols["x"], self.symbols["inputs"], self.symbols.get("load_factor"))
+
+    @cached_property
+    def system(self) -> System:
+        """The equations in these arguments."""
+        return System(self.discrete, self.arguments)
+
+
+Outputs = tuple[Output, ...] | Callable[[DiscreteScene, str], tuple[Output, ...]]
+Write = Callable[[Any, Expressions], Sequence[Matrix] | None]
+
+
+@dataclass(frozen=True)
+class FunctionSpec:
+    """One entry of the table.
+
+    Attributes:
+        name: member of the model.
+        owner: what there is one for each of.
+        arguments: names of the arguments.
+        outputs: what it gives, or a rule that says so for one owner.
+        write: gives the expressions; None where the scene has no such function.
+        kernel: name of its kernel in C; empty where it stays in Python.
+        kernel_outputs: number of the outputs that the kernel has; None for all.
+        doc: what it is, in one sentence.
+    """
+
+    name: str
+    owner: Owner
+    arguments: tuple[str, ...]
+    outputs: Outputs
+    write: Write
+    kernel: str = ""
+    kernel_outputs: int | None = None
+    doc: str = ""
+
+    def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
+        """What the function of one owner gives."""
+        return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs
+
+    def build(self, model: Any, owner: str = "") -> ca.Function | None:
+        """The function of one owner; None where the scene has none.
+
+        Args:
+            model: whose function it is; it has the member ``discrete``.
+            owner: name of the rod, the actuator or the body.
+        """
+        discrete: DiscreteScene = model.discrete
+        symbols = {name: ca.MX.sym(name, argument_size(discrete, name, owner)) for name in self.arguments}
+        results = self.write(model, Expressions(discrete, owner, symbols))
+        if results is None:
+            return None
+        names = [output.name for output in self.outputs_of(discrete, owner)]
+        # CasADi takes no two underscores in a row.
+        name = re.sub("_+", "_", f"{self.name}_{owner}") if owner else self.name
+        return ca.Function(name, list(symbols.values()), list(results), list(self.arguments), names)
+
+
+def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
+    """Number of entries of an argument."""
+    sizes = {
+        "x": discrete.size,
+        "inputs": discrete.layout.size,
+        "inputs_rate": discrete.layout.size,
+        "base_position": 3,
+        "base_quaternion": 4,
+    }
+    if name == "q":
+        return discrete.rods[owner].size
+    return sizes.get(name, 1)
+
+
+def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
+    """Names of all rods, actuators or bodies; one empty name for the scene."""
+    scene = discrete.scene
+    named: dict[Owner, Sequence[Any]] = {
+        Owner.ROD: scene.rods,
+        Owner.ACTUATOR: scene.actuators,
+        Owner.BODY: scene.bodies,
+    }
+    return [record.name for record in named[owner]] if owner in named else [""]
+
+
+@dataclass
+class _Member(Generic[Result]):
+    """A member of a model that is built when it is first asked for, and kept."""
+
+    spec: FunctionSpec = field(init=False)
+    options: dict[str, Any]
+    write: Write
+
+    def __set_name__(self, model_class: type, name: str) -> None:
+        doc = (self.write.__doc__ or "").strip()
+        self.spec = FunctionSpec(name=name, write=self.write, doc=doc, **self.options)
+        self.__doc__ = doc
+
+    def __get__(self, model: Any, model_class: type | None = None) -> Any:
+        if model is None:
+            return self
+        built = self._build(model)
+        model.__dict__[self.spec.name] = built
+        return built
+
+    def _build(self, model: Any) -> Any:
+        raise NotImplementedError
+
+
+class SceneFunction(_Member[ca.Function]):
+    """One function of the whole scene."""
+
+    def _build(self, model: Any) -> ca.Function | None:
+        return self.spec.build(model)
+
+
+class OwnedFunctions(_Member[dict[str, ca.Function]]):
+    """One function for each rod, actuator or body, by name."""
+
+    def _build(self, model: Any) -> dict[str, ca.Function | None]:
+        return {name: self.spec.build(model, name) for name in owners(model.discrete, self.spec.owner)}
+
+
+def scene_function(
+    *outputs: Output, arguments: Sequence[str] = ("x", "inputs"), kernel: str = ""
+) -> Callable[[Write], SceneFunction]:
+    """Make a method one named function of the scene.
+
+    Args:
+        outputs: what it gives.
+        arguments: names of what it takes.
+        kernel: name of its kernel in C; empty where it stays in Python.
+    """
+    options = {"owner": Owner.SCENE, "arguments": tuple(arguments), "outputs": outputs, "kernel": kernel}
+    return lambda write: SceneFunction(options, write)
+
+
+def owned_functions(
+    owner: Owner,
+    outputs: Outputs,
+    *,
+    arguments: Sequence[str] = ("x", "inputs"),
+    kernel: str = "",
+    kernel_outputs: int | None = None,
+) -> Callable[[Write], OwnedFunctions]:
+    """Make a method one named function for each rod, actuator or body.
+
+    Args:
+        owner: what there is one for each of.
+        outputs: what each gives, or a rule that says so for one owner.
+        arguments: names of what it takes.
+        kernel: name of its kernel in C; empty where it stays in Python.
+        kernel_outputs: number of the outputs that the kernel has; None for all.
+    """
+    options = {
+        "owner": owner,
+        "arguments": tuple(arguments),
+        "outputs": outputs,
+        "kernel": kernel,
+        "kernel_outputs": kernel_outputs,
+    }
+    return lambda write: OwnedFunctions(options, write)
+
+
+def table(model_class: type) -> list[FunctionSpec]:
+    """The functions of a class of models, in the order in which they are written."""
+    members = [vars(base) for base in reversed(model_class.__mro__)]
+    return [member.spec for names in members for member in names.values() if isinstance(member, _Member)]
