@@ -45,13 +45,21 @@ def discretise(
         nodes: Chebyshev intervals per element.
         transport: integration method of the rotation.
     """
-    modes = scene.accuracy.modes if modes is None else modes
-    nodes = scene.accuracy.nodes if nodes is None else nodes
+    if modes is None:
+        modes = scene.accuracy.modes
+    if modes is None:
+        modes = DEFAULT_MODES
+    if nodes is None:
+        nodes = scene.accuracy.nodes
     transport = transport or scene.accuracy.rotation or DEFAULT_TRANSPORT
-    chosen = DEFAULT_MODES if modes is None else modes
-    found = {}
+    chosen = {}
     for rod in scene.rods:
-        per_component = (chosen,) * len(rod.admitted) if isinstance(chosen, int) else tuple(chosen)
-        count = nodes if nodes is not None else nodes_for(max(per_component))
-        found[rod.name] = Discretisation(per_component, count, element_ends(scene, rod.name), transport)
-    return found
+        modes_of_rod = _per_strain(modes, len(rod.admitted))
+        intervals = nodes_for(max(modes_of_rod)) if nodes is None else nodes
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, element_ends(scene, rod.name), transport)
+    return chosen
+
+
+def _per_strain(modes: int | Sequence[int], strains: int) -> tuple[int, ...]:
+    """Modes of every admitted strain."""
+    return (modes,) * strains if isinstance(modes, int) else tuple(modes)

@@ -22,16 +22,20 @@ AXES = {1: ("",), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
 """Names of the entries of a number, a vector and a quaternion."""
 
 
-def column_places(layout: InputLayout) -> dict[str, int]:
-    """Where each column stands in the stacked inputs."""
-    places = {}
-    for name, place, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
-        for k in range(default.size):
-            axes = AXES[len(default)]
-            axis = f".{axes[k % len(axes)]}" if len(axes) > 1 else ""
-            degree = f".{k // len(axes)}" if k >= len(axes) else ""
-            places[f"{name}{axis}{degree}"] = place.start + k
-    return places
+def column_indices(layout: InputLayout) -> dict[str, int]:
+    """Index of each column in the stacked inputs."""
+    indices = {}
+    for name, entries, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
+        for k, suffix in enumerate(_column_suffixes(*default.shape)):
+            indices[name + suffix] = entries.start + k
+    return indices
+
+
+def _column_suffixes(components: int, degrees: int) -> list[str]:
+    """What the columns of an input end in, column after column: ".x", then ".x.1" for the first Legendre degree."""
+    axes = [f".{axis}" if axis else "" for axis in AXES[components]]
+    higher = [f".{degree}" for degree in range(1, degrees)]
+    return [axis + degree for degree in ("", *higher) for axis in axes]
 
 
 def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
@@ -41,12 +45,13 @@ def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
         SceneError: with every fault: a column that is no input, a row of another length, what is not a finite number.
     """
     header, numbers, _, problems = read_numbers(path)
-    places = column_places(layout)
-    problems = [_no_column(str(path), column, places) for column in header if column not in places] + problems
+    indices = column_indices(layout)
+    unknown = [column for column in header if column not in indices]
+    problems = [_no_column(str(path), column, indices) for column in unknown] + problems
     if problems:
         raise SceneError(*problems)
     cases = np.tile(layout.pack(), (len(numbers), 1))
-    cases[:, [places[column] for column in header]] = numbers
+    cases[:, [indices[column] for column in header]] = numbers
     return cases
 
 
@@ -67,9 +72,10 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     repeated = sorted({column for column in header if header.count(column) > 1})
     problems = [Problem(str(path), f"has the column {column} twice") for column in repeated]
     numbers = np.full((len(filled) - 1, len(header)), np.nan)
-    for found, (number, row) in zip(numbers, filled[1:], strict=True):
-        problems += _fill(found, f"{path}, line {number}", header, row)
-    return header, numbers, [number for number, _ in filled[1:]], problems
+    lines = [number for number, _ in filled[1:]]
+    for values, (number, row) in zip(numbers, filled[1:], strict=True):
+        problems += _fill(values, f"{path}, line {number}", header, row)
+    return header, numbers, lines, problems
 
 
 def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray:
@@ -86,39 +92,53 @@ def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray
     Raises:
         SceneError: with every fault.
     """
-    places, problems = column_places(layout), list[Problem]()
-    bounds: dict[int, tuple[float, float]] = {}
-    for text in ranges:
-        column, _, ends = text.partition("=")
-        low, high = (_number(end) for end in (ends.partition(":")[0], ends.partition(":")[2]))
-        if column.strip() not in places:
-            problems.append(_no_column("--range", column.strip(), places))
-        elif low is None or high is None:
-            problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
-        else:
-            bounds[places[column.strip()]] = low, high
-    if problems:
-        raise SceneError(*problems)
+    bounds = _bounds(ranges, column_indices(layout))
     cases = np.tile(layout.pack(), (count, 1))
     shares = _additive_recurrence(count, len(bounds))
-    for (place, (low_end, high_end)), share in zip(bounds.items(), shares.T, strict=True):
-        cases[:, place] = low_end + share * (high_end - low_end)
+    for (index, (low, high)), share in zip(bounds.items(), shares.T, strict=True):
+        cases[:, index] = low + share * (high - low)
     return cases
 
 
+def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[float, float]]:
+    """Lower and upper end by the index of the input."""
+    problems: list[Problem] = []
+    bounds: dict[int, tuple[float, float]] = {}
+    for text in ranges:
+        name, _, ends = text.partition("=")
+        column = name.strip()
+        first, _, last = ends.partition(":")
+        low = _number(first)
+        high = _number(last)
+        if column not in indices:
+            problems.append(_no_column("--range", column, indices))
+        elif low is None or high is None:
+            problems.append(Problem("--range", f"{text!r} has no two finite numbers", "such as push.force.x=-1:1"))
+        else:
+            bounds[indices[column]] = (low, high)
+    if problems:
+        raise SceneError(*problems)
+    return bounds
+
+
 def _additive_recurrence(count: int, dimension: int) -> FloatArray:
+    """Points in the unit box, shape (count, dimension), the corner of all ones first."""
+    # The generalised golden ratio is the fixed point of this iteration.
     root = 2.0
     for _ in range(60):
         root = (1 + root) ** (1 / (dimension + 1))
     steps = root ** -np.arange(1.0, dimension + 1)
-    return np.vstack([np.ones((1, dimension)), (0.5 + np.arange(1, count)[:, None] * steps) % 1.0])
+    multiples = np.arange(1, count)[:, None] * steps
+    return np.vstack([np.ones((1, dimension)), (0.5 + multiples) % 1.0])
 
 
-def _no_column(where: str, column: str, places: dict[str, int]) -> Problem:
-    return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {', '.join(places) or 'none'}")
+def _no_column(where: str, column: str, indices: dict[str, int]) -> Problem:
+    names = ", ".join(indices) or "none"
+    return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {names}")
 
 
-def _fill(found: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
+def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
+    """Put the numbers of a row into an array, and say what is wrong with the others."""
     if len(row) != len(header):
         return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
     problems = []
@@ -127,7 +147,7 @@ def _fill(found: FloatArray, where: str, header: list[str], row: list[str]) -> l
         if number is None:
             problems.append(Problem(where, f"{column} must be a finite number, got {cell!r}"))
         else:
-            found[k] = number
+            values[k] = number
     return problems
 
 

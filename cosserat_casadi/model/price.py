@@ -1,4 +1,4 @@
-"""What a model costs, and what each effect adds to it, in scalar operations."""
+"""What a model costs, and what each load adds to it, in scalar operations."""
 
 from __future__ import annotations
 
@@ -34,13 +34,14 @@ def price(model: Model) -> Price:
 
 def price_of_load(scene: scenes.Scene, load: str) -> int:
     """Operations that a load or actuator adds to the residual: the scene with it less the scene without."""
-    model, without = build(scene), build(without_load(scene, load))
-    return model.operations(model.residual) - without.operations(without.residual)
+    loaded = build(scene)
+    bare = build(without_load(scene, load))
+    return loaded.operations(loaded.residual) - bare.operations(bare.residual)
 
 
-def without_load(scene: scenes.Scene, load: str) -> scenes.Scene:
+def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
     """The scene without one of its loads or actuators, and without the inputs that were its."""
-    loads = tuple(other for other in scene.loads if other.name != load)
-    actuators = tuple(other for other in scene.actuators if other.name != load)
-    names = tuple(name for name in scene.input_names() if not name.startswith(f"{load}."))
-    return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": names})
+    loads = tuple(load for load in scene.loads if load.name != name)
+    actuators = tuple(actuator for actuator in scene.actuators if actuator.name != name)
+    inputs = tuple(entry for entry in scene.input_names() if not entry.startswith(f"{name}."))
+    return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": inputs})

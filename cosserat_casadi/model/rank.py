@@ -24,8 +24,12 @@ from cosserat_casadi.model.spins import free_spins
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.model.unknowns import BlockKind
 
-MODES, NODES, SEED = 4, 10, 20250711
-"""A discretisation that can bend every way a rod can, and the seed of its random shape."""
+MODES = 4
+NODES = 10
+"""A discretisation that can bend every way a rod can."""
+
+SEED = 20250711
+"""Of the random shape."""
 
 RANK = 1e-8
 """Share of the largest singular value below which one counts as zero."""
@@ -38,11 +42,13 @@ def check_constraints(scene: scenes.Scene) -> None:
     Raises:
         SceneError: with the first tie that has nothing of its own to hold, or every body that turns freely.
     """
-    if not scene.joints and all(rod.base.rod is None for rod in scene.rods):
+    carries = any(rod.base.rod is not None for rod in scene.rods)
+    if not scene.joints and not carries:
         return
     probe = discrete_scene(scene, input_layout(scene), discretise(scene, MODES, NODES, "magnus4"))
     system = _at_a_random_shape(probe)
-    if spins := list(free_spins(system)):
+    spins = list(free_spins(system))
+    if spins:
         raise SceneError(*spins)
     gaps = _gap_rows(system)
     if _rank(gaps) == len(gaps):
@@ -74,4 +80,6 @@ def _gap_rows(system: System) -> FloatArray:
 
 def _rank(rows: FloatArray) -> int:
     singular = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(singular > RANK * singular[0])) if singular.size else 0
+    if not singular.size:
+        return 0
+    return int(np.sum(singular > RANK * singular[0]))

@@ -43,7 +43,9 @@ def _coefficients(component: float | Sequence[float]) -> tuple[float, ...]:
 
 def _linear(value: float | Sequence[float]) -> Field:
     """A size along the rod: constant, or linear from base to tip."""
-    base, tip = (value, value) if isinstance(value, int | float) else value
+    if isinstance(value, int | float):
+        return lambda X: value + 0.0 * X
+    base, tip = value
     return lambda X: base + (tip - base) * X
 
 
@@ -52,13 +54,19 @@ def _hooke(rod: scenes.Rod) -> Field:
         return _direct(rod.stiffness)
     assert rod.material is not None
     assert rod.section is not None
-    material, correction = rod.material, rod.section.shear_correction
+    youngs_modulus = rod.material.youngs_modulus
+    shear_modulus = _shear_modulus(rod.material)
+    correction = rod.section.shear_correction
     shape = _section_shape(rod.section)
-    shear_modulus = material.shear_modulus
-    if shear_modulus is None:
-        assert material.poisson_ratio is not None
-        shear_modulus = material.youngs_modulus / (2 * (1 + material.poisson_ratio))
-    return lambda X: section.hooke(shape(X), material.youngs_modulus, shear_modulus, correction)
+    return lambda X: section.hooke(shape(X), youngs_modulus, shear_modulus, correction)
+
+
+def _shear_modulus(material: scenes.Material) -> float:
+    """G of an isotropic material, E / (2 (1 + ν)) where Poisson's ratio is given."""
+    if material.shear_modulus is not None:
+        return material.shear_modulus
+    assert material.poisson_ratio is not None
+    return material.youngs_modulus / (2 * (1 + material.poisson_ratio))
 
 
 def _direct(stiffness: scenes.Stiffness) -> Field:
@@ -75,9 +83,11 @@ def _section_shape(
         radius = _linear(shape.radius)
         return lambda X: section.circle(_array(radius, X))
     if isinstance(shape, scenes.Annulus):
-        outer, inner = _linear(shape.outer_radius), _linear(shape.inner_radius)
+        outer = _linear(shape.outer_radius)
+        inner = _linear(shape.inner_radius)
         return lambda X: section.annulus(_array(outer, X), _array(inner, X))
-    width, height = _linear(shape.width), _linear(shape.height)
+    width = _linear(shape.width)
+    height = _linear(shape.height)
     return lambda X: section.rectangle(_array(width, X), _array(height, X))
 
 
@@ -91,5 +101,6 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
         return lambda X: _array(given, X)
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
-    density, shape = rod.material.density, _section_shape(rod.section)
+    density = rod.material.density
+    shape = _section_shape(rod.section)
     return lambda X: density * shape(X).area

@@ -22,13 +22,18 @@ from cosserat_casadi.model.system import System
 
 def free_spins(system: System) -> Iterator[Problem]:
     """A problem for every body whose orientation nothing holds."""
+    remedy = "hold a tip by a fixed joint, or by a spherical one off that line"
     for i, body in enumerate(system.discrete.scene.bodies):
-        joints, forces = _joints(system, body), _forces(system, body)
-        if joints is None or _lines(joints) > 1 or _lines(np.vstack([joints, forces])) > _lines(joints):
+        joints = _joints(system, body)
+        if joints is None:
             continue
-        about = "the line through its joints" if _lines(joints) else "its joint"
+        dimension = _dimension(joints)
+        with_forces = _dimension(np.vstack([joints, _forces(system, body)]))
+        if dimension > 1 or with_forces > dimension:
+            continue
+        about = "the line through its joints" if dimension else "its joint"
         problem = f"nothing holds the orientation of {body.name!r}: it turns freely about {about}"
-        yield Problem(f"bodies[{i}]", problem, "hold a tip by a fixed joint, or by a spherical one off that line")
+        yield Problem(f"bodies[{i}]", problem, remedy)
 
 
 def _joints(system: System, body: scenes.Body) -> FloatArray | None:
@@ -47,8 +52,8 @@ def _forces(system: System, body: scenes.Body) -> FloatArray:
     return np.reshape(points, (-1, 3))
 
 
-def _lines(points: FloatArray) -> int:
+def _dimension(points: FloatArray) -> int:
     """Dimension of what points span: 0 for one point, 1 for a line."""
-    apart = points - points[0]
+    differences = points - points[0]
     size = max(float(np.abs(points).max(initial=0.0)), np.finfo(float).tiny)
-    return int(np.linalg.matrix_rank(apart / size, tol=FLAT))
+    return int(np.linalg.matrix_rank(differences / size, tol=FLAT))

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_cases import column_places
+from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.reading import place_of
@@ -76,7 +76,7 @@ def variants(scene: Scene, table: Table) -> Variants:
     """
     free = _freed(scene, table.columns)
     layout = input_layout(free)
-    places = column_places(layout)
+    places = column_indices(layout)
     chosen = [k for k, column in enumerate(table.columns) if column in places]
     others = [k for k in range(len(table.columns)) if k not in chosen]
     inputs = np.tile(layout.pack(), (len(table.values), 1))

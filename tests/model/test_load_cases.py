@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_cases import column_places, read_load_cases, spread
+from cosserat_casadi.model.load_cases import column_indices, read_load_cases, spread
 from tests.scenes import WIND, push, scene
 
 
@@ -20,7 +20,7 @@ def layout() -> InputLayout:
 
 
 def test_columns_are_named_in_the_order_of_the_inputs(layout: InputLayout) -> None:
-    places = column_places(layout)
+    places = column_indices(layout)
     assert list(places.values()) == list(range(layout.size))
     assert list(places)[:3] == ["push.force.x", "push.force.y", "push.force.z"]
     stacked = layout.pack({"wind.force": [[0.0, 0.0], [0.7, 0.9], [0.0, 0.0]]})
@@ -32,7 +32,7 @@ def test_rows_of_a_csv(layout: InputLayout, tmp_path: Path) -> None:
     path = tmp_path / "loads.csv"
     path.write_text("push.force.x, wind.force.y.1\n-1.5, 2\n\n0,1e-3\n")
     cases = read_load_cases(path, layout)
-    places = column_places(layout)
+    places = column_indices(layout)
     assert cases.shape == (2, layout.size)
     assert_allclose(cases[:, places["push.force.x"]], [-1.5, 0.0], rtol=0, atol=0)
     assert_allclose(cases[:, places["wind.force.y.1"]], [2.0, 1e-3], rtol=0, atol=0)
@@ -62,7 +62,7 @@ def test_a_csv_without_cases_is_refused(layout: InputLayout, tmp_path: Path, tex
 def test_points_cover_the_box_evenly(layout: InputLayout) -> None:
     """Every cell of a 4×4 grid over two ranges holds its share of 160 points, within a third."""
     cases = spread(["push.force.x=-1:1", "push.force.z=2:6"], 160, layout)
-    places = column_places(layout)
+    places = column_indices(layout)
     x, z = cases[:, places["push.force.x"]], cases[:, places["push.force.z"]]
     assert_allclose([x[0], z[0]], [1.0, 6.0], rtol=0, atol=0)
     assert x.min() >= -1.0

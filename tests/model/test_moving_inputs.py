@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, parse_scene, solve
-from cosserat_casadi.model.load_cases import column_places
+from cosserat_casadi.model.load_cases import column_indices
 
 NAMES = ("push.force", "wind.force", "cable.tension", "arm.length", "arm.base.position", "arm.base.quaternion")
 FREE = f"inputs = {list(NAMES)}"
@@ -147,7 +147,7 @@ def test_values_that_no_rod_can_have_are_refused(name: str, value: object, says:
 
 
 def test_columns_of_load_cases_name_every_entry() -> None:
-    columns = column_places(at_home().inputs)
+    columns = column_indices(at_home().inputs)
     assert [name for name in columns if name.startswith("arm")] == [
         "arm.length",
         *[f"arm.base.position.{axis}" for axis in "xyz"],
