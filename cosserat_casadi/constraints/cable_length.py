@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import casadi as ca
 
@@ -64,7 +65,7 @@ class HeldLength:
     def gap_with_tension(self) -> Matrix:
         """Derivative of the gap with respect to the tension, 1×1."""
         if not self.slack:
-            return type(self.tension)(1, 1) if self._whole else self.factor - 1
+            return type(self.tension)(1, 1) if self._whole else cast("Matrix", self.factor) - 1
         own = 1 - self.tension / self._root
         return own if self._whole else own + (1 - self.factor) * (1 - self.sag / self._root)
 

@@ -143,7 +143,7 @@ class Coupled:
         return equation if self.system.whole else self._scaled(equation) + self._give * unknown
 
     @property
-    def _give(self) -> Matrix:
+    def _give(self) -> Matrix | float:
         """Compliance of the springs of ties, stiffness of those of frames, without unit."""
         return (1 - self.system.arguments.factor) ** GIVE
 

@@ -25,7 +25,7 @@ from cosserat_casadi.maths.rotation import (
     quaternion_to_matrix,
     rotate,
 )
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -314,5 +314,5 @@ def _array(values: tuple[float, ...]) -> FloatArray:
     return np.asarray(values, dtype=np.float64)
 
 
-def _numbers(matrix: ca.MX) -> FloatArray:
+def _numbers(matrix: Matrix) -> FloatArray:
     return np.asarray(ca.evalf(ca.densify(matrix)).full()[:, 0])

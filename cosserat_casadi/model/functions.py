@@ -34,7 +34,7 @@ def _path_arguments(discrete: DiscreteScene) -> Arguments:
     return Arguments(symbols.x, symbols.inputs, ca.MX.sym("factor"))
 
 
-def _listed(arguments: Arguments) -> list[Matrix]:
+def _listed(arguments: Arguments) -> list[Matrix | float]:
     return [arguments.x, arguments.inputs, arguments.factor]
 
 
@@ -316,7 +316,7 @@ def _interpolation_row(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
     return ca.vertcat(*rows)
 
 
-def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix:
+def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
     above = breaks[element] < X if element else 1
     below = breaks[element + 1] >= X if element + 2 < len(breaks) else 1

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -261,9 +262,10 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.discrete.scene.supports or self.discrete.couplings.ties or any(term is None for term in terms):
+        known = [term for term in terms if term is not None]
+        if self.discrete.scene.supports or self.discrete.couplings.ties or len(known) < len(terms):
             return None
-        return ca.sum1(ca.vertcat(*terms))
+        return ca.sum1(ca.vertcat(*known))
 
     @property
     def whole(self) -> bool:
@@ -310,7 +312,7 @@ class System:
         whole = replace(self.arguments, factor=1.0)
         return HeldLength(
             cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.routing is routing),
-            wanted=_value(self.discrete.layout, tendon, "length", whole),
+            wanted=cast("Matrix", _value(self.discrete.layout, tendon, "length", whole)),
             tension=self.arguments.x[self.discrete.tension_place(tendon.name)],
             slack=tendon.slack,
             factor=self.arguments.factor,
