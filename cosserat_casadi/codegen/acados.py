@@ -26,7 +26,6 @@ from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar, straight
 from cosserat_casadi.errors import ExportError, Problem
-from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 
 
@@ -133,7 +132,7 @@ def write_acados(model: Model, directory: str | os.PathLike[str], name: str) -> 
     return folder
 
 
-def _symbols(model: Model) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+def _symbols(model: Model) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
     count = model.inputs.size
     return ca.SX.sym("x", count), ca.SX.sym("xdot", count), ca.SX.sym("u", count), ca.SX.sym("z", model.size)
 

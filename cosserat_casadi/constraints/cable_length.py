@@ -53,18 +53,20 @@ class CableLength:
     @cached_property
     def residual(self) -> Matrix:
         """Zero where the cable has its length, or is slack, 1×1."""
-        return _kernel(self.slack)(self.sag, self.tension)[0]
+        residual: Matrix = _kernel(self.slack)(self.sag, self.tension)[0]
+        return residual
 
     @cached_property
     def strain_columns(self) -> Matrix:
         """Derivative of the residual with the strain coordinates, 1×n."""
-        by_sag = _kernel(self.slack)(self.sag, self.tension)[1]
+        by_sag: Matrix = _kernel(self.slack)(self.sag, self.tension)[1]
         return -(by_sag * self.pull).T
 
     @cached_property
     def tension_column(self) -> Matrix:
         """Derivative of the residual with the tension, 1×1."""
-        return _kernel(self.slack)(self.sag, self.tension)[2]
+        by_tension: Matrix = _kernel(self.slack)(self.sag, self.tension)[2]
+        return by_tension
 
     @property
     def _rod_length(self) -> float:

@@ -104,7 +104,8 @@ class SectionConstraint:
 
     def residual(self, poses: Poses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
-        return self._residual_kernel(*poses.stacked)[0]
+        residual: Matrix = self._residual_kernel(*poses.stacked)[0]
+        return residual
 
     def residual_variation(self, poses: Poses) -> Variations:
         """Derivative of the residual with the poses, size×6 each."""
@@ -132,7 +133,8 @@ class SectionConstraint:
 
     def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
-        return self._reaction_kernel(*poses.stacked, multipliers)[0]
+        reaction: Matrix = self._reaction_kernel(*poses.stacked, multipliers)[0]
+        return reaction
 
     def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
@@ -209,7 +211,7 @@ def _moved(poses: Poses, motions: list[ca.SX]) -> Poses:
     return Poses(*[pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)])
 
 
-def _at_rest(expression: ca.SX, variables: list[ca.SX], motions: list[ca.SX]) -> list[ca.SX]:
+def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:
     """Derivatives of an expression with some variables where all motions are zero."""
     rest = ca.DM.zeros(sum(motion.numel() for motion in motions))
     derivatives = [ca.jacobian(expression, variable) for variable in variables]

@@ -39,14 +39,15 @@ def length_of(model: Model, target: scenes.Target) -> float:
     return lengths[target.rod] if target.rod is not None else max(lengths.values())
 
 
-def deviations(model: Model, x: Matrix, inputs: Matrix) -> ca.MX:
+def deviations(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
     """Weighted deviations from all targets, without unit; half their sum of squares is what an optimiser lessens.
 
     Positions count relative to the rod's length. Orientations by the chord 2 sin(θ/2) of the angle θ between them,
     which is smooth at every angle. The points of a curve count together as much as one point.
     """
     parts = [np.sqrt(target.weight) * _deviation(model, target, x, inputs) for target in model.scene.targets]
-    return ca.vertcat(*parts)
+    stacked: Matrix = ca.vertcat(*parts)
+    return stacked
 
 
 def gaps(solution: Solution) -> tuple[Gap, ...]:
@@ -54,12 +55,13 @@ def gaps(solution: Solution) -> tuple[Gap, ...]:
     return tuple(_gap(solution, target) for target in solution.model.scene.targets)
 
 
-def _deviation(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> ca.MX:
+def _deviation(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> Matrix:
     length = length_of(model, target)
     if isinstance(target, scenes.CurveTarget):
         shape, count = model.shape[target.rod], len(target.at)
         points = [shape(x, inputs, X)[0] - ca.DM(point) for X, point in zip(target.at, target.points, strict=True)]
-        return ca.vertcat(*points) / (length * np.sqrt(count))
+        deviation: Matrix = ca.vertcat(*points) / (length * np.sqrt(count))
+        return deviation
     position, quaternion = _pose(model, target, x, inputs)
     moved = (position - ca.DM(target.position)) / length
     if isinstance(target, scenes.PositionTarget):

@@ -79,7 +79,8 @@ def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
     stiffness = ca.diag(ca.DM(_shares(model))) @ jacobian[free, free]
     gaps = ca.vertcat(jacobian[held, free], _growth(model, x)[:, free])
     corner = ca.MX(gaps.shape[0], gaps.shape[0])
-    return ca.densify(ca.blockcat([[(stiffness + stiffness.T) / 2, gaps.T], [gaps, corner]]))
+    bordered: Matrix = ca.blockcat([[(stiffness + stiffness.T) / 2, gaps.T], [gaps, corner]])
+    return ca.densify(bordered)
 
 
 def _growth(model: Model, x: Matrix) -> Matrix:

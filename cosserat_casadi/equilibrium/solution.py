@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
@@ -114,8 +115,9 @@ class Solution:
         name = self.model.rod_name(rod)
         discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.unknowns.strain(name)
         ratio = self.model.length_ratio(name, self.inputs)
-        strain: FloatArray = discrete_rod.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float)), ratio).full().T
-        return strain
+        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+        strain = discrete_rod.at(ca.DM(self.x[columns]), abscissae, ratio)
+        return ca.DM(strain).full().T
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""

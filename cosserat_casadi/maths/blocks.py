@@ -1,34 +1,31 @@
 """Block operators on fields, stacked component by component.
 
-A field of m components at k places is one column of m·k entries: the first component at all places, then the
-second. A matrix that acts place by place is then a sparse m×n arrangement of diagonal blocks; products with it cost
-only its entries.
+A field of m components at k points is one column of m·k entries: the first component at all points, then the
+second. A matrix that acts point by point is then a sparse m×n arrangement of diagonal blocks; products with it cost
+only its entries. The points are the nodes of a grid, or the intervals between them.
 """
 
 from __future__ import annotations
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from cosserat_casadi.maths.typing import FloatArray, Matrix
-
-Places = npt.NDArray[np.int64]
-"""Indices of rows."""
+from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.typing import AnyMatrix, FloatArray, Matrix
 
 
-def stack(field: Matrix) -> Matrix:
+def stack(field: AnyMatrix) -> AnyMatrix:
     """Column of m·k entries from an m×k field."""
     return ca.vec(field.T)
 
 
-def unstack(column: Matrix, components: int) -> Matrix:
+def unstack(column: AnyMatrix, components: int) -> AnyMatrix:
     """The m×k field of a column of m·k entries."""
     return ca.reshape(column, -1, components).T
 
 
 def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
-    """Operator that acts at each place by a matrix of its own.
+    """Operator that acts at each point by a matrix of its own.
 
     Args:
         blocks: the matrices side by side, m×(n·k), every one with the sparsity ``pattern``.
@@ -37,44 +34,54 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
     Returns:
         (m·k)×(n·k), acting on stacked fields.
     """
-    places = blocks.size2() // pattern.size2()
+    rows_of_block, columns_of_block = pattern.shape
+    points = blocks.size2() // columns_of_block
+    shape = (rows_of_block * points, columns_of_block * points)
     if pattern.nnz() == 0:
-        return ca.DM(pattern.size1() * places, pattern.size2() * places)
-    r, c = (np.asarray(indices) for indices in pattern.get_triplet())
-    place = np.repeat(np.arange(places), len(r))
-    rows = np.tile(r, places) * places + place
-    columns = np.tile(c, places) * places + place
-    shape = (pattern.size1() * places, pattern.size2() * places)
+        return ca.DM(*shape)
+    block_rows, block_columns = (np.asarray(indices) for indices in pattern.get_triplet())
+    # Entry (r, c) of the block of a point stands in the diagonal block (r, c), on the row of that point.
+    point = np.repeat(np.arange(points), len(block_rows))
+    rows = np.tile(block_rows, points) * points + point
+    columns = np.tile(block_columns, points) * points + point
     sparsity, order = ca.Sparsity.triplet(*shape, rows.tolist(), columns.tolist(), False)
-    return type(blocks)(sparsity, ca.vec(blocks.nz[order]))
+    entries = ca.vec(blocks.nz[order])
+    return type(blocks)(sparsity, entries)
 
 
-def hat_operator(field: Matrix) -> Matrix:
-    """Operator v ↦ field × v on stacked fields, from a 3×k field: (3k)×(3k)."""
+def hat_operator(field: AnyMatrix) -> AnyMatrix:
+    """Operator v ↦ field × v on stacked fields, from a 3×k field: (3k)×(3k), report (A.4) at every point."""
     x, y, z = (ca.diag(row) for row in ca.vertsplit(field))
     zero = type(x)(x.shape[0], x.shape[0])
-    return ca.blockcat([[zero, -z, y], [z, zero, -x], [-y, x, zero]])
+    rows = [
+        [zero, -z, y],
+        [z, zero, -x],
+        [-y, x, zero],
+    ]
+    return ca.blockcat(rows)
 
 
-def cumulative_sum(columns: Matrix, places: int) -> Matrix:
-    """Running sums over the places of stacked fields, one field a column.
-
-    Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
-    """
-    return ca.vertcat(*[ca.cumsum(ca.densify(part), 0) for part in ca.vertsplit(columns, places)])
-
-
-def reversed_places(columns: Matrix, places: int) -> Matrix:
-    """Stacked fields with the order of the places turned round."""
-    parts = ca.vertsplit(columns, places)
-    return ca.vertcat(*[part[::-1, :] for part in parts])
+def cumulative_sum(columns: AnyMatrix, points: int) -> AnyMatrix:
+    """Running sums over the points of stacked fields, one field a column."""
+    # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
+    parts = ca.vertsplit(columns, points)
+    sums = [ca.cumsum(ca.densify(part), 0) for part in parts]
+    return ca.vertcat(*sums)
 
 
-def mirror_factors(matrix: FloatArray, mirror: Places, signs: FloatArray, parities: FloatArray) -> tuple[ca.DM, ca.DM]:
+def reversed_places(columns: AnyMatrix, points: int) -> AnyMatrix:
+    """Stacked fields with the order of the points turned round."""
+    parts = ca.vertsplit(columns, points)
+    turned = [part[::-1, :] for part in parts]
+    return ca.vertcat(*turned)
+
+
+def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parities: FloatArray) -> tuple[ca.DM, ca.DM]:
     """Factors (fold, half) with foldᵀ half = matrix, where products with even and odd columns cost half.
 
     Row mirror[r] of column j is signs[r]·parities[j] times its row r. Even columns meet signed sums of mirrored rows,
     odd ones differences: ``fold`` forms both, ``half`` holds the entries, without what is not zero by rounding alone.
+    See the end of docs/theory.md, section 7.
 
     Args:
         matrix: k×n.
@@ -86,28 +93,53 @@ def mirror_factors(matrix: FloatArray, mirror: Places, signs: FloatArray, pariti
         fold and half, sparse.
     """
     rows = np.arange(len(matrix))
-    first, middle = rows[rows < mirror], rows[rows == mirror]
-    second, sign = mirror[first], signs[first, None]
+    first = rows[rows < mirror]
+    second = mirror[first]
+    middle = rows[rows == mirror]
+    pair_signs = signs[first]
     even = parities > 0
-    half = [
-        (matrix[first] + sign * matrix[second]) / 2 * even,
-        (matrix[first] - sign * matrix[second]) / 2 * ~even,
-        matrix[middle] * (signs[middle, None] == parities),
-    ]
-    return _fold(first, second, signs[first], middle), sparse(np.vstack(half))
+    mirrored = pair_signs[:, None] * matrix[second]
+    # Half of the sum is the even part of a column, half of the difference the odd one: what rounding left in the
+    # other is cut.
+    sums = (matrix[first] + mirrored) / 2 * even
+    differences = (matrix[first] - mirrored) / 2 * ~even
+    # A row that mirrors itself is zero in the columns of the other parity.
+    own = matrix[middle] * (signs[middle, None] == parities)
+    half = np.vstack([sums, differences, own])
+    return _fold(first, second, pair_signs, middle), sparse(half)
 
 
 def sparse(matrix: FloatArray) -> ca.DM:
     """A matrix without its zeros; far faster than through a dense one where it is large."""
     rows, columns = np.nonzero(matrix)
-    return ca.DM.triplet(rows.tolist(), columns.tolist(), ca.DM(matrix[rows, columns]), *matrix.shape)
+    entries = ca.DM(matrix[rows, columns])
+    return ca.DM.triplet(
+        rows.tolist(),
+        columns.tolist(),
+        entries,
+        *matrix.shape,
+    )
 
 
-def _fold(first: Places, second: Places, signs: FloatArray, middle: Places) -> ca.DM:
-    """Signed sums of mirrored rows, then their differences, then the rows that mirror themselves."""
-    pairs, count = np.arange(len(first)), 2 * len(first) + len(middle)
-    rows = np.concatenate([pairs, pairs, len(pairs) + pairs, len(pairs) + pairs, np.arange(2 * len(pairs), count)])
+def _fold(first: Indices, second: Indices, signs: FloatArray, middle: Indices) -> ca.DM:
+    """Signed sums of mirrored rows, then their differences, then the rows that mirror themselves.
+
+    Args:
+        first: the first row of every pair, shape (p,).
+        second: the row that mirrors it, shape (p,).
+        signs: 1 or −1 of every pair, shape (p,).
+        middle: the rows that mirror themselves, shape (s,).
+
+    Returns:
+        (2p + s)×(2p + s).
+    """
+    pairs = len(first)
+    count = 2 * pairs + len(middle)
+    sums = np.arange(pairs)
+    differences = pairs + sums
+    own = np.arange(2 * pairs, count)
+    ones = np.ones(pairs)
+    rows = np.concatenate([sums, sums, differences, differences, own])
     columns = np.concatenate([first, second, first, second, middle])
-    ones = np.ones(len(first))
     entries = np.concatenate([ones, signs, ones, -signs, np.ones(len(middle))])
     return ca.DM.triplet(rows.tolist(), columns.tolist(), ca.DM(entries), count, count)

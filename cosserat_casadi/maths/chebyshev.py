@@ -3,6 +3,10 @@
 ``N`` is the number of intervals. The ``N + 1`` Gauss–Lobatto points run from base to tip,
 ``X_j = (1 − cos(πj/N)) / 2``, ends included. Report appendix B has them from tip to base on [−1, 1]; here
 ``x = 2X − 1`` and every derivative carries ``dx/dX = 2``. Matrices act on columns of values at the points.
+See docs/theory.md, sections 3 and 12 (the errata of appendix B).
+
+All cosines are made from sines of small angles: near the ends of [0, 1] the points lie as close as 1/N², and a
+difference of two cosines would lose as many digits.
 """
 
 from __future__ import annotations
@@ -15,10 +19,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 
+# How far an abscissa may lie outside [0, 1], and below what distance it is taken for a point.
 _ROUNDING = 1e-12
+_SAME_POINT = 1e-300
 
 
-def _check_intervals(N: int) -> None:
+def check_intervals(N: int) -> None:
     """Refuse a number of intervals below one."""
     if N < 1:
         raise ValueError(f"at least one interval is needed, but N = {N}")
@@ -27,7 +33,9 @@ def _check_intervals(N: int) -> None:
 def _half_angle_sine(N: int, m: npt.NDArray[np.int_]) -> FloatArray:
     """The values sin(πm / 2N) for integers |m| ≤ 2N, to full relative accuracy."""
     size = np.abs(m)
-    sines: FloatArray = np.sign(m) * np.sin(np.pi / (2 * N) * np.minimum(size, 2 * N - size))
+    # Folded into [0, π/2], where the sine of a rounded angle is as exact as the angle.
+    folded = np.minimum(size, 2 * N - size)
+    sines: FloatArray = np.sign(m) * np.sin(np.pi / (2 * N) * folded)
     return sines
 
 
@@ -35,15 +43,19 @@ def _cosine_matrix(N: int) -> FloatArray:
     """The values cos(πjk/N) at row j, column k, from angles folded into [0, π/2]."""
     j = np.arange(N + 1)
     m = np.outer(j, j) % (2 * N)
-    m = np.minimum(m, 2 * N - m)
-    return _half_angle_sine(N, N - 2 * m)
+    folded = np.minimum(m, 2 * N - m)
+    # cos α = sin(π/2 − α)
+    return _half_angle_sine(N, N - 2 * folded)
 
 
 def _differences(N: int) -> FloatArray:
     """The differences X_i − X_j without cancellation, and ones on the diagonal."""
     j = np.arange(N + 1)
     i = j[:, None]
-    return _half_angle_sine(N, i + j) * _half_angle_sine(N, i - j) + np.eye(N + 1)
+    # (cos a − cos b) / 2 = sin((a + b)/2) sin((b − a)/2)
+    of_sum = _half_angle_sine(N, i + j)
+    of_difference = _half_angle_sine(N, i - j)
+    return of_sum * of_difference + np.eye(N + 1)
 
 
 def nodes(N: int) -> FloatArray:
@@ -55,10 +67,13 @@ def nodes(N: int) -> FloatArray:
     Returns:
         (N + 1,) increasing from 0 to 1, symmetric about ½ to rounding.
     """
-    _check_intervals(N)
+    check_intervals(N)
     j = np.arange(N + 1)
-    nearer = _half_angle_sine(N, np.minimum(j, N - j)) ** 2
-    return np.where(2 * j < N, nearer, np.where(2 * j == N, 0.5, 1 - nearer))
+    # (1 − cos α) / 2 = sin²(α/2), measured from the nearer end.
+    from_nearer_end = _half_angle_sine(N, np.minimum(j, N - j)) ** 2
+    points = np.where(2 * j < N, from_nearer_end, 1 - from_nearer_end)
+    points[2 * j == N] = 0.5
+    return points
 
 
 def barycentric_weights(N: int) -> FloatArray:
@@ -70,7 +85,7 @@ def barycentric_weights(N: int) -> FloatArray:
     Returns:
         (N + 1,).
     """
-    _check_intervals(N)
+    check_intervals(N)
     weights: FloatArray = np.where(np.arange(N + 1) % 2 == 0, 1.0, -1.0)
     weights[[0, -1]] /= 2
     return weights
@@ -79,8 +94,9 @@ def barycentric_weights(N: int) -> FloatArray:
 def differentiation_matrix(N: int, order: int = 1) -> FloatArray:
     """The matrix that differentiates the interpolant with respect to X: report (B.13)–(B.17) corrected.
 
-    Welfert's recursion over the orders, with differences of points from sines and each diagonal entry
-    the negative sum of the others: constants have a zero derivative, and the error is the smallest known.
+    Recursion over the orders (B. D. Welfert, SIAM J. Numer. Anal. 34 (1997) 1640), with differences of points from
+    sines and each diagonal entry the negative sum of the others (R. Baltensperger, M. R. Trummer, SIAM J. Sci.
+    Comput. 24 (2003) 1465): constants have a zero derivative, and the error is the smallest known.
 
     Args:
         N: number of intervals, at least 1.
@@ -92,7 +108,7 @@ def differentiation_matrix(N: int, order: int = 1) -> FloatArray:
     Raises:
         ValueError: ``N`` or ``order`` is below 1.
     """
-    _check_intervals(N)
+    check_intervals(N)
     if order < 1:
         raise ValueError(f"the order of a derivative is at least 1, but it is {order}")
     weights = barycentric_weights(N)
@@ -100,19 +116,24 @@ def differentiation_matrix(N: int, order: int = 1) -> FloatArray:
     differences = _differences(N)
     D = np.eye(N + 1)
     for k in range(1, order + 1):
-        D = _with_zero_row_sums(k * (ratios * np.diag(D)[:, None] - D) / differences)
+        off_diagonal = k * (ratios * np.diag(D)[:, None] - D) / differences
+        D = _with_zero_row_sums(off_diagonal)
     return D
 
 
 def _with_zero_row_sums(matrix: FloatArray) -> FloatArray:
     """The matrix with its diagonal replaced by the negative sum of the rest of each row."""
     np.fill_diagonal(matrix, 0.0)
-    np.fill_diagonal(matrix, [-fsum(row) for row in matrix])
+    diagonal = [-fsum(row) for row in matrix]
+    np.fill_diagonal(matrix, diagonal)
     return matrix
 
 
 def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
     """The matrix from values at the points to values of the interpolant elsewhere, exact at the points.
+
+    The second barycentric formula (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501), which is (B.4)
+    without its loss of digits.
 
     Args:
         N: number of intervals, at least 1.
@@ -124,19 +145,21 @@ def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
     Raises:
         ValueError: an abscissa outside [0, 1], where interpolation would be extrapolation.
     """
-    at = np.atleast_1d(np.asarray(X, dtype=float))
-    if not np.all((at >= -_ROUNDING) & (at <= 1 + _ROUNDING)):
-        raise ValueError(f"abscissae lie between 0 and 1, but these are {at.tolist()}")
-    gaps = at[:, None] - nodes(N)
-    on_node = np.abs(gaps) < 1e-300
+    abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+    inside = (abscissae >= -_ROUNDING) & (abscissae <= 1 + _ROUNDING)
+    if not np.all(inside):
+        raise ValueError(f"abscissae lie between 0 and 1, but these are {abscissae.tolist()}")
+    gaps = abscissae[:, None] - nodes(N)
+    on_node = np.abs(gaps) < _SAME_POINT
     terms: FloatArray = barycentric_weights(N) / np.where(on_node, 1.0, gaps)
+    # The row of an abscissa on a node picks the value there.
     terms = np.where(on_node.any(axis=1, keepdims=True), on_node, terms)
     terms /= terms.sum(axis=1, keepdims=True)
     return terms
 
 
 def quadrature_weights(N: int) -> FloatArray:
-    """The weights of Clenshaw–Curtis quadrature on [0, 1].
+    """The weights of Clenshaw–Curtis quadrature on [0, 1]: C. W. Clenshaw, A. R. Curtis, Numer. Math. 2 (1960) 197.
 
     Args:
         N: number of intervals, at least 1.
@@ -144,8 +167,9 @@ def quadrature_weights(N: int) -> FloatArray:
     Returns:
         (N + 1,) positive, of sum 1; exact for polynomials up to degree N, N + 1 if N is even.
     """
-    _check_intervals(N)
+    check_intervals(N)
     k = np.arange(2, N + 1, 2)
+    # ∫₀¹ T_k dX is −1/(k² − 1) for an even k and zero for an odd one; the last coefficient counts half.
     factors = np.where(k == N, 1.0, 2.0) / (k * k - 1.0)
     weights: FloatArray = (1 - _cosine_matrix(N)[:, k] @ factors) / N
     weights[[0, -1]] /= 2
@@ -164,50 +188,26 @@ def integration_matrix(N: int) -> FloatArray:
     Returns:
         (N + 1, N + 1); the first row is zero, the last holds the quadrature weights.
     """
-    _check_intervals(N)
+    check_intervals(N)
     j = np.arange(N + 1)
     # ∫₀^φ cos kψ sin ψ dψ = sin²((k+1)φ/2)/(k+1) − sin²((k−1)φ/2)/(k−1), and x = −cos φ, dX = dx/2.
-    squares = _half_angle_sine(N, np.outer(j, np.arange(N + 2)) % (2 * N)) ** 2
+    angles = np.outer(j, np.arange(N + 2)) % (2 * N)
+    squares = _half_angle_sine(N, angles) ** 2
     upper = squares[:, j + 1] / (j + 1)
-    lower = np.where(j == 1, 0.0, squares[:, np.abs(j - 1)] / np.where(j == 1, 1, j - 1))
+    # For k = 1 the second term is zero, and so would be its denominator.
+    divisors = np.where(j == 1, 1, j - 1)
+    lower = np.where(j == 1, 0.0, squares[:, np.abs(j - 1)] / divisors)
     antiderivatives: FloatArray = (upper - lower) / 2
     return antiderivatives @ _cosine_transform(N)
 
 
 def _cosine_transform(N: int) -> FloatArray:
     """The matrix from values at the points to coefficients of cos kφ, where x = −cos φ."""
+    # The discrete cosine transform of the first kind: both ends count half, in the values and in the coefficients.
     halves = np.ones(N + 1)
     halves[[0, -1]] = 0.5
-    return np.outer(halves, halves) * _cosine_matrix(N) * (2 / N)
-
-
-def backward_integration_matrix(N: int) -> FloatArray:
-    """The integrals to the tip, ∫_{X_i}¹, of the interpolant of degree N through all points.
-
-    Args:
-        N: number of intervals, at least 1.
-
-    Returns:
-        (N + 1, N + 1); the last row is zero, the first holds the quadrature weights.
-    """
-    return integration_matrix(N)[::-1, ::-1].copy()
-
-
-def collocation_integration_matrix(N: int) -> FloatArray:
-    """The inverse of D_NN of report (3.16), known at the base, without inverting anything.
-
-    Integrates from the base the interpolant of degree N − 1 through the points 1 … N. The base value of
-    that polynomial follows from the others: the N-th divided difference of all N + 1 values vanishes.
-
-    Args:
-        N: number of intervals, at least 1.
-
-    Returns:
-        (N, N), rows and columns for the points 1 … N.
-    """
-    S = integration_matrix(N)
-    weights = barycentric_weights(N)
-    return S[1:, 1:] - np.outer(S[1:, 0], weights[1:] / weights[0])
+    shares = np.outer(halves, halves)
+    return shares * _cosine_matrix(N) * (2 / N)
 
 
 def chebyshev_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
@@ -220,7 +220,11 @@ def chebyshev_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
     Returns:
         (m, n).
     """
-    return _recurrence(n, X, lambda k, x, now, before: 2 * x * now - before)
+
+    def successor(k: int, x: FloatArray, value: FloatArray, before: FloatArray) -> FloatArray:
+        return 2 * x * value - before
+
+    return _recurrence(n, X, successor)
 
 
 def legendre_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
@@ -233,7 +237,12 @@ def legendre_polynomials(n: int, X: npt.ArrayLike) -> FloatArray:
     Returns:
         (m, n).
     """
-    return _recurrence(n, X, lambda k, x, now, before: ((2 * k + 1) * x * now - k * before) / (k + 1))
+
+    def successor(k: int, x: FloatArray, value: FloatArray, before: FloatArray) -> FloatArray:
+        growth = (2 * k + 1) * x * value
+        return (growth - k * before) / (k + 1)
+
+    return _recurrence(n, X, successor)
 
 
 def _recurrence(
@@ -247,7 +256,8 @@ def _recurrence(
     x = 2 * np.atleast_1d(np.asarray(X, dtype=float)) - 1
     values = [np.ones_like(x), x]
     for k in range(1, n - 1):
-        values.append(successor(k, x, values[k], values[k - 1]))
+        following = successor(k, x, values[k], values[k - 1])
+        values.append(following)
     return np.stack(values[:n], axis=1)
 
 
@@ -262,24 +272,8 @@ def chebyshev_coefficients(values: npt.ArrayLike) -> FloatArray:
     """
     v = np.asarray(values, dtype=float)
     N = len(v) - 1
-    _check_intervals(N)
+    check_intervals(N)
+    # The cosines count from the base, where x = −1: T_k(−cos φ) = (−1)^k cos kφ.
     signs = np.where(np.arange(N + 1) % 2 == 0, 1.0, -1.0)
     coefficients: FloatArray = (signs[:, None] * _cosine_transform(N)) @ v
     return coefficients
-
-
-def chebyshev_values(coefficients: npt.ArrayLike) -> FloatArray:
-    """The values at the points of Σ coefficients[k] T_k(2X − 1): inverse of ``chebyshev_coefficients``.
-
-    Args:
-        coefficients: (N + 1,) or (N + 1, m), N at least 1.
-
-    Returns:
-        shaped as ``coefficients``, base to tip.
-    """
-    c = np.asarray(coefficients, dtype=float)
-    N = len(c) - 1
-    _check_intervals(N)
-    signs = np.where(np.arange(N + 1) % 2 == 0, 1.0, -1.0)
-    values: FloatArray = (_cosine_matrix(N) * signs) @ c
-    return values

@@ -2,26 +2,28 @@
 
 An element ends where something jumps (a point load), so every field is smooth inside an element and spectral
 accuracy is kept. The node at a break appears twice, as the left and as the right limit. With one element this is
-the plain Chebyshev grid.
+the plain Chebyshev grid. See docs/theory.md, section 3.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.typing import FloatArray
 
-Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
+"""Indices of rows: of nodes, of intervals, of sections."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Elements on [0, 1] with the same number of Chebyshev intervals each.
+    """Elements on [0, 1] with the same number N of Chebyshev intervals, and so of N + 1 nodes, each.
 
     Attributes:
         breaks: element ends, ascending, first 0 and last 1.
@@ -39,77 +41,107 @@ class Grid:
     @property
     def size(self) -> int:
         """Number of nodes M = E (N + 1)."""
-        return self.elements * (self.intervals + 1)
+        return self.elements * self._nodes_per_element
 
     @cached_property
-    def nodes(self) -> Array:
+    def nodes(self) -> FloatArray:
         """Abscissae of the nodes, base to tip, shape (M,)."""
         local = chebyshev.nodes(self.intervals)
-        return np.concatenate([a + (b - a) * local for a, b in self._spans()])
+        parts = [start + (end - start) * local for start, end in self._spans()]
+        return np.concatenate(parts)
 
     @cached_property
-    def weights(self) -> Array:
+    def weights(self) -> FloatArray:
         """Clenshaw–Curtis weights of the whole grid, shape (M,), sum 1."""
         local = chebyshev.quadrature_weights(self.intervals)
-        return np.concatenate([(b - a) * local for a, b in self._spans()])
+        parts = [(end - start) * local for start, end in self._spans()]
+        return np.concatenate(parts)
 
     @cached_property
-    def integration_matrix(self) -> Array:
+    def integration_matrix(self) -> FloatArray:
         """Matrix S of the integral from the base, shape (M, M): (S f)_i ≈ ∫₀^{X_i} f dX."""
         local = chebyshev.integration_matrix(self.intervals)
-        width = self.intervals + 1
         matrix = np.zeros((self.size, self.size))
-        for e, (a, b) in enumerate(self._spans()):
-            rows = slice(e * width, (e + 1) * width)
-            matrix[rows, rows] = (b - a) * local
-            matrix[rows, : e * width] = self.weights[: e * width]
+        for element, (start, end) in enumerate(self._spans()):
+            rows = self._nodes_of(element)
+            matrix[rows, rows] = (end - start) * local
+            # What the elements before it add is the same at all of its nodes.
+            before = slice(0, rows.start)
+            matrix[rows, before] = self.weights[before]
         return matrix
 
     @cached_property
-    def left_ends(self) -> Array:
+    def left_ends(self) -> FloatArray:
         """Base-side ends of the E·N intervals between neighbouring nodes."""
-        return self.nodes.reshape(self.elements, -1)[:, :-1].ravel()
+        by_element = self.nodes.reshape(self.elements, -1)
+        return by_element[:, :-1].ravel()
 
     @cached_property
-    def right_ends(self) -> Array:
+    def right_ends(self) -> FloatArray:
         """Tip-side ends of the E·N intervals between neighbouring nodes."""
-        return self.nodes.reshape(self.elements, -1)[:, 1:].ravel()
+        by_element = self.nodes.reshape(self.elements, -1)
+        return by_element[:, 1:].ravel()
 
     @cached_property
     def section_of_node(self) -> Indices:
         """Index of each node among the E·N + 1 distinct sections, shape (M,)."""
-        first = np.arange(self.elements)[:, None] * self.intervals
-        return (first + np.arange(self.intervals + 1)).ravel().astype(np.int64)
+        # The last node of an element and the first of the next are one section.
+        first = self.intervals * np.arange(self.elements, dtype=np.int64)
+        local = np.arange(self._nodes_per_element)
+        sections = first[:, None] + local
+        return sections.ravel()
 
     @cached_property
     def mirrored_intervals(self) -> Indices:
         """Index of the interval that mirrors each one about the middle of its element, shape (E·N,)."""
-        return np.arange(self.elements * self.intervals).reshape(self.elements, -1)[:, ::-1].ravel().astype(np.int64)
+        return self._mirrored(self.elements * self.intervals)
 
     @cached_property
     def mirrored_nodes(self) -> Indices:
         """Index of the node that mirrors each one about the middle of its element, shape (M,)."""
-        return np.arange(self.size).reshape(self.elements, -1)[:, ::-1].ravel().astype(np.int64)
+        return self._mirrored(self.size)
 
     def node_at(self, abscissa: float) -> int:
         """Index of the node that ends the element whose tip is at ``abscissa`` (a break, not 0)."""
-        element = self.breaks.index(abscissa)
-        return element * (self.intervals + 1) - 1
+        elements_before = self.breaks.index(abscissa)
+        return elements_before * self._nodes_per_element - 1
 
-    def element_of(self, X: Array) -> Indices:
+    def element_of(self, X: FloatArray) -> Indices:
         """Element in which each abscissa lies; a break belongs to the element it ends."""
         inner = np.asarray(self.breaks[1:-1])
-        return np.searchsorted(inner, X, side="left").astype(np.int64)
+        # From the left: an abscissa that equals a break stands before it.
+        elements = np.searchsorted(inner, X, side="left")
+        return elements.astype(np.int64)
 
-    def interpolation_matrix(self, X: Array) -> Array:
+    def interpolation_matrix(self, X: FloatArray) -> FloatArray:
         """Matrix from nodal values to values at abscissae X in [0, 1], shape (len(X), M)."""
-        width = self.intervals + 1
         matrix = np.zeros((len(X), self.size))
-        for row, (x, e) in enumerate(zip(X, self.element_of(X), strict=True)):
-            a, b = self.breaks[e], self.breaks[e + 1]
-            local = chebyshev.interpolation_matrix(self.intervals, np.array([(x - a) / (b - a)]))
-            matrix[row, e * width : (e + 1) * width] = local[0]
+        elements = self.element_of(X)
+        spans = self._spans()
+        for row, element in enumerate(elements):
+            start, end = spans[element]
+            local = (X[row] - start) / (end - start)
+            columns = self._nodes_of(element)
+            matrix[row, columns] = chebyshev.interpolation_matrix(self.intervals, [local])
         return matrix
 
+    @property
+    def _nodes_per_element(self) -> int:
+        """N + 1."""
+        return self.intervals + 1
+
+    def _nodes_of(self, element: int) -> slice:
+        """The nodes of an element among all nodes."""
+        first = element * self._nodes_per_element
+        return slice(first, first + self._nodes_per_element)
+
+    def _mirrored(self, count: int) -> Indices:
+        """The numbers 0 … count − 1, in equal runs, one an element, with the order turned round in each."""
+        numbers = np.arange(count, dtype=np.int64)
+        by_element = numbers.reshape(self.elements, -1)
+        mirrored = by_element[:, ::-1]
+        return mirrored.ravel()
+
     def _spans(self) -> list[tuple[float, float]]:
-        return list(zip(self.breaks[:-1], self.breaks[1:], strict=True))
+        """Start and end of every element, base to tip."""
+        return list(pairwise(self.breaks))

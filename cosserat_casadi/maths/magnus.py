@@ -8,21 +8,22 @@ here the rate multiplies from the right, so that the commutator [a, b] becomes �
 
 Why this and not a linear solve: the increments are rotations to rounding whatever the step, the cost is linear
 in the number of nodes, and the derivative of the product of exponentials is known in closed form.
+See docs/theory.md, sections 4 and 7.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import factorial
+from typing import Any
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from cosserat_casadi.maths.rotation import cross, dot, hat, horner
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.rotation import cross, dot, hat
+from cosserat_casadi.maths.typing import AnyMatrix, FloatArray, Matrix
 
 ORDERS = (4, 6, 8)
 
@@ -34,7 +35,7 @@ def coefficient_count(order: int) -> int:
     return order // 2
 
 
-def taylor_from_samples(count: int, points: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray]:
     """Gauss points on τ ∈ [−½, ½] and the matrix from samples of h K there to α₁ … α_count.
 
     The α are those whose polynomial has the same moments ∫ τⁱ h K dτ, i < count, as the sampled function; so the
@@ -47,16 +48,20 @@ def taylor_from_samples(count: int, points: int) -> tuple[npt.NDArray[np.float64
     Returns:
         the points, shape (points,), and the matrix, shape (count, points).
     """
+    # Gauss–Legendre on [−1, 1], halved.
     x, weights = legendre.leggauss(points)
-    tau = x / 2
+    tau = np.asarray(x / 2, dtype=np.float64)
     powers = np.arange(count)
-    moments = (weights / 2) * tau ** powers[:, None]
+    samples_of_powers = tau ** powers[:, None]
+    moments = (weights / 2) * samples_of_powers
+    # The Gram matrix of the powers of τ: ∫ τᵖ dτ over [−½, ½] is (½)ᵖ / (p + 1) for an even p, else zero.
     total = powers[:, None] + powers[None, :]
     gram = np.where(total % 2 == 0, 0.5**total / (total + 1), 0.0)
-    return np.asarray(tau, dtype=np.float64), np.asarray(np.linalg.solve(gram, moments), dtype=np.float64)
+    matrix = np.linalg.solve(gram, moments)
+    return tau, np.asarray(matrix, dtype=np.float64)
 
 
-def rotation_increment(alpha: list[Matrix]) -> Matrix:
+def rotation_increment(alpha: Sequence[AnyMatrix]) -> AnyMatrix:
     """Magnus rotation vector Ω of one interval, of order 2·len(alpha).
 
     Args:
@@ -66,51 +71,80 @@ def rotation_increment(alpha: list[Matrix]) -> Matrix:
     Returns:
         Ω, 3×k, such that R(X + h) ≈ R(X) exp(Ω^).
     """
-    return _INCREMENTS[len(alpha)](*alpha)
+    omega: AnyMatrix = _INCREMENTS[len(alpha)](*alpha)
+    return omega
 
 
-def _bracket(a: Matrix, b: Matrix) -> Matrix:
+def _bracket(a: AnyMatrix, b: AnyMatrix) -> AnyMatrix:
+    """Commutator of two rates that multiply from the right."""
     return -cross(a, b)
 
 
-def _order_four(a1: Matrix, a2: Matrix) -> Matrix:
+def _commuting(a1: AnyMatrix) -> AnyMatrix:
+    """Without commutators: exact where K keeps its direction."""
+    return a1
+
+
+def _order_four(a1: AnyMatrix, a2: AnyMatrix) -> AnyMatrix:
+    """The series up to h⁴: α₁ − [α₁, α₂]/12."""
     return a1 - _bracket(a1, a2) / 12
 
 
-def _order_six(a1: Matrix, a2: Matrix, a3: Matrix) -> Matrix:
-    """The series with its nested products multiplied out, a × (b × c) = b (a·c) − c (a·b): fewer operations."""
+def _order_six(a1: AnyMatrix, a2: AnyMatrix, a3: AnyMatrix) -> AnyMatrix:
+    """The series up to h⁶.
+
+    Its nested products are multiplied out, a × (b × c) = b (a·c) − c (a·b): fewer operations. What is left is a sum
+    of the α, each times a scalar, and one cross product with α₂.
+    """
     square = dot(a1, a1) / 720
-    along = 1 + dot(a1, a3) / 360 - dot(a2, a2) / 240, dot(a1, a2) / 240, 1 / 12 - 2 * square
+    factor_1 = 1 + dot(a1, a3) / 360 - dot(a2, a2) / 240
+    factor_2 = dot(a1, a2) / 240
+    factor_3 = 1 / 12 - 2 * square
     across = _times(1 / 12 + square, a1) + a3 / 240
-    return _times(along[0], a1) + _times(along[1], a2) + _times(along[2], a3) + cross(across, a2)
+    return _times(factor_1, a1) + _times(factor_2, a2) + _times(factor_3, a3) + cross(across, a2)
 
 
-def _times(factor: Matrix, vectors: Matrix) -> Matrix:
-    """Each column of ``vectors`` times its own factor."""
-    return ca.vertcat(*[factor * row for row in ca.vertsplit(vectors)])
-
-
-def _order_eight(a1: Matrix, a2: Matrix, a3: Matrix, a4: Matrix) -> Matrix:
+def _order_eight(a1: AnyMatrix, a2: AnyMatrix, a3: AnyMatrix, a4: AnyMatrix) -> AnyMatrix:
+    """The series up to h⁸ with four nested commutators (Blanes, Casas and Ros 2000)."""
+    # The names are those of the paper.
     b2 = a2 + 3 / 28 * a4
     s1 = _bracket(a1 + a3 / 28, b2) / -28
     r1 = _bracket(a1, s1 - a3 / 14) / 3
     s2 = _bracket(a1 + a3 / 28 + s1, b2 + r1)
-    r2 = _bracket(a1 + 1.25 * s1, 2 * a3 + s2 + 0.5 * _bracket(a2, s1))
+    inner = 2 * a3 + s2 + 0.5 * _bracket(a2, s1)
+    r2 = _bracket(a1 + 1.25 * s1, inner)
     mean = a1 + a3 / 12
-    s3 = _bracket(mean - 7 / 3 * s1 - s2 / 6, 63 * r1 + r2 - 9 * a2 - 2.25 * a4)
+    outer = 63 * r1 + r2 - 9 * a2 - 2.25 * a4
+    s3 = _bracket(mean - 7 / 3 * s1 - s2 / 6, outer)
     return mean - 7 / 120 * s2 + s3 / 360
 
 
-def _commuting(a1: Matrix) -> Matrix:
-    return a1
+def _times(factor: AnyMatrix, vectors: AnyMatrix) -> AnyMatrix:
+    """Each column of ``vectors`` times its own factor."""
+    rows = [factor * row for row in ca.vertsplit(vectors)]
+    return ca.vertcat(*rows)
 
 
-_INCREMENTS: dict[int, Callable[..., Matrix]] = {1: _commuting, 2: _order_four, 3: _order_six, 4: _order_eight}
+_INCREMENTS: dict[int, Callable[..., Any]] = {1: _commuting, 2: _order_four, 3: _order_six, 4: _order_eight}
 
 # Series in u = θ² that are exact to rounding for θ ≤ 2: sin(θ/2) / (θ/2), (θ − sin θ)/θ³, and the h of stiffness.
 _HALF_SINE = [(-1) ** n / (4**n * factorial(2 * n + 1)) for n in range(9)]
 _ANGLE_MINUS_SINE = [(-1) ** n / factorial(2 * n + 3) for n in range(10)]
 _SECOND = [-((-1) ** n) * 2 * (n + 1) / factorial(2 * n + 6) for n in range(9)]
+
+
+def horner(coefficients: Sequence[float], u: AnyMatrix) -> AnyMatrix:
+    """Value of Σ coefficients[n] uⁿ, entrywise in u.
+
+    Args:
+        coefficients: two or more, the constant first.
+        u: any shape.
+    """
+    *lower, last = coefficients
+    value = lower[-1] + u * last
+    for coefficient in reversed(lower[:-1]):
+        value = coefficient + u * value
+    return value
 
 
 @dataclass(frozen=True)
@@ -136,42 +170,52 @@ class Increment:
 
         The cosine of the half angle is (sin θ / θ) / (2 sin(θ/2) / θ): what T needs takes the place of its series.
         """
-        cosine = (1 - ca.sumsqr(self.omega) * self.cubic) / self.half_sine
+        sine_over_angle = 1 - ca.sumsqr(self.omega) * self.cubic
+        cosine = sine_over_angle / self.half_sine
         return ca.vertcat(cosine, self.half_sine / 2 * self.omega)
 
     @property
     def tangent(self) -> Matrix:
         """T = 1 + b Ω^ + c Ω^² with δ(exp Ω^) = (T δΩ)^ exp Ω^ and b = (1 − cos θ)/θ², 3×3."""
-        return ca.DM.eye(3) + hat(self._linear * self.omega) + hat(self.cubic * self.omega) @ hat(self.omega)
+        first = hat(self._linear * self.omega)
+        second = hat(self.cubic * self.omega) @ hat(self.omega)
+        return ca.DM.eye(3) + first + second
 
     def pulled(self, moment: Matrix) -> Matrix:
         """The product Tᵀ M: what a moment M (3×1, in the frame in which the increment begins) does on δΩ, 3×1."""
-        return moment + cross(self.omega, self.cubic * cross(self.omega, moment) - self._linear * moment)
+        bent = self.cubic * cross(self.omega, moment) - self._linear * moment
+        return moment + cross(self.omega, bent)
 
     def stiffness(self, moment: Matrix) -> Matrix:
         """The form V with ∂(Tᵀ M)/∂Ω = Tᵀ V T: how the work of a moment on an increment changes with it, 3×3.
 
         V = ½ M^ − k (Ω^ M^ + M^ Ω^) + (M·Ω) h/(2b) Ω^², where h = (c − 2 (1 − 2 b)/θ²)/θ² and k = (c + θ² h)/(4 b).
-        Only Ω and M enter, so that the form turns with them into any frame.
+        Only Ω and M enter, so that the form turns with them into any frame (docs/theory.md, section 7).
 
         Args:
             moment: M, 3×1, in the same frame as Ω.
         """
         square = ca.sumsqr(self.omega)
+        # 1 / (4 b), since b = half_sine² / 2.
         half = 0.5 / self.half_sine**2
         second = horner(_SECOND, square)
         k = half * (self.cubic + square * second)
+        # Both products with Ω^ in one: Ω^ m^ and its transpose m^ Ω^, where m carries half of the last term.
         bent = half * second * ca.dot(moment, self.omega) * self.omega - k * moment
         product = hat(self.omega) @ hat(bent)
         return hat(moment / 2) + product + product.T
 
     @property
     def _linear(self) -> Matrix:
-        """The factor b."""
+        """The factor b = (1 − cos θ)/θ²."""
         return self.half_sine**2 / 2
 
 
 def increment(omega: Matrix) -> Increment:
     """The increment of a rotation vector Ω, 3×1, rad."""
     square = ca.sumsqr(omega)
-    return Increment(omega, horner(_HALF_SINE, square), horner(_ANGLE_MINUS_SINE, square))
+    return Increment(
+        omega=omega,
+        half_sine=horner(_HALF_SINE, square),
+        cubic=horner(_ANGLE_MINUS_SINE, square),
+    )

@@ -4,7 +4,7 @@
 values are stacked component by component (report (3.4)), points from base to tip within each component. The
 permutation then takes the known point first, and after it the other points from base to tip, each with its
 m components together. (Report (3.9) prints the rows of one point exchanged; this order makes A_NN block
-diagonal with the blocks A(X_j) themselves.)
+diagonal with the blocks A(X_j) themselves.) The corrections are in docs/theory.md, section 12.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Literal
 import casadi as ca
 
 from cosserat_casadi.maths.chebyshev import differentiation_matrix
+from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
 
 End = Literal["base", "tip"]
@@ -62,7 +63,7 @@ class PermutedSystem:
         Raises:
             ValueError: ``x_known`` is not (m, 1).
         """
-        _check_shape("x_known", x_known, (self.D_IN.shape[1], 1))
+        check_shape("x_known", x_known, self.D_IN.shape[1], 1)
         return self.D_IN @ x_known
 
     def solve(self, x_known: Matrix) -> Matrix:
@@ -77,10 +78,13 @@ class PermutedSystem:
         Raises:
             ValueError: ``x_known`` is not (m, 1).
         """
-        unknown = _solve(self.D_NN - self.A_NN, self.beta - self.ivp(x_known))
+        source = self.beta - self.ivp(x_known)
+        unknown = _solve(self.D_NN - self.A_NN, source)
+        # P is a permutation: its inverse is its transpose.
         stacked = self.P.T @ ca.vertcat(x_known, unknown)
-        m = self.D_II.shape[0]
-        return ca.reshape(stacked, stacked.shape[0] // m, m).T
+        components = self.D_II.shape[0]
+        points = stacked.shape[0] // components
+        return ca.reshape(stacked, points, components).T
 
 
 def permuted_system(A: Sequence[Matrix], b: Sequence[Matrix], *, known_at: End = "base") -> PermutedSystem:
@@ -98,11 +102,14 @@ def permuted_system(A: Sequence[Matrix], b: Sequence[Matrix], *, known_at: End =
         ValueError: the lists or the shapes in them do not agree, or the end is neither of the two.
     """
     _check_coefficients(A, b, known_at)
-    N, m = len(A) - 1, A[0].shape[0]
-    known = 0 if known_at == "base" else N
+    N = len(A) - 1
+    m = A[0].shape[0]
+    known = {"base": 0, "tip": N}[known_at]
     unknown = [j for j in range(N + 1) if j != known]
     P = _permutation([known, *unknown], m)
-    D = P @ ca.kron(ca.DM.eye(m), ca.DM(differentiation_matrix(N))) @ P.T
+    # D acts component by component, as (3.4) stacks them; report (3.10) to (3.16), corrected: D_p = P D Pᵀ.
+    by_component = ca.kron(ca.DM.eye(m), ca.DM(differentiation_matrix(N)))
+    D = P @ by_component @ P.T
     return PermutedSystem(
         known_at=known_at,
         P=P,
@@ -110,20 +117,23 @@ def permuted_system(A: Sequence[Matrix], b: Sequence[Matrix], *, known_at: End =
         D_NI=D[:m, m:],
         D_IN=D[m:, :m],
         D_NN=D[m:, m:],
-        A_NN=ca.diagcat(*(A[j] for j in unknown)),
-        beta=ca.vertcat(*(b[j] for j in unknown)),
+        A_NN=ca.diagcat(*[A[j] for j in unknown]),
+        beta=ca.vertcat(*[b[j] for j in unknown]),
     )
 
 
 def _permutation(order: Sequence[int], m: int) -> ca.DM:
     """The matrix from component-by-component stacking to point by point in the given order."""
-    columns = [component * len(order) + point for point in order for component in range(m)]
+    points = len(order)
+    columns = [component * points + point for point in order for component in range(m)]
     size = len(columns)
-    return ca.DM.triplet(list(range(size)), columns, ca.DM.ones(size), size, size)
+    rows = list(range(size))
+    return ca.DM.triplet(rows, columns, ca.DM.ones(size), size, size)
 
 
 def _solve(matrix: Matrix, rhs: Matrix) -> Matrix:
-    """Solve a square system: scalar symbols have no choice of solver, the others take sparse QR."""
+    """The solution of a square system."""
+    # Scalar symbols have no choice of solver; the others take sparse QR.
     if isinstance(matrix, ca.SX) or isinstance(rhs, ca.SX):
         return ca.solve(matrix, rhs)
     return ca.solve(matrix, rhs, "qr")
@@ -137,11 +147,5 @@ def _check_coefficients(A: Sequence[Matrix], b: Sequence[Matrix], known_at: str)
         raise ValueError(f"A and b are given at the same two points or more, not at {len(A)} and {len(b)}")
     m = A[0].shape[0]
     for j, (A_j, b_j) in enumerate(zip(A, b, strict=True)):
-        _check_shape(f"A[{j}]", A_j, (m, m))
-        _check_shape(f"b[{j}]", b_j, (m, 1))
-
-
-def _check_shape(name: str, value: Matrix, shape: tuple[int, int]) -> None:
-    """Refuse a value of another shape than expected."""
-    if value.shape != shape:
-        raise ValueError(f"{name} is {shape[0]}×{shape[1]}, but its shape is {value.shape}")
+        check_shape(f"A[{j}]", A_j, m, m)
+        check_shape(f"b[{j}]", b_j, m, 1)

@@ -67,18 +67,17 @@ class NumericPose:
     @cached_property
     def rotation(self) -> FloatArray:
         """Rotation matrix outer_R_inner, shape (3, 3)."""
-        return np.asarray(self.pose.rotation.full())
+        return quaternion_to_matrix(self.quaternion)
 
     def then(self, inner: NumericPose) -> NumericPose:
         """Pose of a frame whose pose in this one is given."""
-        return numeric(self.pose.then(inner.pose))
+        position = self.position + self.rotation @ inner.position
+        return NumericPose(position, quaternion_product(self.quaternion, inner.quaternion))
 
     @cached_property
     def inverse(self) -> NumericPose:
         """Pose of the outer frame in this one."""
-        back = quaternion_conjugate(ca.DM(self.quaternion))
-        position = rotate(back, ca.DM(-self.position))
-        return numeric(Pose(position, back))
+        return NumericPose(-self.rotation.T @ self.position, quaternion_conjugate(self.quaternion))
 
 
 def numeric(pose: Pose) -> NumericPose:

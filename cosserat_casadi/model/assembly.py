@@ -216,7 +216,7 @@ class Assembly:
         """B: motion [δθ; δr] of a floating frame with its unknowns, 6×7, world axes."""
         turn = turn_matrix(self.poses[name].quaternion)
         length = self.frames[name].length
-        return ca.blockcat([[ca.DM(3, 3), turn], [length * ca.DM.eye(3), ca.DM(3, 4)]])
+        return ca.vertcat(ca.horzcat(ca.DM(3, 3), turn), ca.horzcat(length * ca.DM.eye(3), ca.DM(3, 4)))
 
     def _by_frames(self, placed: PlacedConstraint, variations: Variations) -> list[tuple[FrameName, Matrix]]:
         """Derivatives with the motions of those frames of a constraint that float."""
@@ -284,9 +284,9 @@ class Assembly:
         rows = self.system.discrete.deviation(name)
         turn = turn_matrix(quaternion)
         # From a variation of the wrench [moment; force] to one of the rows [−F ℓ; −Tᵀ M].
-        to_rows = ca.blockcat(
-            [[ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3)], [-turn.T / frame.unit, ca.DM(4, 3)]]
-        )
+        by_force = ca.horzcat(ca.DM(3, 3), -frame.length / frame.unit * ca.DM.eye(3))
+        by_moment = ca.horzcat(-turn.T / frame.unit, ca.DM(4, 3))
+        to_rows = ca.vertcat(by_force, by_moment)
         for columns, variation in self._wrench_variations(name):
             blocks.add(rows, columns, column_at(to_rows @ variation, self._load_factor))
         own_turn = TURN_ROWS(quaternion, self._wrenches[name][:3] / frame.unit)[1]
@@ -343,7 +343,8 @@ class Assembly:
         """What a constraint on a carried rod passes on to the rod's base."""
         poses = self.system.poses(placed)
         position = poses.section.position
-        lever = ca.blockcat([[ca.DM.eye(3), hat(position)], [ca.DM(3, 3), ca.DM.eye(3)]])
+        levered_force = ca.horzcat(ca.DM.eye(3), hat(position))
+        lever = ca.vertcat(levered_force, ca.horzcat(ca.DM(3, 3), ca.DM.eye(3)))
         to_base = to_world @ lever
         if placed.constraint.held.turn_with_place:
             turned = placed.constraint.wrench_variation(poses, self.system.multipliers(placed))

@@ -201,7 +201,7 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _unloaded_response(model: ModelFunctions, inputs: ca.MX) -> Matrix:
+def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
     """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
@@ -331,7 +331,7 @@ def _interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matr
     return ca.vertcat(*rows)
 
 
-def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix:
+def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
     above = breaks[element] < X if element else 1
     below = breaks[element + 1] >= X if element + 2 < len(breaks) else 1

@@ -9,14 +9,11 @@ has it, from rigid to limp. The mechanics know nothing of λ.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.wrenches import Action, ActuationStress, Cable
-
-ActionType = TypeVar("ActionType", bound=Action)
 
 LoadFactor = Matrix | None
 """λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
@@ -39,7 +36,7 @@ class Compliance:
         return self.sign * (1 - load_factor) ** self.power
 
 
-def scaled(action: ActionType, load_factor: LoadFactor) -> ActionType:
+def scaled(action: Action, load_factor: LoadFactor) -> Action:
     """A load or an actuator at a load factor."""
     if load_factor is None:
         return action
@@ -47,8 +44,9 @@ def scaled(action: ActionType, load_factor: LoadFactor) -> ActionType:
         return replace(action, tension=load_factor * action.tension)
     if isinstance(action, ActuationStress):
         return replace(action, stress=load_factor * action.stress)
-    vectors = {"force": action.force, "moment": action.moment}
-    return replace(action, **{name: load_factor * v for name, v in vectors.items() if v is not None})
+    force = None if action.force is None else load_factor * action.force
+    moment = None if action.moment is None else load_factor * action.moment
+    return replace(action, force=force, moment=moment)
 
 
 def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: LoadFactor) -> Matrix:

@@ -25,7 +25,7 @@ from cosserat_casadi.constraints.section_constraint import Poses
 from cosserat_casadi.loads.load import Site, constant
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.assembly import Assembly
 from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
@@ -182,9 +182,10 @@ class System:
     def potential(self) -> Matrix | None:
         """Energy of all rods and their dead forces, J; None where some load has none that can be written."""
         terms = [igm.potential for igm in self.rods.values()]
-        if self.discrete.constraints or any(term is None for term in terms):
+        known = [term for term in terms if term is not None]
+        if self.discrete.constraints or len(known) < len(terms):
             return None
-        return ca.sum1(ca.vertcat(*terms))
+        return ca.sum1(ca.vertcat(*known))
 
     def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
         """Magnitudes of a load in these arguments; None where one is zero for good."""
@@ -202,9 +203,11 @@ class System:
 
     def _cable_length(self, cable: CableOfLength) -> CableLength:
         cables = self.rods[cable.tendon.rod].cables
+        wanted = self._value(cable.tendon, "length")
+        assert wanted is not None
         return CableLength(
             cable=next(routed for _, routed in cables if routed.routing is cable.routing),
-            wanted=self._value(cable.tendon, "length"),
+            wanted=wanted,
             tension=self.arguments.x[self.discrete.tension(cable)],
             slack=cable.tendon.slack,
         )
@@ -308,5 +311,5 @@ def _value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str
     return ca.reshape(inputs[entries], *default.shape)
 
 
-def _sparse(vectors: Matrix) -> ca.DM:
+def _sparse(vectors: FloatArray) -> ca.DM:
     return ca.sparsify(ca.DM(vectors))

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.newton import relative_norm
 
@@ -130,7 +131,7 @@ class Curve:
     def derivative(self, y: FloatArray) -> FloatArray:
         """∂g/∂y, shape (n, n + 1)."""
         x, factor = y[:-1], float(y[-1])
-        return np.column_stack([self.path.jacobian(x, factor), self.path.rate(x, factor)])
+        return np.column_stack([dense(self.path.jacobian(x, factor)), self.path.rate(x, factor)])
 
     def point(self, y: FloatArray, direction: FloatArray, length: float) -> ArcPoint | None:
         """The point at y, its tangent on the side of a direction; None where a number is not finite."""

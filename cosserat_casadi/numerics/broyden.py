@@ -10,9 +10,9 @@ from typing import TypeAlias
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import FloatArray
 
-Jacobian: TypeAlias = FloatArray | Matrix
+Jacobian: TypeAlias = FloatArray | ca.DM
 """Dense, shape (n, n); or sparse, n×n: of an assembly, whose blocks keep the work linear in the number of rods."""
 
 THIN = 1e-13

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -57,7 +58,8 @@ class RoutedCable:
         x, y, z = self.tangent
         if x is None and y is None and z is not None:
             return z
-        return ca.sqrt(_sum(*[None if row is None else row * row for row in self.tangent]))
+        squares = _sum(*[None if row is None else row * row for row in self.tangent])
+        return ca.sqrt(cast("Matrix", squares))
 
     @cached_property
     def direction(self) -> tuple[Row, Row, Row]:
@@ -106,7 +108,7 @@ class RoutedCable:
         moving = _negative(_product(self.lever[a], self.lever[b]))
         if fixed is None and moving is None:
             return None
-        row = _sum(fixed, moving) / self.stretch * ca.DM(self._weights).T
+        row = cast("Matrix", _sum(fixed, moving)) / self.stretch * ca.DM(self._weights).T
         whole = type(row)(1, self.shape.rod.grid.size)
         whole[self.routing.nodes.tolist()] = row
         return whole

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 
@@ -117,7 +118,7 @@ def _hat_row(field: Matrix) -> Matrix:
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
     """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
     vectors = {name: getattr(wrench, name) for name in ("force", "moment")}
-    changed = {name: _cross(vector, axis) for name, vector in vectors.items() if vector is not None}
+    changed: dict[str, Any] = {name: _cross(vector, axis) for name, vector in vectors.items() if vector is not None}
     return replace(wrench, **changed)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -163,7 +164,7 @@ class Tangent:
         """δm − δθ × m of every interval under frozen wrenches, base frame, (3·intervals)×n_a."""
         statics, count = self.igm.statics, self.intervals
         begins = ca.vertcat(*[self._with_base(part)[:-1, :] for part in ca.vertsplit(self.section_rotation, count)])
-        variation = hat_operator(statics.interval_moment) @ begins
+        variation = hat_operator(cast("Matrix", statics.interval_moment)) @ begins
         if statics.force_covector is None:
             return variation
         # (δθ × t) × n̂ = n̂^ t^ δθ, summed over the nodes that share a section.

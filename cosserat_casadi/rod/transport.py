@@ -178,7 +178,9 @@ def transport(rod: DiscreteRod, q: Matrix, steps: Increments | None, ratio: Rati
         return _permuted_transport(rod, q, ratio)
     pattern = interval_kernels(rod).increment.sparsity_out(0)
     start = ca.project(ca.DM([1, 0, 0, 0]), pattern)
-    return ca.horzcat(start, _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion))
+    later = _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion)
+    quaternions: Matrix = ca.horzcat(start, later)
+    return quaternions
 
 
 def _chain(pattern: ca.Sparsity) -> ca.Function:
@@ -199,7 +201,7 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
             row = row + (ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]).T
         rates.append(row)
     curvature = ca.vertcat(*rates)
-    sections = [ca.DM([1, 0, 0, 0])]
+    sections: list[Matrix] = [ca.DM([1, 0, 0, 0])]
     for e in range(grid.elements):
         width = grid.breaks[e + 1] - grid.breaks[e]
         nodes = range(e * (grid.intervals + 1), (e + 1) * (grid.intervals + 1))

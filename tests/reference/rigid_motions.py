@@ -1,4 +1,4 @@
-"""Rigid motions: transforms, twists and wrenches, angular part first.
+"""Appendix A of the report, beyond what the package needs: transforms, twists and wrenches, angular part first.
 
 A twist or strain is ``[angular; linear]``, the wrench dual to it ``[couple; force]``, so that their scalar
 product is a power. A transform ``a_T_b`` carries the coordinates of a point in frame b to those in frame a.
@@ -9,14 +9,10 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.maths.rotation import (
-    hat,
-    left_tangent,
-    left_tangent_inverse,
-    rotation_exp,
-    rotation_log,
-)
+from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
+
+from .rotations import left_tangent, left_tangent_inverse, rotation_exp, rotation_log
 
 
 def transform(R: Matrix, r: Matrix) -> Matrix:
@@ -70,7 +66,9 @@ def adjoint(T: Matrix) -> Matrix:
         6×6.
     """
     R = T[:3, :3]
-    return ca.vertcat(ca.horzcat(R, ca.DM(3, 3)), ca.horzcat(hat(T[:3, 3]) @ R, R))
+    upper = ca.horzcat(R, ca.DM(3, 3))
+    lower = ca.horzcat(hat(T[:3, 3]) @ R, R)
+    return ca.vertcat(upper, lower)
 
 
 def ad(xi: Matrix) -> Matrix:
@@ -83,7 +81,9 @@ def ad(xi: Matrix) -> Matrix:
         6×6.
     """
     K = hat(xi[:3])
-    return ca.vertcat(ca.horzcat(K, ca.DM(3, 3)), ca.horzcat(hat(xi[3:]), K))
+    upper = ca.horzcat(K, ca.DM(3, 3))
+    lower = ca.horzcat(hat(xi[3:]), K)
+    return ca.vertcat(upper, lower)
 
 
 def wrench_transform(b_T_a: Matrix, b_wrench: Matrix) -> Matrix:
@@ -108,7 +108,8 @@ def rigid_exp(xi: Matrix) -> Matrix:
     Returns:
         4×4, the exponential of ``twist_hat(xi)``.
     """
-    return transform(rotation_exp(xi[:3]), left_tangent(xi[:3]) @ xi[3:])
+    turn = xi[:3]
+    return transform(rotation_exp(turn), left_tangent(turn) @ xi[3:])
 
 
 def rigid_log(T: Matrix) -> Matrix:
@@ -120,5 +121,5 @@ def rigid_log(T: Matrix) -> Matrix:
     Returns:
         6×1, angular first: radians (at most π long), metres.
     """
-    v = rotation_log(T[:3, :3])
-    return ca.vertcat(v, left_tangent_inverse(v) @ T[:3, 3])
+    turn = rotation_log(T[:3, :3])
+    return ca.vertcat(turn, left_tangent_inverse(turn) @ T[:3, 3])
