@@ -41,10 +41,16 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
         return ca.DM(*shape)
     block_rows, block_columns = (np.asarray(indices) for indices in pattern.get_triplet())
     # Entry (r, c) of the block of a point stands in the diagonal block (r, c), on the row of that point.
-    point = np.repeat(np.arange(points), len(block_rows))
+    point = np.repeat(np.arange(points), pattern.nnz())
     rows = np.tile(block_rows, points) * points + point
     columns = np.tile(block_columns, points) * points + point
-    sparsity, order = ca.Sparsity.triplet(*shape, rows.tolist(), columns.tolist(), False)
+    # CasADi sorts by columns; `order` says which entry went where.
+    sparsity, order = ca.Sparsity.triplet(
+        *shape,
+        rows.tolist(),
+        columns.tolist(),
+        False,
+    )
     entries = ca.vec(blocks.nz[order])
     return type(blocks)(sparsity, entries)
 
@@ -104,7 +110,8 @@ def mirror_factors(matrix: FloatArray, mirror: Indices, signs: FloatArray, parit
     sums = (matrix[first] + mirrored) / 2 * even
     differences = (matrix[first] - mirrored) / 2 * ~even
     # A row that mirrors itself is zero in the columns of the other parity.
-    own = matrix[middle] * (signs[middle, None] == parities)
+    own_parity = signs[middle, None] == parities
+    own = matrix[middle] * own_parity
     half = np.vstack([sums, differences, own])
     return _fold(first, second, pair_signs, middle), sparse(half)
 
@@ -138,8 +145,15 @@ def _fold(first: Indices, second: Indices, signs: FloatArray, middle: Indices) -
     sums = np.arange(pairs)
     differences = pairs + sums
     own = np.arange(2 * pairs, count)
-    ones = np.ones(pairs)
+    one_a_pair = np.ones(pairs)
+    one_a_middle = np.ones(len(middle))
     rows = np.concatenate([sums, sums, differences, differences, own])
     columns = np.concatenate([first, second, first, second, middle])
-    entries = np.concatenate([ones, signs, ones, -signs, np.ones(len(middle))])
-    return ca.DM.triplet(rows.tolist(), columns.tolist(), ca.DM(entries), count, count)
+    entries = np.concatenate([one_a_pair, signs, one_a_pair, -signs, one_a_middle])
+    return ca.DM.triplet(
+        rows.tolist(),
+        columns.tolist(),
+        ca.DM(entries),
+        count,
+        count,
+    )

@@ -35,7 +35,8 @@ def _half_angle_sine(N: int, m: npt.NDArray[np.int_]) -> FloatArray:
     size = np.abs(m)
     # Folded into [0, π/2], where the sine of a rounded angle is as exact as the angle.
     folded = np.minimum(size, 2 * N - size)
-    sines: FloatArray = np.sign(m) * np.sin(np.pi / (2 * N) * folded)
+    step = np.pi / (2 * N)
+    sines: FloatArray = np.sign(m) * np.sin(step * folded)
     return sines
 
 
@@ -86,7 +87,8 @@ def barycentric_weights(N: int) -> FloatArray:
         (N + 1,).
     """
     check_intervals(N)
-    weights: FloatArray = np.where(np.arange(N + 1) % 2 == 0, 1.0, -1.0)
+    j = np.arange(N + 1)
+    weights: FloatArray = np.where(j % 2 == 0, 1.0, -1.0)
     weights[[0, -1]] /= 2
     return weights
 
@@ -151,9 +153,11 @@ def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
         raise ValueError(f"abscissae lie between 0 and 1, but these are {abscissae.tolist()}")
     gaps = abscissae[:, None] - nodes(N)
     on_node = np.abs(gaps) < _SAME_POINT
-    terms: FloatArray = barycentric_weights(N) / np.where(on_node, 1.0, gaps)
+    divisors = np.where(on_node, 1.0, gaps)
+    terms: FloatArray = barycentric_weights(N) / divisors
     # The row of an abscissa on a node picks the value there.
-    terms = np.where(on_node.any(axis=1, keepdims=True), on_node, terms)
+    picks = on_node.any(axis=1, keepdims=True)
+    terms = np.where(picks, on_node, terms)
     terms /= terms.sum(axis=1, keepdims=True)
     return terms
 
@@ -170,8 +174,10 @@ def quadrature_weights(N: int) -> FloatArray:
     check_intervals(N)
     k = np.arange(2, N + 1, 2)
     # ∫₀¹ T_k dX is −1/(k² − 1) for an even k and zero for an odd one; the last coefficient counts half.
-    factors = np.where(k == N, 1.0, 2.0) / (k * k - 1.0)
-    weights: FloatArray = (1 - _cosine_matrix(N)[:, k] @ factors) / N
+    shares = np.where(k == N, 1.0, 2.0)
+    factors = shares / (k * k - 1.0)
+    cosines = _cosine_matrix(N)[:, k]
+    weights: FloatArray = (1 - cosines @ factors) / N
     weights[[0, -1]] /= 2
     return weights
 
@@ -193,11 +199,12 @@ def integration_matrix(N: int) -> FloatArray:
     # ∫₀^φ cos kψ sin ψ dψ = sin²((k+1)φ/2)/(k+1) − sin²((k−1)φ/2)/(k−1), and x = −cos φ, dX = dx/2.
     angles = np.outer(j, np.arange(N + 2)) % (2 * N)
     squares = _half_angle_sine(N, angles) ** 2
-    upper = squares[:, j + 1] / (j + 1)
+    first = squares[:, j + 1] / (j + 1)
     # For k = 1 the second term is zero, and so would be its denominator.
     divisors = np.where(j == 1, 1, j - 1)
-    lower = np.where(j == 1, 0.0, squares[:, np.abs(j - 1)] / divisors)
-    antiderivatives: FloatArray = (upper - lower) / 2
+    second = squares[:, np.abs(j - 1)] / divisors
+    second[:, j == 1] = 0.0
+    antiderivatives: FloatArray = (first - second) / 2
     return antiderivatives @ _cosine_transform(N)
 
 
@@ -253,7 +260,8 @@ def _recurrence(
     """Polynomials 1, x, … of x = 2X − 1, each made by ``successor(k, x, p_k, p_{k−1})``."""
     if n < 1:
         raise ValueError(f"at least one polynomial is needed, but n = {n}")
-    x = 2 * np.atleast_1d(np.asarray(X, dtype=float)) - 1
+    abscissae = np.atleast_1d(np.asarray(X, dtype=float))
+    x = 2 * abscissae - 1
     values = [np.ones_like(x), x]
     for k in range(1, n - 1):
         following = successor(k, x, values[k], values[k - 1])
@@ -274,6 +282,8 @@ def chebyshev_coefficients(values: npt.ArrayLike) -> FloatArray:
     N = len(v) - 1
     check_intervals(N)
     # The cosines count from the base, where x = −1: T_k(−cos φ) = (−1)^k cos kφ.
-    signs = np.where(np.arange(N + 1) % 2 == 0, 1.0, -1.0)
-    coefficients: FloatArray = (signs[:, None] * _cosine_transform(N)) @ v
+    k = np.arange(N + 1)
+    signs = np.where(k % 2 == 0, 1.0, -1.0)
+    transform = signs[:, None] * _cosine_transform(N)
+    coefficients: FloatArray = transform @ v
     return coefficients

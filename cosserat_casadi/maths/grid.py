@@ -73,14 +73,14 @@ class Grid:
     @cached_property
     def left_ends(self) -> FloatArray:
         """Base-side ends of the E·N intervals between neighbouring nodes."""
-        by_element = self.nodes.reshape(self.elements, -1)
-        return by_element[:, :-1].ravel()
+        starts = self._nodes_by_element[:, :-1]
+        return starts.ravel()
 
     @cached_property
     def right_ends(self) -> FloatArray:
         """Tip-side ends of the E·N intervals between neighbouring nodes."""
-        by_element = self.nodes.reshape(self.elements, -1)
-        return by_element[:, 1:].ravel()
+        ends = self._nodes_by_element[:, 1:]
+        return ends.ravel()
 
     @cached_property
     def section_of_node(self) -> Indices:
@@ -94,7 +94,8 @@ class Grid:
     @cached_property
     def mirrored_intervals(self) -> Indices:
         """Index of the interval that mirrors each one about the middle of its element, shape (E·N,)."""
-        return self._mirrored(self.elements * self.intervals)
+        intervals = self.elements * self.intervals
+        return self._mirrored(intervals)
 
     @cached_property
     def mirrored_nodes(self) -> Indices:
@@ -129,6 +130,11 @@ class Grid:
     def _nodes_per_element(self) -> int:
         """N + 1."""
         return self.intervals + 1
+
+    @property
+    def _nodes_by_element(self) -> FloatArray:
+        """Abscissae of the nodes, one element a row, shape (E, N + 1)."""
+        return self.nodes.reshape(self.elements, self._nodes_per_element)
 
     def _nodes_of(self, element: int) -> slice:
         """The nodes of an element among all nodes."""

@@ -55,8 +55,9 @@ def taylor_from_samples(count: int, points: int) -> tuple[FloatArray, FloatArray
     samples_of_powers = tau ** powers[:, None]
     moments = (weights / 2) * samples_of_powers
     # The Gram matrix of the powers of τ: ∫ τᵖ dτ over [−½, ½] is (½)ᵖ / (p + 1) for an even p, else zero.
-    total = powers[:, None] + powers[None, :]
-    gram = np.where(total % 2 == 0, 0.5**total / (total + 1), 0.0)
+    total = powers[:, None] + powers
+    even = total % 2 == 0
+    gram = np.where(even, 0.5**total / (total + 1), 0.0)
     matrix = np.linalg.solve(gram, moments)
     return tau, np.asarray(matrix, dtype=np.float64)
 
@@ -97,25 +98,38 @@ def _order_six(a1: AnyMatrix, a2: AnyMatrix, a3: AnyMatrix) -> AnyMatrix:
     of the α, each times a scalar, and one cross product with α₂.
     """
     square = dot(a1, a1) / 720
-    factor_1 = 1 + dot(a1, a3) / 360 - dot(a2, a2) / 240
+    part_of_3 = dot(a1, a3) / 360
+    part_of_2 = dot(a2, a2) / 240
+    factor_1 = 1 + part_of_3 - part_of_2
     factor_2 = dot(a1, a2) / 240
     factor_3 = 1 / 12 - 2 * square
-    across = _times(1 / 12 + square, a1) + a3 / 240
-    return _times(factor_1, a1) + _times(factor_2, a2) + _times(factor_3, a3) + cross(across, a2)
+    along_1 = _times(factor_1, a1)
+    along_2 = _times(factor_2, a2)
+    along_3 = _times(factor_3, a3)
+    lever = _times(1 / 12 + square, a1) + a3 / 240
+    across = cross(lever, a2)
+    return along_1 + along_2 + along_3 + across
 
 
 def _order_eight(a1: AnyMatrix, a2: AnyMatrix, a3: AnyMatrix, a4: AnyMatrix) -> AnyMatrix:
     """The series up to h⁸ with four nested commutators (Blanes, Casas and Ros 2000)."""
-    # The names are those of the paper.
+    # s and r are sums of nested commutators, in the order in which they enter each other.
+    b1 = a1 + a3 / 28
     b2 = a2 + 3 / 28 * a4
-    s1 = _bracket(a1 + a3 / 28, b2) / -28
+    s1 = _bracket(b1, b2) / -28
     r1 = _bracket(a1, s1 - a3 / 14) / 3
-    s2 = _bracket(a1 + a3 / 28 + s1, b2 + r1)
-    inner = 2 * a3 + s2 + 0.5 * _bracket(a2, s1)
-    r2 = _bracket(a1 + 1.25 * s1, inner)
+    s2 = _bracket(b1 + s1, b2 + r1)
+    nested = _bracket(a2, s1)
+    r2 = _bracket(
+        a1 + 1.25 * s1,
+        2 * a3 + s2 + 0.5 * nested,
+    )
+    # The mean of h K over the interval, up to h⁴.
     mean = a1 + a3 / 12
-    outer = 63 * r1 + r2 - 9 * a2 - 2.25 * a4
-    s3 = _bracket(mean - 7 / 3 * s1 - s2 / 6, outer)
+    s3 = _bracket(
+        mean - 7 / 3 * s1 - s2 / 6,
+        63 * r1 + r2 - 9 * a2 - 2.25 * a4,
+    )
     return mean - 7 / 120 * s2 + s3 / 360
 
 
@@ -170,20 +184,24 @@ class Increment:
 
         The cosine of the half angle is (sin θ / θ) / (2 sin(θ/2) / θ): what T needs takes the place of its series.
         """
-        sine_over_angle = 1 - ca.sumsqr(self.omega) * self.cubic
+        square = ca.sumsqr(self.omega)
+        sine_over_angle = 1 - square * self.cubic
         cosine = sine_over_angle / self.half_sine
-        return ca.vertcat(cosine, self.half_sine / 2 * self.omega)
+        axis = self.half_sine / 2 * self.omega
+        return ca.vertcat(cosine, axis)
 
     @property
     def tangent(self) -> Matrix:
         """T = 1 + b Ω^ + c Ω^² with δ(exp Ω^) = (T δΩ)^ exp Ω^ and b = (1 − cos θ)/θ², 3×3."""
-        first = hat(self._linear * self.omega)
-        second = hat(self.cubic * self.omega) @ hat(self.omega)
-        return ca.DM.eye(3) + first + second
+        linear = hat(self._linear * self.omega)
+        cubic = hat(self.cubic * self.omega)
+        return ca.DM.eye(3) + linear + cubic @ hat(self.omega)
 
     def pulled(self, moment: Matrix) -> Matrix:
         """The product Tᵀ M: what a moment M (3×1, in the frame in which the increment begins) does on δΩ, 3×1."""
-        bent = self.cubic * cross(self.omega, moment) - self._linear * moment
+        # Horner's rule in Ω^: Tᵀ = 1 − b Ω^ + c Ω^² = 1 + Ω^ (c Ω^ − b).
+        turned = self.cubic * cross(self.omega, moment)
+        bent = turned - self._linear * moment
         return moment + cross(self.omega, bent)
 
     def stiffness(self, moment: Matrix) -> Matrix:
@@ -201,7 +219,8 @@ class Increment:
         second = horner(_SECOND, square)
         k = half * (self.cubic + square * second)
         # Both products with Ω^ in one: Ω^ m^ and its transpose m^ Ω^, where m carries half of the last term.
-        bent = half * second * ca.dot(moment, self.omega) * self.omega - k * moment
+        along = half * second * ca.dot(moment, self.omega)
+        bent = along * self.omega - k * moment
         product = hat(self.omega) @ hat(bent)
         return hat(moment / 2) + product + product.T
 

@@ -82,8 +82,8 @@ class PermutedSystem:
         unknown = _solve(self.D_NN - self.A_NN, source)
         # P is a permutation: its inverse is its transpose.
         stacked = self.P.T @ ca.vertcat(x_known, unknown)
-        components = self.D_II.shape[0]
-        points = stacked.shape[0] // components
+        components = self.D_II.size1()
+        points = stacked.size1() // components
         return ca.reshape(stacked, points, components).T
 
 
@@ -125,10 +125,16 @@ def permuted_system(A: Sequence[Matrix], b: Sequence[Matrix], *, known_at: End =
 def _permutation(order: Sequence[int], m: int) -> ca.DM:
     """The matrix from component-by-component stacking to point by point in the given order."""
     points = len(order)
-    columns = [component * points + point for point in order for component in range(m)]
-    size = len(columns)
+    size = points * m
     rows = list(range(size))
-    return ca.DM.triplet(rows, columns, ca.DM.ones(size), size, size)
+    columns = [component * points + point for point in order for component in range(m)]
+    return ca.DM.triplet(
+        rows,
+        columns,
+        ca.DM.ones(size),
+        size,
+        size,
+    )
 
 
 def _solve(matrix: Matrix, rhs: Matrix) -> Matrix:
@@ -146,6 +152,6 @@ def _check_coefficients(A: Sequence[Matrix], b: Sequence[Matrix], known_at: str)
     if len(A) != len(b) or len(A) < 2:
         raise ValueError(f"A and b are given at the same two points or more, not at {len(A)} and {len(b)}")
     m = A[0].shape[0]
-    for j, (A_j, b_j) in enumerate(zip(A, b, strict=True)):
-        check_shape(f"A[{j}]", A_j, m, m)
-        check_shape(f"b[{j}]", b_j, m, 1)
+    for j in range(len(A)):
+        check_shape(f"A[{j}]", A[j], m, m)
+        check_shape(f"b[{j}]", b[j], m, 1)
