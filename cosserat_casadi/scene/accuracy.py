@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, StrictBool
 
@@ -18,6 +18,12 @@ ModesChoice = Annotated[
 
 class Accuracy(Record):
     """How exact the result is to be, or with what it is computed."""
+
+    example: ClassVar[str] = """\
+[accuracy]
+tolerance = 1e-8
+shape = true
+"""
 
     tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] = Field(
         1e-6, description="wanted pose error relative to the rod length, without unit"

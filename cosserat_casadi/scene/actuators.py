@@ -46,6 +46,10 @@ Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_
 class Helix(Record):
     """A tendon that winds round the rod: offset = radius (cos, sin)(2π turns X + phase)."""
 
+    example: ClassVar[str] = """\
+helix = { radius = 1.5e-3, turns = 1.0 }
+"""
+
     radius: Positive = Field(description="distance from the centreline, m")
     turns: Number = Field(description="turns over the whole rod, negative for a left-handed helix, without unit")
     phase: Number = Field(0.0, description="angle at X = 0 from local x, rad")
@@ -54,6 +58,15 @@ class Helix(Record):
 @ACTUATORS.register
 class Tendon(ActuatorRecord):
     """A cable without friction, led through the sections and anchored at the end of its span."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "cable"
+kind = "tendon"
+rod = "finger"
+tension = 3.0
+offset = [1.5e-3, 0.0]
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1),
@@ -96,6 +109,16 @@ class Tendon(ActuatorRecord):
 @ACTUATORS.register
 class Chamber(ActuatorRecord):
     """A pressurised channel of constant cross-section along the rod."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "bellows"
+kind = "chamber"
+rod = "finger"
+pressure = 1.0e4
+area = 2.0e-6
+offset = [0.0, 1.0e-3]
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"pressure": InputField("Pa", 1)}
 

@@ -54,6 +54,14 @@ SUPPORTS: Family[SupportRecord] = Family("supports")
 class ClampedSupport(SupportRecord):
     """Position and orientation of a tip are prescribed."""
 
+    example: ClassVar[str] = """\
+[[supports]]
+rod = "finger"
+kind = "clamped"
+position = [0.1, 0, 0.1]
+quaternion = [1, 0, 0, 0]
+"""
+
     kind: Literal["clamped"] = Field(description="pose of the tip prescribed")
     quaternion: Quaternion = Field(description="prescribed orientation of the tip w, x, y, z, of norm 1, without unit")
 
@@ -67,6 +75,13 @@ class ClampedSupport(SupportRecord):
 class PinnedSupport(SupportRecord):
     """The position of a tip is prescribed, its moment is free."""
 
+    example: ClassVar[str] = """\
+[[supports]]
+rod = "finger"
+kind = "pinned"
+position = [0.1, 0, 0.1]
+"""
+
     kind: Literal["pinned"] = Field(description="position of the tip prescribed, moment free")
 
 
@@ -79,6 +94,12 @@ Support = Annotated[ClampedSupport | PinnedSupport, SUPPORTS]
 
 class Body(Entry):
     """A rigid body that rods carry."""
+
+    example: ClassVar[str] = """\
+[[bodies]]
+name = "platform"
+mass = 0.1
+"""
 
     name: Name = Field(description="name of the body, a letter, then letters, digits and underscores")
     mass: NotNegative = Field(0.0, description="mass, kg")
@@ -109,6 +130,14 @@ JOINTS: Family[JointRecord] = Family("joints")
 class FixedJoint(JointRecord):
     """The tip of a rod is clamped in a body."""
 
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "fixed"
+position = [0.02, 0, 0]
+"""
+
     kind: Literal["fixed"] = Field(description="the tip is clamped in the body")
 
 
@@ -116,12 +145,29 @@ class FixedJoint(JointRecord):
 class SphericalJoint(JointRecord):
     """The tip of a rod meets a point of a body and turns freely."""
 
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "spherical"
+position = [0.02, 0, 0]
+"""
+
     kind: Literal["spherical"] = Field(description="the tip stays at a point of the body and turns freely")
 
 
 @JOINTS.register
 class RevoluteJoint(JointRecord):
     """The tip of a rod meets a point of a body and turns about one axis of the body."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "revolute"
+position = [0.02, 0, 0]
+axis = [0, 1, 0]
+"""
 
     kind: Literal["revolute"] = Field(description="the tip stays at a point of the body and turns about one axis")
     axis: Direction = Field(
@@ -133,6 +179,15 @@ class RevoluteJoint(JointRecord):
 @JOINTS.register
 class PrismaticJoint(JointRecord):
     """The tip of a rod slides along one axis of a body and does not turn in it."""
+
+    example: ClassVar[str] = """\
+[[joints]]
+rod = "finger"
+body = "platform"
+kind = "prismatic"
+position = [0.02, 0, 0]
+axis = [1, 0, 0]
+"""
 
     kind: Literal["prismatic"] = Field(description="the tip slides along one axis of the body and does not turn in it")
     axis: Direction = Field(

@@ -45,6 +45,13 @@ def force_or_moment(given: Table) -> Iterator[Fault]:
 class Gravity(LoadRecord):
     """A uniform field of acceleration."""
 
+    example: ClassVar[str] = """\
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+
     inputs: ClassVar[Mapping[str, InputField]] = {"acceleration": InputField("m/s²", 3, axes="world")}
     references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
 
@@ -91,6 +98,14 @@ class SectionWrench(LoadRecord):
 class TipWrench(SectionWrench):
     """A force and a moment on the tip section."""
 
+    example: ClassVar[str] = """\
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "finger"
+force = [0.1, 0, 0]
+"""
+
     inputs: ClassVar[Mapping[str, InputField]] = WRENCH
 
     kind: Literal["tip_wrench"] = Field(description="force and moment on the tip")
@@ -101,6 +116,16 @@ class TipWrench(SectionWrench):
 @LOADS.register
 class PointWrench(SectionWrench):
     """A force and a moment on one section."""
+
+    example: ClassVar[str] = """\
+[[loads]]
+name = "poke"
+kind = "point_wrench"
+rod = "finger"
+at = 0.5
+moment = [0, 0.01, 0]
+frame = "body"
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = WRENCH
 
@@ -117,6 +142,14 @@ class PointWrench(SectionWrench):
 @LOADS.register
 class DistributedWrench(SectionWrench):
     """A force and a moment per length."""
+
+    example: ClassVar[str] = """\
+[[loads]]
+name = "wind"
+kind = "distributed_wrench"
+rod = "finger"
+force = [[0.2, 0.2], 0, 0]     # 0 at the base, 0.4 N/m at the tip
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = {
         "force": InputField("N/m", 3, polynomial=True, axes="frame"),
@@ -137,6 +170,15 @@ class DistributedWrench(SectionWrench):
 @LOADS.register
 class BodyWrench(LoadRecord):
     """A force and a moment on a rigid body."""
+
+    example: ClassVar[str] = """\
+[[loads]]
+name = "payload"
+kind = "body_wrench"
+body = "platform"
+force = [0, 0, -1.0]
+position = [0.05, 0, 0]
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = WRENCH
     references: ClassVar[Mapping[str, str]] = {"body": "bodies"}

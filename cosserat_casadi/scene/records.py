@@ -66,7 +66,14 @@ def _as_given(value: Any) -> Any:
 
 
 class Record(BaseModel):
-    """A table of the scene: frozen, without unknown keys, every number finite."""
+    """A table of the scene: frozen, without unknown keys, every number finite.
+
+    Attributes:
+        example: the table as a scene has it, TOML, for the reference page. Names in it are those of the page: the rods
+            "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
+    """
+
+    example: ClassVar[str] = ""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 

@@ -59,6 +59,10 @@ StrainChoice = Annotated[
 class Material(Record):
     """An isotropic linear elastic material."""
 
+    example: ClassVar[str] = """\
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+"""
+
     youngs_modulus: Positive = Field(description="Young's modulus E, Pa")
     poisson_ratio: Annotated[Number, Field(gt=-1, le=0.5)] | None = Field(
         None, description="Poisson's ratio, without unit; instead of shear_modulus"
@@ -91,6 +95,10 @@ SECTIONS: Family[SectionRecord] = Family("section", key="shape")
 class Circle(SectionRecord):
     """A solid circular cross-section."""
 
+    example: ClassVar[str] = """\
+section = { shape = "circle", radius = [2.0e-3, 1.0e-3] }     # tapered
+"""
+
     shape: Literal["circle"] = Field(description="solid circle")
     radius: Size = Field(description="radius, m; a list of two goes linearly from base to tip")
 
@@ -98,6 +106,10 @@ class Circle(SectionRecord):
 @SECTIONS.register
 class Annulus(SectionRecord):
     """A circular tube."""
+
+    example: ClassVar[str] = """\
+section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
+"""
 
     shape: Literal["annulus"] = Field(description="circular tube")
     outer_radius: Size = Field(description="outer radius, m; a list of two goes linearly from base to tip")
@@ -118,6 +130,10 @@ class Annulus(SectionRecord):
 @SECTIONS.register
 class Rectangle(SectionRecord):
     """A solid rectangular cross-section."""
+
+    example: ClassVar[str] = """\
+section = { shape = "rectangle", width = 1.0e-2, height = 1.0e-3 }
+"""
 
     shape: Literal["rectangle"] = Field(description="solid rectangle")
     width: Size = Field(description="width along local x, m; a list of two goes linearly from base to tip")
@@ -141,6 +157,11 @@ def _base_and_tip(size: Any) -> tuple[float, ...]:
 class Stiffness(Record):
     """Diagonal of the Hooke tensor, each constant or linear from base to tip."""
 
+    example: ClassVar[str] = """\
+stiffness = { bending_x = 1.0, bending_y = 1.0, torsion = 0.8 }
+linear_density = 0.01
+"""
+
     bending_x: Size | None = Field(None, description="bending stiffness about local x, N m²")
     bending_y: Size | None = Field(None, description="bending stiffness about local y, N m²")
     torsion: Size | None = Field(None, description="torsional stiffness, N m²")
@@ -155,6 +176,10 @@ class Stiffness(Record):
 class Intrinsic(Record):
     """Strains of the unloaded rod, ξ⁰."""
 
+    example: ClassVar[str] = """\
+intrinsic = { curvature = [0, [5.0, 1.0], 0] }     # bent about y, more so towards the tip
+"""
+
     curvature: Polynomials = Field(
         (0.0, 0.0, 0.0), description="K_x, K_y, K_z, 1/m; a component may list Legendre coefficients in 2X − 1"
     )
@@ -166,6 +191,10 @@ class Intrinsic(Record):
 
 class Base(Record):
     """Pose of the section X = 0, in the world or in a section of another rod."""
+
+    example: ClassVar[str] = """\
+base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideways
+"""
 
     rod: str | None = Field(
         None, description="name of the rod that carries this one: the pose of the base is then that in its section"
@@ -195,6 +224,16 @@ class Base(Record):
 
 class Rod(Entry):
     """An elastic rod, held at its base."""
+
+    example: ClassVar[str] = """\
+[[rods]]
+name = "finger"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 2.0e-3 }
+base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
+"""
 
     inputs: ClassVar[Mapping[str, InputField]] = {
         "length": InputField("m", 1, positive=True, geometry=True),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
@@ -64,6 +64,12 @@ class FreeInput:
 
 class Scene(Record):
     """Rods, and what acts on them. SI units, right-handed world axes."""
+
+    example: ClassVar[str] = """\
+schema = 1
+title = "Soft finger, own weight and a tip push"
+inputs = ["push.force", "cable.tension"]
+"""
 
     schema_version: Annotated[Literal[1], BeforeValidator(_exactly_one)] = Field(
         alias="schema", description="version of the scene format: 1"

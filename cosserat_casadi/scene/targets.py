@@ -52,6 +52,14 @@ class FrameTarget(TargetRecord):
 class PoseTarget(FrameTarget):
     """Position and orientation that a section or a body is to have."""
 
+    example: ClassVar[str] = """\
+[[targets]]
+kind = "pose"
+rod = "finger"
+position = [0.05, 0, 0.15]
+quaternion = [1, 0, 0, 0]
+"""
+
     kind: Literal["pose"] = Field(description="position and orientation")
     position: Vector = Field(description="wanted position in world axes, m")
     quaternion: Quaternion = Field(description="wanted orientation w, x, y, z, of norm 1, without unit")
@@ -61,6 +69,13 @@ class PoseTarget(FrameTarget):
 class PositionTarget(FrameTarget):
     """Position that a section or a body is to have, its orientation free."""
 
+    example: ClassVar[str] = """\
+[[targets]]
+kind = "position"
+body = "platform"
+position = [0.05, 0, 0.15]
+"""
+
     kind: Literal["position"] = Field(description="position, the orientation is free")
     position: Vector = Field(description="wanted position in world axes, m")
 
@@ -68,6 +83,14 @@ class PositionTarget(FrameTarget):
 @TARGETS.register
 class CurveTarget(TargetRecord):
     """Points that the centreline of a rod is to pass, as nearly as it can."""
+
+    example: ClassVar[str] = """\
+[[targets]]
+kind = "curve"
+rod = "finger"
+at = [0.5, 1.0]
+points = [[0.01, 0, 0.1], [0.05, 0, 0.18]]
+"""
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
@@ -92,6 +115,13 @@ Target = Annotated[PoseTarget | PositionTarget | CurveTarget, TARGETS]
 
 class Bound(Entry):
     """The range of an input; what is left out is not bounded on that side."""
+
+    example: ClassVar[str] = """\
+[[bounds]]
+input = "push.force"
+lower = [-1.0, -1.0, 0.0]
+upper = 1.0
+"""
 
     input: str = Field(description="'load.field' of the input")
     lower: Component | None = Field(
