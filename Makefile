@@ -17,7 +17,7 @@ help:
 	@echo "make dial       judge what tolerances pick on 200 random scenes, resumable; writes tables and figure"
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
-	@echo "make schema     write the JSON schema of the scene format anew"
+	@echo "make schema     write the JSON schema and the reference of the scene format anew"
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -55,6 +55,7 @@ format: $(STAMP)
 
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
+	$(BIN)/python -m cosserat_casadi.scene.reference
 
 # Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.
 generated: $(STAMP)

@@ -1,41 +1,61 @@
-"""The scene file: schema, reading, overrides."""
+"""The scene file: records, rules, reading, writing.
 
-from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.scene.schema import (
-    Accuracy,
-    Actuator,
-    Annulus,
-    Base,
+A new kind of load, actuator, support or joint is a record that derives from the one of its family, registered with it:
+``@LOADS.register``.
+"""
+
+from cosserat_casadi.scene.accuracy import Accuracy
+from cosserat_casadi.scene.actuators import ACTUATORS, Actuator, ActuatorRecord, Chamber, Helix, Tendon
+from cosserat_casadi.scene.constraints import (
+    JOINTS,
+    SUPPORTS,
     Body,
-    BodyWrench,
-    Chamber,
-    Circle,
     ClampedSupport,
-    DistributedWrench,
     FixedJoint,
-    Gravity,
-    Helix,
-    Intrinsic,
     Joint,
-    Load,
-    Material,
+    JointRecord,
     PinnedSupport,
-    PointWrench,
-    Rectangle,
-    Rod,
-    Scene,
-    Section,
+    PrismaticJoint,
+    RevoluteJoint,
     SphericalJoint,
-    Stiffness,
     Support,
-    Tendon,
+    SupportRecord,
+)
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import (
+    LOADS,
+    BodyWrench,
+    DistributedWrench,
+    Gravity,
+    Load,
+    LoadRecord,
+    PointWrench,
     TipWrench,
 )
+from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene.rods import (
+    Annulus,
+    Base,
+    Circle,
+    Intrinsic,
+    Material,
+    Rectangle,
+    Rod,
+    Section,
+    Stiffness,
+)
+from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
 
 __all__ = [
+    "ACTUATORS",
+    "JOINTS",
+    "LOADS",
+    "SUPPORTS",
     "Accuracy",
     "Actuator",
+    "ActuatorRecord",
     "Annulus",
     "Base",
     "Body",
@@ -46,24 +66,32 @@ __all__ = [
     "ClampedSupport",
     "CurveTarget",
     "DistributedWrench",
+    "Family",
     "FixedJoint",
+    "FreeInput",
     "Gravity",
     "Helix",
+    "InputField",
     "Intrinsic",
     "Joint",
+    "JointRecord",
     "Load",
+    "LoadRecord",
     "Material",
     "PinnedSupport",
     "PointWrench",
     "PoseTarget",
     "PositionTarget",
+    "PrismaticJoint",
     "Rectangle",
+    "RevoluteJoint",
     "Rod",
     "Scene",
     "Section",
     "SphericalJoint",
     "Stiffness",
     "Support",
+    "SupportRecord",
     "Target",
     "Tendon",
     "TipWrench",

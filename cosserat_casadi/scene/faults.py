@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
 Path = tuple[str | int, ...]
-Tables = list[tuple[int, Mapping[str, Any]]]
+Table = Mapping[str, Any]
+
+LONGEST_TEXT = 60
+"""Characters of a text or a key of the file that a message quotes."""
+
+LONGEST_LIST = 12
+"""Names that a remedy lists."""
 
 
 class Fault(NamedTuple):
@@ -24,14 +31,49 @@ class Fault(NamedTuple):
     problem: str
     remedy: str = ""
 
+    def below(self, path: Path) -> Fault:
+        """The same fault, its path counted from where ``path`` starts."""
+        return self._replace(path=(*path, *self.path))
+
+
+class SceneTables:
+    """The tables of a scene as the file gives them: any value may be missing or faulty."""
+
+    def __init__(self, given: Table) -> None:
+        self._given = given
+        # A rule asks for the same list once for each entry of another.
+        self.tables = cache(self._tables)
+        self.named = cache(self._named)
+
+    def get(self, key: str) -> Any:
+        """The value of a key; None where it is left out."""
+        return self._given.get(key)
+
+    def _tables(self, key: str) -> list[tuple[int, Table]]:
+        """The tables of a list with their indices, without what is not a table."""
+        entries = self._given.get(key)
+        if not isinstance(entries, list):
+            return []
+        return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
+
+    def _named(self, key: str) -> dict[str, tuple[int, Table]]:
+        """The first table of every name in a list, with its index."""
+        first: dict[str, tuple[int, Table]] = {}
+        for i, table in self.tables(key):
+            name = table.get("name")
+            if isinstance(name, str):
+                first.setdefault(name, (i, table))
+        return first
+
 
 def shown(value: object) -> str:
     """A value of the file as it is quoted in a message: short, in the words of TOML."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return repr(value if len(value) <= 60 else value[:57] + "...")
+        return repr(shortened(value))
     if isinstance(value, int):
+        # Python refuses to print integers of thousands of digits.
         return str(value) if abs(value) < 10**30 else "a whole number beyond all range"
     if isinstance(value, float):
         return repr(float(value))
@@ -42,24 +84,18 @@ def shown(value: object) -> str:
     return f"a {type(value).__name__}"
 
 
-def tables(given: Mapping[str, Any], key: str) -> Tables:
-    """The tables of an array with their indices, without what is not a table."""
-    entries = given.get(key)
-    if not isinstance(entries, list):
-        return []
-    return [(i, entry) for i, entry in enumerate(entries) if isinstance(entry, Mapping)]
-
-
-def named(entries: Tables) -> dict[str, tuple[int, Mapping[str, Any]]]:
-    """The first table of every name."""
-    found: dict[str, tuple[int, Mapping[str, Any]]] = {}
-    for i, table in entries:
-        if isinstance(name := table.get("name"), str):
-            found.setdefault(name, (i, table))
-    return found
+def shortened(text: str) -> str:
+    """A text, cut off where it is too long for a message."""
+    if len(text) <= LONGEST_TEXT:
+        return text
+    return text[: LONGEST_TEXT - 3] + "..."
 
 
 def listing(names: Iterable[str], what: str) -> str:
     """A remedy that lists the known names, the first few of many."""
     known = [name if name.isprintable() else repr(name) for name in names]
-    return f"{what}: {', '.join(known[:12])}{', …' if len(known) > 12 else ''}" if known else f"there are no {what}"
+    if not known:
+        return f"there are no {what}"
+    if len(known) > LONGEST_LIST:
+        known = [*known[:LONGEST_LIST], "…"]
+    return f"{what}: {', '.join(known)}"

@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from cosserat_casadi.scene.schema import Scene
+from cosserat_casadi.scene.scene import Scene
 
 COMMITTED = Path(__file__).with_name("scene.schema.json")
 """The copy that editors are pointed at."""

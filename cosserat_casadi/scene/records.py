@@ -1,214 +1,141 @@
-"""What every table of a scene is made of: frozen records, faults as pydantic passes them on, numbers and vectors."""
+"""What every table of a scene is: a frozen record, all of whose faults come at once.
+
+A record either holds what its fields promise or does not exist. The rules between keys and between tables look at what
+the file says, not at validated records, so that their faults come together with those of single values.
+"""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Annotated, Any, Self
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar, Self, TypeVar
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
-    ModelWrapValidatorHandler,
-    Tag,
-    ValidationError,
-    model_validator,
-)
-from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
+from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
-from cosserat_casadi.scene.faults import Fault, shown
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table
+from cosserat_casadi.scene.inputs import InputField
 
-ROUNDING = 1e-15
-"""Norms as near to 1 as this are left as they are: what is read, written and read again stays the same."""
+RecordType = TypeVar("RecordType", bound="Record")
 
-Quadruple = tuple[float, float, float, float]
-Triple = tuple[float, float, float]
+REFUSED = "refused"
+"""Type of the errors that carry a `Fault` through pydantic."""
 
 
-# Faults
+def refusal(faults: Iterable[Fault]) -> ValidationError:
+    """Wrap faults in the exception that pydantic passes on."""
+    return ValidationError.from_exception_data("scene", [_wrapped(fault) for fault in faults])
 
 
-def refusal(faults: Iterable[Fault], others: ValidationError | None = None) -> ValidationError:
-    """The faults, together with those that pydantic found, as the exception that pydantic passes on."""
-    lines = [] if others is None else [_line(error) for error in others.errors(include_url=False)]
-    for path, problem, remedy in faults:
-        told = PydanticCustomError("refused", "{problem}", {"problem": problem, "remedy": remedy})
-        lines.append(InitErrorDetails(type=told, loc=path, input=None))
+def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault] = ()) -> ValidationError:
+    """Restate an error of pydantic deeper in the scene, or with more faults.
+
+    Args:
+        error: what pydantic raised.
+        below: path that its locations are put behind.
+        faults: faults that follow those of the error.
+    """
+    lines = [_line(details, below) for details in error.errors(include_url=False)]
+    lines += [_wrapped(fault) for fault in faults]
     return ValidationError.from_exception_data("scene", lines)
 
 
-def _line(error: Any) -> InitErrorDetails:
-    told, context = error["type"], error.get("ctx", {})
-    if told == "refused":
-        told = PydanticCustomError("refused", "{problem}", context)
-    return InitErrorDetails(type=told, loc=error["loc"], input=error["input"], ctx=context)
+def _wrapped(fault: Fault) -> InitErrorDetails:
+    context = {"problem": fault.problem, "remedy": fault.remedy}
+    kind = PydanticCustomError(REFUSED, "{problem}", context)
+    return InitErrorDetails(type=kind, loc=fault.path, input=None)
 
 
-def _plain(value: Any) -> Any:
-    """Records as the tables they were read from, and without what is not given."""
+def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
+    kind: str | PydanticCustomError = details["type"]
+    context = details.get("ctx", {})
+    if kind == REFUSED:
+        kind = PydanticCustomError(REFUSED, "{problem}", context)
+    location = (*below, *details["loc"])
+    return InitErrorDetails(type=kind, loc=location, input=details["input"], ctx=context)
+
+
+def _as_given(value: Any) -> Any:
+    """Turn records back into the tables that they were read from, without what is not given."""
     if isinstance(value, BaseModel):
         value = value.model_dump(by_alias=True, exclude_unset=True)
     if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items() if entry is not None}
+        return {key: _as_given(entry) for key, entry in value.items() if entry is not None}
     if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
+        return [_as_given(entry) for entry in value]
     return value
 
 
 class Record(BaseModel):
-    """A table of the scene: frozen, without unknown keys, every number finite."""
+    """A table of the scene: frozen, without unknown keys, every number finite.
+
+    Attributes:
+        example: the table as a scene has it, TOML, for the reference page. Names in it are those of the page: the rods
+            "finger" and "arm", the body "platform", the load "push" and the actuator "cable".
+    """
+
+    example: ClassVar[str] = ""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     @classmethod
-    def conflicts(cls, given: Mapping[str, Any]) -> Iterator[Fault]:
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Faults of keys against each other, in a table whose values may be faulty too."""
         yield from ()
 
     @model_validator(mode="wrap")
     @classmethod
     def _every_fault_at_once(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
-        faults = list(cls.conflicts(_plain(given))) if isinstance(given, Mapping) else []
+        faults: list[Fault] = []
+        if isinstance(given, Mapping):
+            faults = list(cls.conflicts(_as_given(given)))
         try:
             record = handler(given)
-        except ValidationError as refused:
-            raise refusal(faults, refused) from None
+        except ValidationError as error:
+            raise restated(error, faults=faults) from None
         if faults:
             raise refusal(faults)
         return record
 
 
-# Numbers, vectors and choices
+def sound(record: type[RecordType], table: Table) -> RecordType | None:
+    """The record of a table; None where the table has faults of its own."""
+    try:
+        return record.model_validate(table)
+    except ValidationError:
+        return None
 
 
-def listed(count: int, what: str) -> BeforeValidator:
-    """Lists of one length only, said in one sentence instead of one for each missing entry."""
+class Entry(Record):
+    """An entry of one of the scene's lists: a rod, a load, a support.
 
-    def check(value: Any) -> Any:
-        if not isinstance(value, list | tuple):
-            raise refusal([Fault((), f"must be a list of {what}, got {shown(value)}")])
-        if len(value) != count:
-            raise refusal([Fault((), f"must be a list of {what}, got {len(value)}")])
-        return value
+    Attributes:
+        inputs: fields that may stay free at run time, by name; the name of a field in an inner table has dots.
+        references: fields that name entries of other lists, each with the key of that list; a field may hold
+            one name or several.
+    """
 
-    return BeforeValidator(check)
+    inputs: ClassVar[Mapping[str, InputField]] = {}
+    references: ClassVar[Mapping[str, str]] = {}
 
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """Faults of a table against the rest of the scene.
 
-class NotEmpty:
-    """Lists with an entry: pydantic's own bound does not count entries that are faulty."""
+        Args:
+            given: the table, whose values may be faulty.
+            scene: all tables of the scene.
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_before_validator_function(self._check, handler(source))
+        Yields:
+            faults, their paths counted from this table.
+        """
+        yield from ()
 
-    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return {**handler(core), "minItems": 1}
+    @classmethod
+    def free_fields(cls, given: Table) -> tuple[str, ...]:
+        """Fields of a table that may stay free at run time, where the table decides which."""
+        return tuple(cls.inputs)
 
-    def _check(self, value: Any) -> Any:
-        if isinstance(value, list | tuple) and not value:
-            raise refusal([Fault((), "must have at least one entry")])
-        return value
-
-
-def one_or_list(value: Any) -> str:
-    """Mark of a value that is one entry or a list of them."""
-    return "⟨list⟩" if isinstance(value, list | tuple) else "⟨one⟩"
-
-
-def kind_word(key: str, known: Sequence[str]) -> BeforeValidator:
-    """The key that says which kind of table this is, checked before the table itself."""
-    choices = ", ".join(repr(word) for word in known)
-
-    def check(value: Any) -> Any:
-        if isinstance(value, BaseModel):
-            return value
-        if not isinstance(value, Mapping):
-            raise refusal([Fault((), f"must be a table, got {shown(value)}")])
-        word = value.get(key)
-        if word is None:
-            raise refusal([Fault((key,), "missing", f"one of {choices}")])
-        if word not in known:
-            raise refusal([Fault((key,), f"must be one of {choices}, got {shown(word)}")])
-        return value
-
-    return BeforeValidator(check)
-
-
-def by(key: str) -> Callable[[Any], str]:
-    """Mark of a table by its word under a key."""
-
-    def tag(value: Any) -> str:
-        return f"⟨{value[key] if isinstance(value, Mapping) else getattr(value, key, None)}⟩"
-
-    return tag
-
-
-def _unit_quaternion(value: Quadruple) -> Quadruple:
-    norm = math.hypot(*value)
-    if abs(norm - 1.0) > 1e-6:
-        raise refusal([Fault((), f"must have norm 1, got norm {norm:.9g}", "divide it by its norm; order w, x, y, z")])
-    if abs(norm - 1.0) <= ROUNDING:
-        return value
-    w, x, y, z = value
-    return (w / norm, x / norm, y / norm, z / norm)
-
-
-def _direction(value: Triple) -> Triple:
-    if abs(math.hypot(*value) - 1.0) <= ROUNDING:
-        return value
-    largest = max(map(abs, value))
-    if largest == 0.0:
-        raise refusal([Fault((), "must not be zero", "a direction, such as [1, 0, 0]")])
-    x, y, z = (component / largest for component in value)
-    norm = math.hypot(x, y, z)
-    return (x / norm, y / norm, z / norm)
-
-
-def without_repetition(value: tuple[str, ...]) -> tuple[str, ...]:
-    """Refuse a name that is listed twice."""
-    if faults := list(_repeated(value)):
-        raise refusal(faults)
-    return value
-
-
-def _repeated(entries: Sequence[Any]) -> Iterator[Fault]:
-    seen: set[str] = set()
-    for i, entry in enumerate(entries):
-        if isinstance(entry, str) and entry in seen:
-            yield Fault((i,), f"{shown(entry)} is listed twice")
-        elif isinstance(entry, str):
-            seen.add(entry)
-
-
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[Number, Field(gt=0)]
-Whole = Annotated[int, Field(strict=True)]
-Vector = Annotated[tuple[Number, Number, Number], listed(3, "3 numbers")]
-Quaternion = Annotated[tuple[Number, Number, Number, Number], listed(4, "4 numbers"), AfterValidator(_unit_quaternion)]
-Direction = Annotated[Vector, AfterValidator(_direction)]
-Size = Annotated[
-    Annotated[Positive, Tag("⟨one⟩")]
-    | Annotated[tuple[Positive, Positive], listed(2, "2 numbers, base and tip"), Tag("⟨list⟩")],
-    Discriminator(one_or_list),
-]
-SizeOrZero = Annotated[
-    Annotated[Number, Field(ge=0), Tag("⟨one⟩")]
-    | Annotated[
-        tuple[Annotated[Number, Field(ge=0)], Annotated[Number, Field(ge=0)]],
-        listed(2, "2 numbers, base and tip"),
-        Tag("⟨list⟩"),
-    ],
-    Discriminator(one_or_list),
-]
-Component = Annotated[
-    Annotated[Number, Tag("⟨one⟩")] | Annotated[tuple[Number, ...], NotEmpty(), Tag("⟨list⟩")],
-    Discriminator(one_or_list),
-]
-Polynomials = Annotated[tuple[Component, Component, Component], listed(3, "3 components")]
+    @classmethod
+    def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """Reasons why one of the free fields cannot stay free in this scene, without path."""
+        yield from ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from cosserat_casadi.scene.schema import Scene
+from cosserat_casadi.scene.scene import Scene
 
 
 def scene_tables(scene: Scene) -> dict[str, Any]:

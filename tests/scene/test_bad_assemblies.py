@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, parse_scene
+from cosserat_casadi import SceneError, parse_scene, scene_from_dict
+from cosserat_casadi.scene import PrismaticJoint, RevoluteJoint
+from cosserat_casadi.scene.writing import scene_text
+from tests.scenes import rod as rod_table
 
 ROD = """[[rods]]
 name = "{name}"
@@ -40,6 +44,16 @@ def test_bodies_joints_and_bases_are_read() -> None:
     assert scene.rods[0].base.rod is None
 
 
+@pytest.mark.parametrize(("kind", "record"), [("revolute", RevoluteJoint), ("prismatic", PrismaticJoint)])
+def test_axes_of_joints_have_length_one(kind: str, record: type) -> None:
+    rest = f'kind = "{kind}"\naxis = [0, 3, 4]\nposition = [0, 0, 1]\nquaternion = [0, 1, 0, 0]'
+    scene = parse_scene("schema = 1\n" + rod("a") + PLATE + joint(rest=rest))
+    assert isinstance(scene.joints[0], record)
+    assert_allclose(scene.joints[0].axis, (0.0, 0.6, 0.8), rtol=0, atol=1e-15)
+    assert scene.joints[0].quaternion == (0.0, 1.0, 0.0, 0.0)
+    assert parse_scene(scene_text(scene)) == scene
+
+
 HELD = rod("a") + PLATE + joint()
 REFUSED = {
     "unknown_carrier": (rod("a", '{ rod = "x" }'), "rods[0].base.rod", "no rod is named 'x'"),
@@ -56,6 +70,22 @@ REFUSED = {
         "supports[0] holds the tip of 'a' already",
     ),
     "kind": (rod("a") + PLATE + joint(rest='kind = "hinge"'), "joints[0].kind", "must be one of 'fixed', 'spherical'"),
+    "axis": (rod("a") + PLATE + joint(rest='kind = "revolute"'), "joints[0].axis", "missing"),
+    "no_axis": (
+        rod("a") + PLATE + joint(rest='kind = "prismatic"\naxis = [0, 0, 0]'),
+        "joints[0].axis",
+        "must not be zero",
+    ),
+    "short_axis": (
+        rod("a") + PLATE + joint(rest='kind = "prismatic"\naxis = [0, 1]'),
+        "joints[0].axis",
+        "must be a list of 3 numbers, got 2",
+    ),
+    "fixed_axis": (
+        rod("a") + PLATE + joint(rest='kind = "fixed"\naxis = [0, 0, 1]'),
+        "joints[0].axis",
+        "unknown key",
+    ),
     "mass": (rod("a") + PLATE + "mass = -1.0\n" + joint(), "bodies[0].mass", "must be >= 0, got -1.0"),
     "load": (
         HELD + '[[loads]]\nname = "p"\nkind = "body_wrench"\nbody = "b"\nforce = [0, 0, 1]\n',
@@ -82,3 +112,10 @@ def test_a_circle_of_rods_is_told_of_every_rod_in_it() -> None:
         ("rods[0].base.rod", "rods that carry each other in a circle: 'a' on 'b' on 'a'"),
         ("rods[1].base.rod", "rods that carry each other in a circle: 'b' on 'a' on 'b'"),
     ]
+
+
+def test_a_name_that_is_no_text_is_refused_and_not_quoted() -> None:
+    tables = {"schema": 1, "rods": [rod_table()], "bodies": [{"name": "\ud800"}]}
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict(tables)
+    assert [problem.where for problem in refused.value.problems] == ["bodies[0]", "bodies[0].name"]

@@ -1,0 +1,136 @@
+"""Actuators: tendons and pressure chambers, led along a rod.
+
+A new kind is a record of its own, registered with `ACTUATORS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import AfterValidator, Field, StrictBool
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.records import Entry, Record, refusal
+from cosserat_casadi.scene.values import Component, Name, NotNegative, Number, Positive, Share, listed
+
+
+class ActuatorRecord(Entry):
+    """What acts inside a rod, between its sections."""
+
+    references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
+
+    name: Name = Field(description="name of the actuator, a letter, then letters, digits and underscores")
+    if TYPE_CHECKING:
+        kind: str  # each member declares these two itself, where they stand among its keys
+        rod: str
+
+
+ACTUATORS: Family[ActuatorRecord] = Family("actuators")
+"""Kinds of actuators."""
+
+
+def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        problem = f"must begin before it ends, got {list(value)}"
+        raise refusal([Fault((), problem, "two abscissae X, base side first")])
+    return value
+
+
+Offset = Annotated[tuple[Component, Component], listed(2, "2 components, x and y")]
+Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_base_side_first)]
+
+
+class Helix(Record):
+    """A tendon that winds round the rod: offset = radius (cos, sin)(2π turns X + phase)."""
+
+    example: ClassVar[str] = """\
+helix = { radius = 1.5e-3, turns = 1.0 }
+"""
+
+    radius: Positive = Field(description="distance from the centreline, m")
+    turns: Number = Field(description="turns over the whole rod, negative for a left-handed helix, without unit")
+    phase: Number = Field(0.0, description="angle at X = 0 from local x, rad")
+
+
+@ACTUATORS.register
+class Tendon(ActuatorRecord):
+    """A cable without friction, led through the sections and anchored at the end of its span."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "cable"
+kind = "tendon"
+rod = "finger"
+tension = 3.0
+offset = [1.5e-3, 0.0]
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "tension": InputField("N", 1),
+        "length": InputField("m", 1, positive=True),
+    }
+
+    kind: Literal["tendon"] = Field(description="cable led along the rod")
+    rod: str = Field(description="name of the rod that it pulls")
+    tension: NotNegative | None = Field(None, description="tension, N; or length")
+    length: Positive | None = Field(
+        None, description="length of the cable along its span, m; its tension is then an unknown"
+    )
+    slack: StrictBool = Field(
+        False, description="whether a cable of given length may go slack, so that it never pushes"
+    )
+    offset: Offset | None = Field(
+        None, description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    helix: Helix | None = Field(None, description="helical course round the centreline, instead of offset")
+    span: Span = Field((0.0, 1.0), description="abscissae X where it enters the rod and where it is anchored")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """One of tension and length, one of offset and helix."""
+        for first, second in (("tension", "length"), ("offset", "helix")):
+            if first in given and second in given:
+                yield Fault((second,), f"stands beside {first}", "give one of the two")
+            elif first not in given and second not in given:
+                yield Fault((first,), "missing", f"give {first} or {second}")
+        if given.get("slack") is True and "length" not in given:
+            yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
+
+    @classmethod
+    def free_fields(cls, given: Table) -> tuple[str, ...]:
+        """Tension or length, whichever is given: the other is an unknown or a result."""
+        fields = tuple(field for field in cls.inputs if field in given)
+        return fields or tuple(cls.inputs)
+
+
+@ACTUATORS.register
+class Chamber(ActuatorRecord):
+    """A pressurised channel of constant cross-section along the rod."""
+
+    example: ClassVar[str] = """\
+[[actuators]]
+name = "bellows"
+kind = "chamber"
+rod = "finger"
+pressure = 1.0e4
+area = 2.0e-6
+offset = [0.0, 1.0e-3]
+"""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"pressure": InputField("Pa", 1)}
+
+    kind: Literal["chamber"] = Field(description="pressurised channel along the rod")
+    rod: str = Field(description="name of the rod that it pushes")
+    pressure: Number = Field(description="pressure above that outside, Pa")
+    area: Positive = Field(description="cross-section of the channel, m²")
+    offset: Offset = Field(
+        (0.0, 0.0), description="place in the section, x and y, m; a component may list polynomial coefficients in X"
+    )
+    span: Span = Field((0.0, 1.0), description="abscissae X between which the channel runs")
+
+
+# The type checker knows the kinds that ship; a scene may hold any that is registered.
+Actuator = Annotated[Tendon | Chamber, ACTUATORS]

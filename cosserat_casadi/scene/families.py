@@ -1,0 +1,119 @@
+"""Open families: the kinds of loads, actuators, supports, joints, and of whatever else a word tells apart.
+
+A kind is registered once. Unions, the words that an error lists, references, inputs, the JSON schema and the reference
+page are made from the family when they are asked for, so that a kind that is registered late is a kind like any other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Generic, TypeVar, cast, get_args, get_origin
+
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, core_schema
+
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.records import Record, refusal, restated
+
+Member = TypeVar("Member", bound=Record)
+
+
+class Family(Generic[Member]):
+    """Records that stand in one list or under one key of a scene, told apart by a word.
+
+    It annotates a type: ``Annotated[LoadRecord, LOADS]`` is any record that is registered with ``LOADS``.
+
+    Attributes:
+        table: where they stand, such as "loads".
+        key: the key of the word, such as "kind".
+        records: the record of each word, in the order in which they were registered.
+    """
+
+    def __init__(self, table: str, key: str = "kind") -> None:
+        self.table = table
+        self.key = key
+        self.records: dict[str, type[Member]] = {}
+
+    def register(self, record: type[Member]) -> type[Member]:
+        """Add a kind; decorates the class of its record.
+
+        Raises:
+            ValueError: another record has the same word, or the record does not have one word.
+        """
+        field = record.model_fields.get(self.key)
+        words = () if field is None else get_args(field.annotation)
+        if len(words) != 1:
+            raise ValueError(f"{record.__name__} needs a field {self.key} with one word, such as Literal['spring']")
+        word = words[0]
+        if word in self.records:
+            raise ValueError(f"{self.table} have a {self.key} {word!r} already: {self.records[word].__name__}")
+        self.records[word] = record
+        return record
+
+    def record_of(self, given: Table) -> type[Member] | None:
+        """The record of a table, by its word; None where the word is faulty or missing."""
+        word = given.get(self.key)
+        if not isinstance(word, str):
+            return None
+        return self.records.get(word)
+
+    def marked(self, mark: str) -> type[Member] | None:
+        """The record that a mark in one of pydantic's locations stands for."""
+        return self.records.get(mark.strip("⟨⟩"))
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        # A union would be frozen when the class of the scene is made; a function asks the family each time.
+        return core_schema.no_info_plain_validator_function(self._validated)
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        choices = {word: _referable(record) for word, record in self.records.items()}
+        return handler(core_schema.tagged_union_schema(choices, discriminator=lambda value: value[self.key]))
+
+    def _validated(self, value: Any) -> Member:
+        if isinstance(value, BaseModel):
+            word = self._known_word(getattr(value, self.key, None))
+        elif isinstance(value, Mapping):
+            word = self._known_word(value.get(self.key))
+        else:
+            raise refusal([Fault((), f"must be a table, got {shown(value)}")])
+        try:
+            return self.records[word].model_validate(value)
+        except ValidationError as error:
+            raise restated(error, below=(f"⟨{word}⟩",)) from None
+
+    def _known_word(self, word: Any) -> str:
+        choices = ", ".join(repr(known) for known in self.records)
+        if word is None:
+            raise refusal([Fault((self.key,), "missing", f"one of {choices}")])
+        if not isinstance(word, str) or word not in self.records:
+            raise refusal([Fault((self.key,), f"must be one of {choices}, got {shown(word)}")])
+        return word
+
+
+def _referable(record: type[Record]) -> CoreSchema:
+    """The core schema of a record under the name by which a JSON schema refers to it, instead of repeating it."""
+    schema: Any = dict(record.__pydantic_core_schema__)
+    # Pydantic drops the name of a schema that nothing refers to yet, and shortens "module.Name:id" to "Name".
+    schema["ref"] = f"{record.__module__}.{record.__qualname__}:{id(record)}"
+    return cast(CoreSchema, schema)
+
+
+def contents_of(field: FieldInfo) -> Family[Any] | type[Record] | None:
+    """What the tables under a field are: one record, a family of them, or None where the field holds no tables."""
+    return _contents(field.annotation)
+
+
+def _contents(annotation: Any) -> Family[Any] | type[Record] | None:
+    if isinstance(annotation, type) and issubclass(annotation, Record):
+        return annotation
+    if get_origin(annotation) is Annotated:
+        for entry in annotation.__metadata__:
+            if isinstance(entry, Family):
+                return entry
+    for argument in get_args(annotation):
+        contents = _contents(argument)
+        if contents is not None:
+            return contents
+    return None

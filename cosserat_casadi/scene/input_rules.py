@@ -1,0 +1,122 @@
+"""The rules of inputs: what a scene lists exists and can be free, what it bounds is free."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.targets import bound_numbers
+
+Owners = dict[str, tuple[type[Entry] | None, Table]]
+"""Tables that may have inputs, by name, with the record of each; None where its kind is not known."""
+
+
+def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
+    """An input names nothing in the scene, or what cannot be free."""
+    owners = _owners(scene)
+    entries = scene.get("inputs")
+    if not isinstance(entries, list):
+        return
+    for i, entry in enumerate(entries):
+        if not isinstance(entry, str):
+            continue
+        name, _, field = entry.partition(".")
+        if not field:
+            yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
+        elif name in owners:
+            record, table = owners[name]
+            for fault in _field_faults(field, record, table, scene):
+                yield fault.below(("inputs", i))
+        else:
+            problem = f"no load, actuator or rod is named {shown(name)}"
+            yield Fault(("inputs", i), problem, listing(owners, "names"))
+
+
+def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
+    """A bound is of what is not free, is the second of an input, or has another number of entries."""
+    counts = _entry_counts(scene)
+    first: dict[str, int] = {}
+    for i, bound in scene.tables("bounds"):
+        name = bound.get("input")
+        if not isinstance(name, str):
+            continue
+        if name not in counts:
+            yield Fault(("bounds", i, "input"), f"{shown(name)} is not free at run time", listing(counts, "inputs"))
+            continue
+        if first.setdefault(name, i) != i:
+            yield Fault(("bounds", i, "input"), f"bounds[{first[name]}] bounds {shown(name)} already")
+        for side in ("lower", "upper"):
+            count = len(bound_numbers(bound.get(side)))
+            wanted = counts[name]
+            if wanted is not None and count > 1 and count != wanted:
+                yield Fault(("bounds", i, side), f"must have {_numbers(wanted)}, got {count}")
+
+
+def _numbers(count: int) -> str:
+    if count == 1:
+        return "1 number"
+    return f"1 number or {count}"
+
+
+def _owners(scene: SceneTables) -> Owners:
+    """What may have inputs, by name, with its record where the kind is known."""
+    rods: Owners = {name: (Rod, table) for name, (_, table) in scene.named("rods").items()}
+    # Inputs of a load or an actuator hide those of a rod of the same name, which is listed last.
+    causes = _causes(scene)
+    return {**causes, **{name: rod for name, rod in rods.items() if name not in causes}}
+
+
+def _causes(scene: SceneTables) -> Owners:
+    """Actuators and loads by name, with the record where the kind is known."""
+    causes: Owners = {}
+    for family in (ACTUATORS, LOADS):
+        for name, (_, table) in scene.named(family.table).items():
+            causes[name] = (family.record_of(table), table)
+    return causes
+
+
+def _field_faults(field: str, record: type[Entry] | None, table: Table, scene: SceneTables) -> Iterator[Fault]:
+    """Why a field of a table cannot stay free at run time, without path; nothing where the kind is not known."""
+    if record is None:
+        return
+    name = shown(table["name"])
+    fields = record.free_fields(table)
+    if field not in fields and record is Rod:
+        yield Fault((), f"{name} has no {shown(field)} to leave free", listing(fields, "fields"))
+    elif field not in fields:
+        yield Fault((), f"{name} has no magnitude {shown(field)}", listing(fields, "magnitudes"))
+    else:
+        yield from record.input_conflicts(field, table, scene)
+
+
+def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
+    """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
+    owners = _owners(scene)
+    entries = scene.get("inputs")
+    names = _magnitudes(scene)
+    if isinstance(entries, list):
+        names = [name for name in entries if isinstance(name, str)]
+    return {name: _entry_count(name, owners) for name in names}
+
+
+def _magnitudes(scene: SceneTables) -> list[str]:
+    """Names of the magnitudes that actuators and loads give: what is free where the scene lists no inputs."""
+    return [
+        f"{name}.{field}"
+        for name, (record, table) in _causes(scene).items()
+        if record is not None
+        for field in record.inputs
+        if field in table
+    ]
+
+
+def _entry_count(name: str, owners: Owners) -> int | None:
+    owner, _, field = name.partition(".")
+    record, table = owners.get(owner, (None, {}))
+    if record is None or field not in record.inputs:
+        return None
+    return record.inputs[field].entry_count(table.get(field))

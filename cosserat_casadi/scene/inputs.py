@@ -1,0 +1,38 @@
+"""Fields of a scene's tables that may stay free at run time: their units, axes and numbers of entries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+
+@dataclass(frozen=True)
+class InputField:
+    """A field of a scene's table that may stay free at run time.
+
+    Attributes:
+        unit: SI unit of each number, "1" where there is none.
+        components: 1 for a number, 3 for a vector, 4 for a quaternion.
+        polynomial: whether each component may be a list of Legendre coefficients along the rod.
+        positive: whether each number must be > 0.
+        nonzero: whether not all numbers may be zero.
+        axes: axes of the components: "none" of a number, those of the world, or "frame" for those that the record's
+            own ``frame`` names.
+        geometry: whether it moves rods or their bases, so that the equations are not linear in it.
+    """
+
+    unit: str
+    components: int
+    polynomial: bool = False
+    positive: bool = False
+    nonzero: bool = False
+    axes: Literal["none", "world", "frame"] = "none"
+    geometry: bool = False
+
+    def entry_count(self, value: Any) -> int:
+        """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
+        if not self.polynomial or not isinstance(value, list | tuple):
+            return self.components
+        coefficients = [len(component) for component in value if isinstance(component, list | tuple)]
+        # Components share the highest degree that one of them has; the others are filled up with zeros.
+        return self.components * max(coefficients, default=1)

@@ -1,0 +1,201 @@
+"""Faults in the words of the format: pydantic's errors ↦ `Fault` ↦ `Problem`, in the order of the file."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.scene.families import Family, contents_of
+from cosserat_casadi.scene.faults import Fault, Path, shortened, shown
+from cosserat_casadi.scene.overrides import Assignment
+from cosserat_casadi.scene.records import REFUSED, Record
+from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.spelling import close_matches, closest
+
+WANTED = {
+    "finite_number": "finite",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "text",
+    "string_unicode": "text",
+    "tuple_type": "a list",
+    "model_type": "a table",
+    "string_pattern_mismatch": "a letter, then letters, digits and underscores",
+}
+"""What a value must be, by pydantic's type of error."""
+
+BOUNDS = {
+    "greater_than": (">", "gt"),
+    "greater_than_equal": (">=", "ge"),
+    "less_than": ("<", "lt"),
+    "less_than_equal": ("<=", "le"),
+}
+"""Sign of a bound, and the key of its value in pydantic's error."""
+
+
+def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequence[Assignment]) -> list[Problem]:
+    """Word the errors of a scene.
+
+    Args:
+        error: what pydantic raised.
+        tables: the scene, whose order is that of the problems.
+        applied: overrides, the last one first: what they brought in is said of them.
+    """
+    faults = [_fault(details) for details in error.errors(include_url=False)]
+    order = _FileOrder(tables)
+    faults.sort(key=order.position)
+    return [_problem(fault, applied) for fault in faults]
+
+
+# From pydantic's errors to faults
+
+
+def _fault(details: ErrorDetails) -> Fault:
+    location = details["loc"]
+    kind = details["type"]
+    path = _path_of(location, kind)
+    if kind == REFUSED:
+        context = details["ctx"]
+        return Fault(path, context["problem"], context["remedy"])
+    record = record_at(location[:-1])
+    if kind in ("extra_forbidden", "invalid_key"):
+        return Fault(path, "unknown key", closest(str(location[-1]), keys_of(record)))
+    return Fault(path, _problem_text(kind, details), _remedy(kind, path, record, details))
+
+
+def _path_of(location: Path, kind: str) -> Path:
+    """A location of pydantic without its marks; an unknown key is kept even where it looks like one."""
+    path = tuple(part for part in location[:-1] if not _is_mark(part))
+    last = location[-1:]
+    if kind == "extra_forbidden" or not any(_is_mark(part) for part in last):
+        path += last
+    return path
+
+
+def _is_mark(part: str | int) -> bool:
+    return isinstance(part, str) and part.startswith("⟨") and part.endswith("⟩")
+
+
+def record_at(location: Path) -> type[Record]:
+    """The record that a location of pydantic leads into, followed from the scene."""
+    record: type[Record] = Scene
+    family: Family[Any] | None = None
+    for part in location:
+        if family is not None and isinstance(part, str):
+            record = family.marked(part) or record
+            family = None
+        field = keys_of(record).get(part) if isinstance(part, str) else None
+        if field is None:
+            continue
+        contents = contents_of(field)
+        if isinstance(contents, Family):
+            family = contents
+        elif contents is not None:
+            record = contents
+    return record
+
+
+def keys_of(record: type[Record]) -> dict[str, FieldInfo]:
+    """The keys of a record's table, as the file writes them."""
+    return {field.alias or name: field for name, field in record.model_fields.items()}
+
+
+def _problem_text(kind: str, details: ErrorDetails) -> str:
+    context = details.get("ctx", {})
+    got = shown(details["input"])
+    if kind == "missing":
+        return "missing"
+    if kind == "literal_error":
+        words = context["expected"].replace(" or ", ", ")
+        return f"must be one of {words}, got {got}"
+    if kind in BOUNDS:
+        sign, key = BOUNDS[kind]
+        return f"must be {sign} {context[key]:g}, got {got}"
+    return f"must be {WANTED.get(kind, 'something else')}, got {got}"
+
+
+def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) -> str:
+    """The closest word, or what the field is, where the problem alone does not say it."""
+    if kind in BOUNDS or kind == "finite_number":
+        return ""
+    word = details["input"]
+    if kind == "literal_error" and isinstance(word, str):
+        known = re.findall(r"'([^']*)'", details["ctx"]["expected"])
+        close = close_matches(word, known)
+        if close:
+            return f"did you mean '{close[0]}'?"
+    names = [part for part in path if isinstance(part, str)]
+    field = keys_of(record).get(names[-1]) if names else None
+    if field is None:
+        return ""
+    return field.description or ""
+
+
+# From faults to problems
+
+
+class _FileOrder:
+    """Where faults stand in a file.
+
+    Attributes:
+        tables: the scene as the file gives it.
+    """
+
+    def __init__(self, tables: Mapping[str, Any]) -> None:
+        self.tables = tables
+        self._keys: dict[int, dict[Any, int]] = {}
+
+    def position(self, fault: Fault) -> tuple[int, ...]:
+        """Indices of the keys of a fault, level by level; what is missing stands at the end of its table."""
+        indices: list[int] = []
+        container: Any = self.tables
+        for part in fault.path:
+            if isinstance(container, dict):
+                order = self._order(container)
+                indices.append(order.get(part, len(container)))
+                container = container.get(part)
+            elif isinstance(container, list) and isinstance(part, int) and part < len(container):
+                indices.append(part)
+                container = container[part]
+            else:
+                indices.append(part if isinstance(part, int) else 0)
+                container = None
+        return tuple(indices)
+
+    def _order(self, table: dict[str, Any]) -> dict[Any, int]:
+        """Index of each key of a table, kept: a table may have many faults."""
+        known = self._keys.get(id(table))
+        if known is None:
+            known = {key: i for i, key in enumerate(table)}
+            self._keys[id(table)] = known
+        return known
+
+
+def _problem(fault: Fault, applied: Sequence[Assignment]) -> Problem:
+    """A fault as it is shown; one that an override brought in is shown at the override."""
+    for assignment in applied:
+        if fault.path[: len(assignment.created)] == assignment.created:
+            beyond = fault.path[len(assignment.leaf) :]
+            return Problem(f"--set {assignment.key}{_suffix(beyond)}", fault.problem, fault.remedy)
+    where = _suffix(fault.path).removeprefix(".")
+    return Problem(where, fault.problem, fault.remedy)
+
+
+def _suffix(path: Path) -> str:
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{_quoted(part)}" for part in path)
+
+
+def _quoted(key: str) -> str:
+    """A key as TOML writes it, shortened."""
+    short = shortened(key)
+    if re.fullmatch(r"[\w-]+", short):
+        return short
+    return json.dumps(short)

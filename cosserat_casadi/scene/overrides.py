@@ -1,0 +1,141 @@
+"""Assignments such as ``push.force=[0.2, 0, 0]``, applied to the tables of a scene before they are read."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.scene.faults import Path, shown
+from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.scene.toml import keys_are_too_deep
+
+NAMED_LISTS = ("supports", "joints", "bodies", "rods", "actuators", "loads")
+"""Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """An override that was applied.
+
+    Attributes:
+        key: its left side, as written.
+        leaf: path of what it sets.
+        created: path of the outermost table that exists only because of it; otherwise the leaf.
+    """
+
+    key: str
+    leaf: Path
+    created: Path
+
+
+class RefusedOverride(Exception):  # noqa: N818 - it never leaves the reading of scenes
+    """An override that cannot be applied: problem and remedy."""
+
+
+def apply_overrides(
+    tables: dict[str, Any], overrides: Sequence[str], known: Sequence[str]
+) -> tuple[list[Assignment], list[Problem]]:
+    """Apply assignments in their order to the tables; a later one wins.
+
+    Args:
+        tables: the scene; it is changed.
+        overrides: texts ``key=value``.
+        known: keys of a scene.
+
+    Returns:
+        what was applied, the last one first, and what was refused.
+    """
+    applied: list[Assignment] = []
+    refused: list[Problem] = []
+    for text in overrides:
+        left, equals, right = text.partition("=")
+        key = left.strip()
+        try:
+            if not equals or not key:
+                raise RefusedOverride("must read name.field=value", "such as push.force=[0.2,0,0]")
+            assignment = assign(tables, key, _value(right.strip()), known)
+        except RefusedOverride as error:
+            refused.append(Problem(f"--set {key or text}", *error.args))
+        else:
+            applied.insert(0, assignment)
+    return applied, refused
+
+
+def _value(text: str) -> Any:
+    parsed: dict[str, Any] = {}
+    if not keys_are_too_deep(text):
+        try:
+            parsed = tomllib.loads(f"value = {text}")
+        except (ValueError, RecursionError):
+            parsed = {}
+    # A text with a line break may hold more assignments than one.
+    if list(parsed) != ["value"]:
+        raise RefusedOverride(f"{shown(text)} is not a TOML value", 'text stands in quotes: "body"; a list in brackets')
+    return parsed["value"]
+
+
+def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -> Assignment:
+    """Set what a key names, with the tables that lead there.
+
+    Raises:
+        RefusedOverride: there is nothing of that name to set.
+    """
+    container: Any = tables
+    path: list[str | int] = []
+    created: Path | None = None
+    segments = _from_root(tables, key, known)
+    for segment in segments[:-1]:
+        index = _index(container, segment)
+        path.append(index)
+        if isinstance(container, dict) and index not in container:
+            container[index] = {}
+            created = created or tuple(path)
+        container = container[index]
+    last = _index(container, segments[-1])
+    container[last] = value
+    leaf = (*path, last)
+    return Assignment(key, leaf, created or leaf)
+
+
+def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
+    """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
+    segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
+    lists = _lists_by_name(tables)
+    first = segments[0]
+    if first in lists and len(segments) > 1:
+        return [lists[first], *segments]
+    if first not in known:
+        problem = f"no load, actuator, rod, support or table is named {shown(first)}"
+        raise RefusedOverride(problem, closest(first, [*lists, *known]))
+    return segments
+
+
+def _lists_by_name(tables: Mapping[str, Any]) -> dict[str, str]:
+    """The list that each named entry stands in."""
+    lists = {}
+    for key in NAMED_LISTS:
+        entries = tables.get(key)
+        if not isinstance(entries, list):
+            continue
+        for entry in entries:
+            if isinstance(entry, dict) and isinstance(entry.get("name"), str):
+                lists[entry["name"]] = key
+    return lists
+
+
+def _index(container: Any, segment: str) -> Any:
+    """The key or index that a segment means; entries of lists go by name or number."""
+    if isinstance(container, dict) and segment:
+        return segment
+    if isinstance(container, list):
+        for i, entry in enumerate(container):
+            if isinstance(entry, dict) and entry.get("name") == segment:
+                return i
+        # At most nine digits: Python refuses to read integers of thousands.
+        if re.fullmatch(r"[0-9]{1,9}", segment) and int(segment) < len(container):
+            return int(segment)
+    raise RefusedOverride(f"there is no {shown(segment)} to set")

@@ -1,0 +1,194 @@
+"""The rules between tables of a scene.
+
+They look at the tables of the file, whose values may be faulty. What hangs on geometry, joints that over-constrain or
+bodies that cannot close, is found by the model. A rule of one kind alone is a method of its record,
+``scene_conflicts``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.assembly import bases_on_nothing, bodies_that_nobody_holds, tips_held_twice
+from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, Body
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.input_rules import bounds_of_no_input, inputs_that_are_not
+from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.rods import Rod, admitted_strains
+from cosserat_casadi.scene.targets import TARGETS, Bound
+
+Rule = Callable[[SceneTables], Iterator[Fault]]
+
+LISTS: dict[str, Family[Any] | type[Entry]] = {
+    "loads": LOADS,
+    "supports": SUPPORTS,
+    "joints": JOINTS,
+    "actuators": ACTUATORS,
+    "rods": Rod,
+    "bodies": Body,
+    "targets": TARGETS,
+    "bounds": Bound,
+}
+"""What the lists of a scene hold."""
+
+SINGULAR = {"rods": "rod", "bodies": "body", "loads": "load", "actuators": "actuator"}
+"""One of what a list holds, in the words of an error."""
+
+
+def scene_faults(given: Table) -> Iterator[Fault]:
+    """Faults of the tables of a scene against each other, by every rule."""
+    scene = SceneTables(given)
+    for rule in RULES:
+        yield from rule(scene)
+
+
+def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
+    """Every table of the lists whose kind is known: its path, its record and the table."""
+    for key, kinds in LISTS.items():
+        for i, table in scene.tables(key):
+            record = kinds.record_of(table) if isinstance(kinds, Family) else kinds
+            if record is not None:
+                yield (key, i), record, table
+
+
+# Names
+
+
+def repeated_names(scene: SceneTables) -> Iterator[Fault]:
+    """Two entries of one list have the same name."""
+    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints"):
+        first = scene.named(key)
+        for i, table in scene.tables(key):
+            name = table.get("name")
+            if isinstance(name, str) and first[name][0] != i:
+                yield Fault((key, i, "name"), f"{shown(name)} is already the name of {key}[{first[name][0]}]")
+
+
+def shared_names(scene: SceneTables) -> Iterator[Fault]:
+    """A load and an actuator have one name: their inputs could not be told apart."""
+    loads = scene.named("loads")
+    for i, table in scene.tables("actuators"):
+        name = table.get("name")
+        if isinstance(name, str) and name in loads:
+            yield Fault(("actuators", i, "name"), f"{shown(name)} is already the name of loads[{loads[name][0]}]")
+
+
+def dangling_names(scene: SceneTables) -> Iterator[Fault]:
+    """A table refers to an entry that the scene does not have."""
+    if not scene.named("rods"):
+        # The rods have a fault already, and every reference would dangle.
+        return
+    for path, record, table in _entries(scene):
+        for field_path, name, key in _references(record, table):
+            known = scene.named(key)
+            if name not in known:
+                problem = f"no {SINGULAR[key]} is named {shown(name)}"
+                yield Fault((*path, *field_path), problem, listing(known, key))
+
+
+def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, str]]:
+    """The names that a table refers to, each with its path in the table and the key of the list that has it."""
+    for field, key in record.references.items():
+        value = table.get(field)
+        if _holds_one_name(record, field):
+            if isinstance(value, str):
+                yield (field,), value, key
+        elif isinstance(value, list):
+            for i, name in enumerate(value):
+                if isinstance(name, str):
+                    yield (field, i), name, key
+
+
+def _holds_one_name(record: type[Entry], field: str) -> bool:
+    """Whether a field that refers to other tables is one name, or a list of them."""
+    annotation = record.model_fields[field].annotation
+    return annotation is str or annotation == str | None
+
+
+# Rods, supports and accuracy
+
+
+def own_rules(scene: SceneTables) -> Iterator[Fault]:
+    """The rules that a kind brings along."""
+    for path, record, table in _entries(scene):
+        for fault in record.scene_conflicts(table, scene):
+            yield fault.below(path)
+
+
+def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
+    """Gravity acts on a rod whose mass is not given."""
+    load_on_all, load_on_rod = _gravity(scene)
+    for i, rod in scene.tables("rods"):
+        load = load_on_all
+        name = rod.get("name")
+        if load is None and isinstance(name, str):
+            load = load_on_rod.get(name)
+        if load is None:
+            continue
+        material = rod.get("material")
+        if "stiffness" in rod and "linear_density" not in rod:
+            remedy = f"{load} acts on this rod: give its mass per length, kg/m"
+            yield Fault(("rods", i, "linear_density"), "missing", remedy)
+        elif "stiffness" not in rod and isinstance(material, Mapping) and "density" not in material:
+            remedy = f"{load} acts on this rod: give its density, kg/m³"
+            yield Fault(("rods", i, "material", "density"), "missing", remedy)
+
+
+def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
+    """The load that weighs every rod, if any, and those that weigh the rods they name."""
+    load_on_all: str | None = None
+    load_on_rod: dict[str, str] = {}
+    for i, load in scene.tables("loads"):
+        if load.get("kind") != "gravity":
+            continue
+        rods = load.get("rods")
+        if rods is None and "bodies" not in load:
+            load_on_all = load_on_all or f"loads[{i}]"
+        elif isinstance(rods, list):
+            load_on_rod.update({name: f"loads[{i}]" for name in rods if isinstance(name, str)})
+    return load_on_all, load_on_rod
+
+
+def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
+    """Two supports hold one tip."""
+    first: dict[str, int] = {}
+    for i, support in scene.tables("supports"):
+        name = support.get("rod")
+        if isinstance(name, str) and first.setdefault(name, i) != i:
+            problem = f"overlapping supports: supports[{first[name]}] holds the tip of {shown(name)} already"
+            yield Fault(("supports", i, "rod"), problem, "one support for each tip")
+
+
+def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
+    """The modes that are listed are as many as the strains of each rod."""
+    accuracy = scene.get("accuracy")
+    if not isinstance(accuracy, Mapping) or not isinstance(accuracy.get("modes"), list):
+        return
+    count = len(accuracy["modes"])
+    for i, rod in scene.tables("rods"):
+        admitted = len(admitted_strains(rod.get("strain")))
+        if admitted and count and admitted != count:
+            problem = f"must have one entry per strain of every rod, got {count} where rods[{i}] admits {admitted}"
+            yield Fault(("accuracy", "modes"), problem, "give one number for all")
+            return
+
+
+RULES: tuple[Rule, ...] = (
+    repeated_names,
+    shared_names,
+    dangling_names,
+    bases_on_nothing,
+    bodies_that_nobody_holds,
+    tips_held_twice,
+    weightless_rods,
+    overlapping_supports,
+    own_rules,
+    miscounted_modes,
+    inputs_that_are_not,
+    bounds_of_no_input,
+)
+"""Every rule. Faults at one key of the file are listed in this order."""

@@ -1,0 +1,125 @@
+"""The scene: rods, what acts on them, and what is asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field
+
+from cosserat_casadi.scene.accuracy import Accuracy
+from cosserat_casadi.scene.actuators import Actuator
+from cosserat_casadi.scene.constraints import Body, Joint, Support
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import Load
+from cosserat_casadi.scene.records import Entry, Record, refusal
+from cosserat_casadi.scene.rods import Rod
+from cosserat_casadi.scene.rules import scene_faults
+from cosserat_casadi.scene.targets import Bound, Target
+from cosserat_casadi.scene.values import NotEmpty, without_repetition
+
+
+def _exactly_one(value: Any) -> Any:
+    # `true` and 1.0 equal 1 in Python.
+    if type(value) is not int or value != 1:
+        raise refusal([Fault((), f"must be 1, got {shown(value)}", "this version reads schema = 1")])
+    return value
+
+
+@dataclass(frozen=True)
+class FreeInput:
+    """A field of one of the scene's tables that stays free at run time.
+
+    Attributes:
+        record: the rod, load or actuator that it belongs to.
+        field: its name in that record, with dots where it is in an inner table.
+        declared: what the record says of it: unit, components, axes.
+    """
+
+    record: Entry
+    field: str
+    declared: InputField
+
+    @property
+    def owner(self) -> str:
+        """Name of the rod, load or actuator."""
+        name: str = self.record.name  # type: ignore[attr-defined]
+        return name
+
+    @property
+    def name(self) -> str:
+        """Name of the input, ``owner.field``."""
+        return f"{self.owner}.{self.field}"
+
+    @property
+    def value(self) -> Any:
+        """The scene's value; None where it is left out and has no default."""
+        value: Any = self.record
+        for key in self.field.split("."):
+            value = getattr(value, key)
+        return value
+
+
+class Scene(Record):
+    """Rods, and what acts on them. SI units, right-handed world axes."""
+
+    example: ClassVar[str] = """\
+schema = 1
+title = "Soft finger, own weight and a tip push"
+inputs = ["push.force", "cable.tension"]
+"""
+
+    schema_version: Annotated[Literal[1], BeforeValidator(_exactly_one)] = Field(
+        alias="schema", description="version of the scene format: 1"
+    )
+    title: str = Field("", description="one line about the scene")
+    inputs: Annotated[tuple[str, ...], AfterValidator(without_repetition)] | None = Field(
+        None,
+        description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
+    )
+    accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
+    rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field(description="the rods, at least one")
+    loads: tuple[Load, ...] = Field((), description="what acts on the rods")
+    supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
+    actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
+    bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
+    joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
+    targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
+    bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
+
+    @property
+    def causes(self) -> tuple[Load | Actuator, ...]:
+        """Loads, then actuators: all that may have an input."""
+        return (*self.loads, *self.actuators)
+
+    def free_inputs(self) -> tuple[FreeInput, ...]:
+        """What stays free at run time: the inputs that the scene lists, or else every magnitude that it gives.
+
+        Returns:
+            listed inputs in their order; magnitudes of loads, then of actuators, in the order of the file.
+        """
+        if self.inputs is not None:
+            return tuple(self._named_input(name) for name in self.inputs)
+        return tuple(
+            FreeInput(record, field, declared)
+            for record in self.causes
+            for field, declared in record.inputs.items()
+            if field in record.model_fields_set
+        )
+
+    def input_names(self) -> tuple[str, ...]:
+        """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
+        return tuple(entry.name for entry in self.free_inputs())
+
+    def _named_input(self, name: str) -> FreeInput:
+        owner, _, field = name.partition(".")
+        # A load or an actuator goes before a rod of the same name.
+        record = next(record for record in (*self.causes, *self.rods) if record.name == owner)
+        return FreeInput(record, field, record.inputs[field])
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Tables that contradict each other, or name what is not in the scene."""
+        yield from scene_faults(given)

@@ -1,0 +1,100 @@
+"""TOML text, from a file or not, to tables; whatever the bytes are, the outcome is tables or a `SceneError`."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.errors import Problem, SceneError
+
+LARGEST = 1_000_000
+"""Bytes of the largest scene that is read."""
+
+DEEPEST = 64
+"""Dots in one key of the deepest table that is read; the parser needs memory with the square of it."""
+
+EMPTY = ("is empty", "a scene has schema = 1 and at least one [[rods]]")
+"""Problem and remedy of a file without text."""
+
+TOO_DEEP = "is nested too deeply for a scene"
+"""Problem of tables that Python's parser, or its stack, is not made for."""
+
+
+def file_text(path: Path) -> str:
+    """Read the text of a file.
+
+    Raises:
+        SceneError: it cannot be read, is empty, is too large or is not UTF-8.
+    """
+    try:
+        if path.is_dir():
+            raise SceneError(Problem(str(path), "is a directory", "a scene is a TOML file"))
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
+            size = os.fstat(file.fileno()).st_size
+    except FileNotFoundError:
+        raise SceneError(Problem(str(path), "no such file")) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", error)
+        raise SceneError(Problem(str(path), f"cannot be read: {reason}")) from None
+    if len(content) > LARGEST:
+        # A pipe has no size beforehand.
+        raise SceneError(_too_large(str(path), max(size, len(content))))
+    return _decoded(path, content)
+
+
+def _decoded(path: Path, content: bytes) -> str:
+    if not content.strip():
+        raise SceneError(Problem(str(path), *EMPTY))
+    not_text = SceneError(Problem(str(path), "is not text in UTF-8", "a scene is a TOML file"))
+    if b"\0" in content:
+        raise not_text
+    try:
+        return content.decode("utf-8-sig")
+    except ValueError:
+        raise not_text from None
+
+
+def _too_large(where: str, size: int) -> Problem:
+    megabytes = math.ceil(size / 1e5) / 10
+    return Problem(where, f"is {megabytes:.1f} MB; a scene is at most 1 MB")
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """Parse TOML text.
+
+    Raises:
+        SceneError: it is not TOML, is empty, too large or nested too deeply.
+    """
+    if len(text) > LARGEST:
+        raise SceneError(_too_large("", len(text)))
+    if not text.strip():
+        raise SceneError(Problem("", *EMPTY))
+    if keys_are_too_deep(text):
+        raise SceneError(Problem("", TOO_DEEP))
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise SceneError(Problem("", TOO_DEEP)) from None
+    except ValueError as error:
+        raise SceneError(_syntax_problem(str(error))) from None
+
+
+def keys_are_too_deep(text: str) -> bool:
+    """Whether a dotted key is so deep that parsing it would take all memory; keys cannot span lines."""
+    # Bare keys end at these signs; quoted keys may hold them, so that quotes before dots are counted by line.
+    bare = max(len(re.findall(r"[^.\s]\s*\.", part)) for part in re.split(r"[=,{}\[\]#\n]", text))
+    quoted = max(len(re.findall(r"[\"']\s*\.", line)) for line in text.split("\n"))
+    return bare > DEEPEST or quoted > DEEPEST
+
+
+def _syntax_problem(message: str) -> Problem:
+    """A problem from the message of the parser, which ends in the line and column where there is one."""
+    parts = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
+    if parts is None:
+        return Problem("", "is not TOML: a number in it is beyond all range")
+    return Problem(parts[2], f"is not TOML: {parts[1]}")

@@ -1,0 +1,148 @@
+"""The reference page: committed as generated, complete, with examples that are scenes."""
+
+from __future__ import annotations
+
+import copy
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cosserat_casadi import scene_from_dict
+from cosserat_casadi.scene import Scene, reference
+from cosserat_casadi.scene.families import Family, contents_of
+from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.rods import SectionRecord
+
+PAGE = reference.reference_text()
+EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
+
+# What the examples of the page refer to.
+CONTEXT: dict[str, Any] = tomllib.loads("""
+schema = 1
+[[rods]]
+name = "finger"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 2.0e9, poisson_ratio = 0.4, density = 1100.0 }
+section = { shape = "circle", radius = 2.0e-3 }
+[[rods]]
+name = "arm"
+length = 0.2
+strain = "kirchhoff"
+stiffness = { bending_x = 1.0, bending_y = 1.0, torsion = 0.8 }
+linear_density = 0.01
+[[bodies]]
+name = "platform"
+[[joints]]
+rod = "arm"
+body = "platform"
+kind = "fixed"
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "finger"
+force = [0.1, 0, 0]
+[[actuators]]
+name = "cable"
+kind = "tendon"
+rod = "finger"
+tension = 3.0
+offset = [1.5e-3, 0.0]
+""")
+
+
+def completed(example: str) -> dict[str, Any]:
+    """The scene of an example: its tables stand beside those of the context, inner tables in their owners."""
+    tables = copy.deepcopy(CONTEXT)
+    for key, value in tomllib.loads(example).items():
+        if key == "helix":
+            del tables["actuators"][0]["offset"]
+            tables["actuators"][0][key] = value
+        elif key not in reference._inner(Scene):
+            rod = tables["rods"][0]
+            if key == "stiffness":
+                del rod["material"], rod["section"]
+            rod[key] = value
+        elif isinstance(value, list) and isinstance(value[0], dict):
+            names = {entry.get("name", "") for entry in value}
+            tables[key] = [entry for entry in tables.get(key, []) if entry.get("name") not in names] + value
+        else:
+            tables[key] = value
+    return tables
+
+
+def records(record: type[Record] = Scene) -> list[type[Record]]:
+    """Every record that a scene may hold."""
+    met = [record]
+    for field in record.model_fields.values():
+        contents = contents_of(field)
+        if isinstance(contents, Family):
+            for kind in contents.records.values():
+                met += records(kind)
+        elif contents is not None:
+            met += records(contents)
+    return met
+
+
+def lines() -> list[list[str]]:
+    """The cells of every line of a table of keys."""
+    rows = [line.strip("| ").split(" | ") for line in PAGE.splitlines() if line.startswith("| `")]
+    return [row for row in rows if len(row) == 5]
+
+
+def test_the_committed_page_is_the_generated_one() -> None:
+    assert reference.COMMITTED.read_text(encoding="utf-8") == PAGE
+
+
+def test_the_module_writes_the_committed_page(tmp_path: Path) -> None:
+    page = tmp_path / "scene.md"
+    program = f"""
+import pathlib, runpy
+write = pathlib.Path.write_text
+pathlib.Path.write_text = lambda path, text, encoding: write(pathlib.Path({str(page)!r}), text, encoding)
+runpy.run_module("cosserat_casadi.scene.reference", run_name="__main__")
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
+    assert page.read_text(encoding="utf-8") == PAGE
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=range(len(EXAMPLES)))
+def test_every_example_is_part_of_a_scene(example: str) -> None:
+    scene_from_dict(completed(example))
+
+
+def test_a_key_that_is_not_read_is_not_in_an_example() -> None:
+    """The examples are read, not passed over: a faulty one is refused."""
+    with pytest.raises(Exception, match="unknown key"):
+        scene_from_dict(completed('[[rods]]\nname = "finger"\nlenght = 0.2\n'))
+
+
+def test_every_record_has_an_example_and_every_key_a_line() -> None:
+    expected = [key for record in records() for key in reference._inner(record) if not in_a_heading(record, key)]
+    assert sorted(row[0].strip("`") for row in lines()) == sorted(expected)
+    assert [record.__name__ for record in records() if record.example not in EXAMPLES] == []
+
+
+def in_a_heading(record: type[Record], key: str) -> bool:
+    """Whether a key heads a section: a table of the scene, or the word of a kind."""
+    if record is Scene:
+        return reference._inner(Scene)[key] is not None
+    return key == "kind" or (key == "shape" and issubclass(record, SectionRecord))
+
+
+def test_every_number_has_a_unit_or_has_none_by_nature() -> None:
+    without = [row[0] for row in lines() if row[2] == "–" and re.search("number|component", row[1])]
+    assert sorted(set(without)) == ["`lower`", "`modes`", "`nodes`", "`quaternion`", "`span`", "`upper`"]
+
+
+def test_links_lead_to_headings() -> None:
+    headings = [re.sub(r"[^\w -]", "", line.lstrip("# ")) for line in PAGE.splitlines() if line.startswith("#")]
+    for anchor in re.findall(r"\]\(#([^)]+)\)", PAGE):
+        assert headings.count(anchor) == 1, anchor
+    for path in re.findall(r"\]\(([^)#]+)\)", PAGE):
+        assert (reference.COMMITTED.parent / path).exists(), path
