@@ -9,10 +9,7 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.inputs import ROD_UNITS
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
@@ -57,30 +54,17 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
 
 def input_entries(model: Model) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
-    kinds = {cause.name: cause for cause in model.scene.causes}
-    entries = []
-    for name, place, default in zip(
-        model.inputs.names, model.inputs.slices.values(), model.inputs.defaults, strict=True
-    ):
-        load, field = name.split(".", 1)
-        cause = kinds.get(load)
-        entries.append(
-            {
-                "name": name,
-                "unit": ROD_UNITS[field] if cause is None else EFFECTS[cause.kind].magnitudes[field],
-                "axes": _axes(cause, default),
-                "first": place.start,
-                "shape": list(default.shape),
-                "value": default.ravel(order="F").tolist(),
-            }
-        )
-    return entries
-
-
-def _axes(cause: Any, default: FloatArray) -> str:
-    if default.shape[0] == 1:
-        return "none"
-    return "section" if getattr(cause, "frame", "world") == "body" else "world"
+    return [
+        {
+            "name": entry.name,
+            "unit": entry.unit,
+            "axes": entry.axes,
+            "first": indices.start,
+            "shape": list(entry.shape),
+            "value": entry.default.ravel(order="F").tolist(),
+        }
+        for entry, indices in model.inputs
+    ]
 
 
 def actuator_entries(model: Model) -> list[dict[str, Any]]:

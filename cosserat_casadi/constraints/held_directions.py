@@ -63,6 +63,13 @@ def prismatic(axis: Sequence[float], place: NumericPose) -> HeldDirections:
     return HeldDirections(_across(axis, place), ALL, turn_with_place=True)
 
 
+def prismatic_in_plane(axis: Sequence[float], place: NumericPose) -> HeldDirections:
+    """The same in the x–z plane of the tip, where something else keeps the body in that plane."""
+    direction = place.rotation.T @ np.asarray(axis, dtype=float)
+    across = np.cross([0.0, 1.0, 0.0], direction / np.linalg.norm(direction))
+    return HeldDirections(across[:, None], NORMAL, turn_with_place=True)
+
+
 def _across(axis: Sequence[float], place: NumericPose) -> FloatArray:
     """Two unit vectors at right angles to an axis, in the axes of the place, shape (3, 2)."""
     direction = place.rotation.T @ np.asarray(axis, dtype=float)

@@ -15,7 +15,7 @@ from cosserat_casadi.constraints import held_directions as held
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FrameName, UnloadedScene, same_plane
+from cosserat_casadi.model.floating_frames import FLAT, FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.rods import base_pose
 
@@ -153,23 +153,39 @@ def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint, place: Numer
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
-    rotates = joint.kind == "spherical"
     together = list(_coplanar(unloaded, joint))
-    if len(together) < 2:
-        return held.PINNED if rotates else held.CLAMPED
-    if together[0] == joint:
-        return held.PINNED_UPRIGHT if rotates else held.CLAMPED
-    return held.PINNED_IN_PLANE if rotates else held.CLAMPED_IN_PLANE
+    follows_others = len(together) > 1 and together[0] != joint
+    if isinstance(joint, scenes.PrismaticJoint):
+        return held.prismatic_in_plane(joint.axis, place) if follows_others else held.prismatic(joint.axis, place)
+    if isinstance(joint, scenes.RevoluteJoint):
+        return held.PINNED_IN_PLANE if follows_others else held.revolute(joint.axis, place)
+    if joint.kind == "fixed":
+        return held.CLAMPED_IN_PLANE if follows_others else held.CLAMPED
+    if follows_others:
+        return held.PINNED_IN_PLANE
+    return held.PINNED_UPRIGHT if len(together) > 1 else held.PINNED
 
 
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
     """Joints of the same body on planar rods of the same plane, in their order; none off a planar rod."""
     plane = unloaded.plane(joint.rod)
-    if plane is None:
+    if plane is None or not _moves_in_plane(joint):
         return
     for candidate in unloaded.scene.joints:
-        if candidate.body == joint.body and _shares_plane(unloaded, joint, plane, candidate):
+        same_body = candidate.body == joint.body
+        if same_body and _moves_in_plane(candidate) and _shares_plane(unloaded, joint, plane, candidate):
             yield candidate
+
+
+def _moves_in_plane(joint: scenes.Joint) -> bool:
+    """Whether a joint leaves its body in the x–z plane of the tip: a hinge about its normal, a slide along it."""
+    if not isinstance(joint, scenes.RevoluteJoint | scenes.PrismaticJoint):
+        return True
+    axis = _place(joint).rotation.T @ np.asarray(joint.axis)
+    out_of_plane = abs(axis[1]) / np.linalg.norm(axis)
+    if isinstance(joint, scenes.RevoluteJoint):
+        return bool(out_of_plane >= 1 - FLAT)
+    return bool(out_of_plane <= FLAT)
 
 
 def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPose, candidate: scenes.Joint) -> bool:

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import routing
+from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -73,6 +74,10 @@ class DiscreteScene:
         tendons = [actuator for actuator in self.scene.actuators if actuator.kind == "tendon"]
         of_length = [tendon for tendon in tendons if tendon.length is not None]
         return [CableOfLength(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in of_length]
+
+    def constraint(self, where: str) -> SectionConstraint:
+        """The constraint of a table of the scene, by its path."""
+        return next(placed.constraint for placed in self.constraints if placed.where == where)
 
     @property
     def is_assembly(self) -> bool:

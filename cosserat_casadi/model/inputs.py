@@ -1,9 +1,14 @@
-"""What stays free at run time: the model's inputs, their order and their values in the scene."""
+"""What stays free at run time: the model's inputs as records, their order and their values in the scene.
+
+Names, units, bounds and shapes of an input are said once, by the record of the scene that it belongs to
+(``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +17,71 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.records import Entry
+
+SHORTEST = 1e-3
+"""Least value of a length as an input, relative to the scene's."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """One input of a model.
+
+    Attributes:
+        owner: name of the rod, the load or the actuator that it belongs to.
+        field: its name in the table of the owner.
+        declared: what the record of the owner says of it: unit, components, bounds.
+        default: the scene's value, shape (components, k): column k holds the k-th Legendre coefficient.
+        axes: "none" of a number, else "world" or "section".
+        of_rod: whether the owner is a rod.
+    """
+
+    owner: str
+    field: str
+    declared: InputField
+    default: FloatArray
+    axes: str
+    of_rod: bool
+
+    @property
+    def name(self) -> str:
+        """``owner.field``, as the scene and the command line say it."""
+        return f"{self.owner}.{self.field}"
+
+    @property
+    def unit(self) -> str:
+        """SI unit of each number."""
+        return self.declared.unit
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        return self.default.size
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Components and Legendre coefficients."""
+        return (self.default.shape[0], self.default.shape[1])
+
+    @property
+    def lower(self) -> float:
+        """Least value of each entry by what it is; -inf where there is none."""
+        if self.declared.positive:
+            return SHORTEST * float(self.default.min())
+        return -np.inf if self.declared.lower is None else self.declared.lower
+
+    def faults(self, value: FloatArray) -> Iterator[Problem]:
+        """What is wrong with a value."""
+        if value.size != self.size:
+            yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
+        elif not np.all(np.isfinite(value)):
+            yield Problem(self.name, f"must be finite, got {value.tolist()}")
+        elif self.declared.positive and not np.all(value > 0.0):
+            yield Problem(self.name, f"must be > 0, got {value.item()}")
+        elif self.declared.nonzero and not np.any(value):
+            yield Problem(self.name, "must not be zero", "w, x, y, z; its norm does not matter")
 
 
 @dataclass(frozen=True)
@@ -21,26 +89,49 @@ class InputLayout:
     """The inputs of a model, stacked into one vector.
 
     Attributes:
-        names: ``load.field`` or ``actuator.field`` in the order of the vector.
-        defaults: the scene's value of each, shape (1, 1) of a tension, a length or a pressure, (3, k) of a vector:
-            column k holds the k-th Legendre coefficient.
-        rods: names of the rods, those apart that a load or an actuator has too.
+        entries: the inputs in the order of the vector.
     """
 
-    names: tuple[str, ...]
-    defaults: tuple[FloatArray, ...]
-    rods: frozenset[str] = frozenset()
+    entries: tuple[Input, ...]
 
-    @property
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """``load.field`` or ``actuator.field`` in the order of the vector."""
+        return tuple(entry.name for entry in self.entries)
+
+    @cached_property
+    def defaults(self) -> tuple[FloatArray, ...]:
+        """The scene's value of each, shape (components, k)."""
+        return tuple(entry.default for entry in self.entries)
+
+    @cached_property
     def size(self) -> int:
         """Entries of the stacked vector."""
-        return sum(value.size for value in self.defaults)
+        return sum(entry.size for entry in self.entries)
 
-    @property
+    @cached_property
     def slices(self) -> dict[str, slice]:
         """Where each input stands in the stacked vector, column after column."""
-        ends = np.cumsum([0, *[value.size for value in self.defaults]])
+        ends = np.cumsum([0, *[entry.size for entry in self.entries]])
         return {n: slice(int(a), int(b)) for n, a, b in zip(self.names, ends, ends[1:], strict=False)}
+
+    def __iter__(self) -> Iterator[tuple[Input, slice]]:
+        """The inputs with where they stand in the stacked vector."""
+        return zip(self.entries, self.slices.values(), strict=True)
+
+    def of_load(self, name: str, field: str) -> slice | None:
+        """Where a field of a load or an actuator stands in the stacked vector; None where the scene fixes it."""
+        return self._slice_of(name, field, of_rod=False)
+
+    def of_rod(self, name: str, field: str) -> slice | None:
+        """Where a field of a rod stands in the stacked vector; None where the scene fixes it."""
+        return self._slice_of(name, field, of_rod=True)
+
+    def _slice_of(self, owner: str, field: str, *, of_rod: bool) -> slice | None:
+        for entry, indices in self:
+            if (entry.owner, entry.field, entry.of_rod) == (owner, field, of_rod):
+                return indices
+        return None
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked vector, from the scene's values and those given here.
@@ -55,79 +146,69 @@ class InputLayout:
             SceneError: a name is unknown, or a value has another shape or is not finite.
         """
         given = dict(values or {})
-        problems = [
-            Problem(name, "is not an input of this model", f"its inputs are {', '.join(self.names) or 'none'}")
-            for name in given
-            if name not in self.names
-        ]
-        parts = []
-        for name, default in zip(self.names, self.defaults, strict=True):
-            value = np.asarray(given.get(name, default), dtype=float)
-            if value.size != default.size:
-                problems.append(Problem(name, f"must have {default.size} numbers, got {value.size}"))
-            elif not np.all(np.isfinite(value)):
-                problems.append(Problem(name, f"must be finite, got {value.tolist()}"))
-            elif name.endswith(".length") and not value.item() > 0.0:
-                problems.append(Problem(name, f"must be > 0, got {value.item()}"))
-            elif name.endswith(".base.quaternion") and not np.any(value):
-                problems.append(Problem(name, "must not be zero", "w, x, y, z; its norm does not matter"))
+        known = ", ".join(self.names) or "none"
+        unknown = [name for name in given if name not in self.names]
+        problems = [Problem(name, "is not an input of this model", f"its inputs are {known}") for name in unknown]
+        parts = [np.zeros(0)]
+        for entry in self.entries:
+            value = np.asarray(given.get(entry.name, entry.default), dtype=float)
+            problems.extend(entry.faults(value))
             parts.append(value.ravel(order="F"))
         if problems:
             raise SceneError(*problems)
-        return np.concatenate([np.zeros(0), *parts])
+        return np.concatenate(parts)
 
-    @property
+    @cached_property
     def geometry(self) -> list[int]:
-        """Places of what the equations are not linear in and must not be zero: lengths and poses of rods."""
-        names = [name for name in self.names if name.split(".", 1)[1] in ROD_UNITS and name.split(".")[0] in self.rods]
-        return [i for name in names for i in range(*self.slices[name].indices(self.size))]
+        """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
+        indices = np.arange(self.size)
+        return [int(i) for entry, own in self if entry.declared.geometry for i in indices[own]]
 
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
-        return {
-            name: stacked[place].reshape(default.shape, order="F")
-            for (name, place), default in zip(self.slices.items(), self.defaults, strict=True)
-        }
+        return {entry.name: stacked[own].reshape(entry.shape, order="F") for entry, own in self}
 
 
-ROD_UNITS: dict[str, str] = {"length": "m", "base.position": "m", "base.quaternion": "1"}
-"""What may be free of a rod itself, each with its unit."""
-
-
-def rod_field(rod: scenes.Rod, field: str) -> FloatArray:
-    """What may be free of a rod itself, as the scene has it: shape (1, 1), (3, 1) or (4, 1)."""
-    if field == "length":
-        return np.array([[rod.length]])
-    return base_pose(rod)[("base.position", "base.quaternion").index(field)][:, None]
-
-
-def magnitude(cause: scenes.Load | scenes.Actuator, field: str) -> FloatArray:
+def magnitude(cause: Entry, field: str) -> FloatArray:
     """A magnitude as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
     value = getattr(cause, field, None)
+    if value is None:
+        return np.zeros((cause.inputs[field].components, 1))
     if isinstance(value, int | float):
         return np.array([[float(value)]])
-    return np.zeros((3, 1)) if value is None else coefficients(value)
+    return coefficients(value)
 
 
 def input_layout(scene: scenes.Scene) -> InputLayout:
     """The inputs a scene asks for, by default every magnitude of loads and actuators."""
-    names = scene.input_names()
-    causes = {cause.name for cause in scene.causes}
-    rods = frozenset(rod.name for rod in scene.rods) - causes
-    return InputLayout(names, tuple(_default(scene, *name.split(".", 1)) for name in names), rods)
+    return InputLayout(tuple(_input(free) for free in scene.free_inputs()))
 
 
-def _default(scene: scenes.Scene, name: str, field: str) -> FloatArray:
-    cause = next((cause for cause in scene.causes if cause.name == name), None)
-    if cause is not None:
-        return magnitude(cause, field)
-    return rod_field(next(rod for rod in scene.rods if rod.name == name), field)
+def _input(free: scenes.FreeInput) -> Input:
+    record = free.record
+    of_rod = isinstance(record, scenes.Rod)
+    default = _rod_value(record, free.field) if isinstance(record, scenes.Rod) else magnitude(record, free.field)
+    return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod)
+
+
+def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:
+    """What may be free of a rod itself, as the scene has it: shape (1, 1), (3, 1) or (4, 1)."""
+    position, quaternion = base_pose(rod)
+    values = {"length": np.array([rod.length]), "base.position": position, "base.quaternion": quaternion}
+    return values[field][:, None]
+
+
+def _axes(free: scenes.FreeInput) -> str:
+    if free.declared.components == 1:
+        return "none"
+    follows = free.declared.axes == "frame" and getattr(free.record, "frame", "world") == "body"
+    return "section" if follows else "world"
 
 
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:
     """Numeric magnitudes of every load and actuator for given inputs, by name and field."""
-    free = layout.unpack(inputs)
-    return {
-        cause.name: {f: free.get(f"{cause.name}.{f}", magnitude(cause, f)) for f in EFFECTS[cause.kind].magnitudes}
-        for cause in scene.causes
-    }
+    values = {cause.name: {field: magnitude(cause, field) for field in cause.inputs} for cause in scene.causes}
+    for entry, indices in layout:
+        if not entry.of_rod:
+            values[entry.owner][entry.field] = inputs[indices].reshape(entry.shape, order="F")
+    return values

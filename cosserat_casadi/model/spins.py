@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FLAT, FrameName
+from cosserat_casadi.model.floating_frames import FLAT
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import System
 
@@ -38,11 +38,17 @@ def free_spins(system: System) -> Iterator[Problem]:
 
 def _joints(system: System, body: scenes.Body) -> FloatArray | None:
     """Points of the joints of a body in its axes, k×3, m; None where a joint holds its orientation."""
-    frame = FrameName("body", body.name)
-    joints = [placed.constraint for placed in system.discrete.constraints if placed.frame == frame]
-    if any(joint.held.rotations.size for joint in joints):
-        return None
-    return np.array([joint.place.position for joint in joints])
+    points = []
+    for i, joint in enumerate(system.discrete.scene.joints):
+        if joint.body != body.name:
+            continue
+        points.append(np.asarray(joint.position))
+        if isinstance(joint, scenes.RevoluteJoint):
+            # A hinge holds all but the turn about its axis: the body may turn about that line alone.
+            points.append(np.add(joint.position, joint.axis))
+        elif system.discrete.constraint(f"joints[{i}]").held.rotations.size:
+            return None
+    return np.array(points)
 
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:

@@ -162,17 +162,17 @@ class System:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
         record = self.discrete.unloaded.records[rod]
         position, quaternion = (ca.DM(part) for part in base_pose(record))
-        free_position = self._input(f"{rod}.base.position")
-        free_quaternion = self._input(f"{rod}.base.quaternion")
+        free_position = self._rod_input(rod, "base.position")
+        free_quaternion = self._rod_input(rod, "base.quaternion")
         if free_position is not None:
             position = free_position
         if free_quaternion is not None:
             quaternion = free_quaternion / ca.sqrt(ca.sumsqr(free_quaternion))
         return Pose(position, quaternion)
 
-    def _input(self, name: str) -> Matrix | None:
+    def _rod_input(self, rod: str, field: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
-        entries = self.discrete.layout.slices.get(name)
+        entries = self.discrete.layout.of_rod(rod, field)
         return None if entries is None else self.arguments.inputs[entries]
 
     def energy(self) -> Matrix:
@@ -189,7 +189,7 @@ class System:
 
     def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
         """Magnitudes of a load in these arguments; None where one is zero for good."""
-        return {field: self._value(load, field) for field in EFFECTS[load.kind].magnitudes}
+        return {field: self._value(load, field) for field in load.inputs}
 
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
@@ -283,16 +283,14 @@ def rod_actions(discrete: DiscreteScene, rod: str, base_R_world: Matrix, argumen
     for cause in discrete.scene.causes:
         effect = EFFECTS[cause.kind]
         if effect.acts_on(cause, rod):
-            values = {f: _value(discrete.layout, cause, f, arguments.inputs) for f in effect.magnitudes}
+            values = {f: _value(discrete.layout, cause, f, arguments.inputs) for f in cause.inputs}
             actions.extend(per_length(action, ratio) for action in effect.actions(cause, site, values))
     return actions
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
     """Length of a rod relative to the scene's where it is an input, else None."""
-    if rod not in discrete.layout.rods:
-        return None
-    entries = discrete.layout.slices.get(f"{rod}.length")
+    entries = discrete.layout.of_rod(rod, "length")
     return None if entries is None else arguments.inputs[entries] / discrete.rods[rod].properties.length
 
 
@@ -304,7 +302,7 @@ def per_length(action: Action, ratio: Ratio) -> Action:
 
 
 def _value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, inputs: Matrix) -> Matrix | None:
-    entries = layout.slices.get(f"{cause.name}.{field}")
+    entries = layout.of_load(cause.name, field)
     default = magnitude(cause, field)
     if entries is None:
         return constant(default)

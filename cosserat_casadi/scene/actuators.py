@@ -69,7 +69,7 @@ offset = [1.5e-3, 0.0]
 """
 
     inputs: ClassVar[Mapping[str, InputField]] = {
-        "tension": InputField("N", 1),
+        "tension": InputField("N", 1, lower=0.0),
         "length": InputField("m", 1, positive=True),
     }
 

@@ -16,6 +16,7 @@ class InputField:
         polynomial: whether each component may be a list of Legendre coefficients along the rod.
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
+        lower: least value that each number can have by what it is; None where there is none.
         axes: axes of the components: "none" of a number, those of the world, or "frame" for those that the record's
             own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it.
@@ -26,6 +27,7 @@ class InputField:
     polynomial: bool = False
     positive: bool = False
     nonzero: bool = False
+    lower: float | None = None
     axes: Literal["none", "world", "frame"] = "none"
     geometry: bool = False
 
