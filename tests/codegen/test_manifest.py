@@ -160,7 +160,7 @@ def test_units_of_arguments_and_results(exported: Exported) -> None:
         for entry in manifest["functions"]
         for value in (*entry["arguments"], *entry["results"])
     }
-    assert units["x"] == units["residual"] == units["quaternion"] == units["factor"] == "1"
+    assert units["x"] == units["residual"] == units["quaternion"] == units["load_factor"] == "1"
     assert units["position"] == units["base_position"] == "m"
     assert units["base_force"] == "N"
     assert units["base_moment"] == "N m"
