@@ -41,12 +41,12 @@ class HeldLength:
     @cached_property
     def pull(self) -> Matrix:
         """Derivative of the rod's residual with respect to the tension, n×1: ∂L/∂q / ℓ."""
-        return self.cable.length_gradient / self._unit
+        return self.cable.gradient / self._unit
 
     @cached_property
     def sag(self) -> Matrix:
         """What the wanted length exceeds that of the course by, relative to the rod's length, 1×1."""
-        sag = (self.wanted - self.cable.length) / self._unit
+        sag = (self.wanted - self.cable.value) / self._unit
         return sag if self._whole else self.factor * sag + (1 - self.factor) * self.tension
 
     @cached_property

@@ -16,11 +16,10 @@ import casadi as ca
 
 from cosserat_casadi.constraints.joint import Joint, Placement
 from cosserat_casadi.constraints.tip_support import Pose
-from cosserat_casadi.loads.load import BodyAction
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame, Tie
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.load_assembly import BodyLoad, BodyLoads
 from cosserat_casadi.rod.reaction import Reaction
 
 if TYPE_CHECKING:
@@ -186,9 +185,7 @@ class Coupled:
         if carrier.kind == "rod":
             statics, rotation = self.system.rods[carrier.name].statics, self.placements[carrier].rotation
             found.append((-(rotation @ statics.base_force), -(rotation @ statics.base_moment)))
-        for action in self._actions(carrier):
-            force, moment, arm = self._body_wrench(carrier, action)
-            found.append((force, ca.cross(arm, force) + moment))
+        found += [load.resultant for load in self._body_loads(carrier)]
         return found
 
     def _tie_wrench(self, tie: Tie) -> tuple[Matrix, Matrix]:
@@ -198,25 +195,11 @@ class Coupled:
         turned = ca.DM.zeros(3, 1) if moment is None else rotation @ moment
         return rotation @ tie.joint.force(multipliers), turned
 
-    def _actions(self, carrier: Carrier) -> list[BodyAction]:
-        body, found = self.couplings.moving[carrier].body, []
+    def _body_loads(self, carrier: Carrier) -> list[BodyLoad]:
+        body, place = self.couplings.moving[carrier].body, self.placements[carrier]
         if body is None:
             return []
-        for load in self.system.discrete.scene.loads:
-            effect = EFFECTS[load.kind]
-            action = effect.on_body(load, body, self.system.values(load))
-            if action is not None:
-                found.append(action)
-        return found
-
-    def _body_wrench(self, carrier: Carrier, action: BodyAction) -> tuple[Matrix, Matrix, Matrix]:
-        """Force, moment and arm of a load on a body, world axes."""
-        rotation = self.placements[carrier].rotation
-        none = ca.DM.zeros(3, 1)
-        force, moment = (none if vector is None else vector for vector in (action.force, action.moment))
-        if action.follower:
-            force, moment = rotation @ force, rotation @ moment
-        return force, moment, rotation @ ca.DM(action.position)
+        return BodyLoads(self.system.discrete, body, place.position, place.rotation, self.system.arguments).all()
 
     def _add_holds(self, blocks: Blocks) -> None:
         discrete = self.system.discrete
@@ -272,13 +255,10 @@ class Coupled:
         q, rows = place.quaternion, self.system.discrete.moving_slices[carrier]
         own = (ca.sumsqr(q) - 1) * ca.DM.eye(4) + 2 * q @ q.T - place.turned_moment(moment) / frame.unit
         blocks.add(rows, rows, self._scaled(ca.diagcat(ca.DM(3, 3), own)))
-        for action in self._actions(carrier):
-            force, couple, arm = self._body_wrench(carrier, action)
-            if action.follower:
-                turning = -hat(ca.cross(arm, force) + couple)
-                self._add_turn(blocks, carrier, carrier, -hat(force), turning)
-            else:
-                self._add_turn(blocks, carrier, carrier, ca.DM(3, 3), hat(force) @ hat(arm))
+        for load in self._body_loads(carrier):
+            self._add_turn(blocks, carrier, carrier, *load.with_turn)
+            if load.with_shift is not None:
+                self._add_shift(blocks, carrier, *load.with_shift)
         self._add_give(blocks, rows)
 
     def _add_reaction(self, blocks: Blocks, name: str) -> None:
@@ -292,6 +272,10 @@ class Coupled:
         blocks.add(rod, discrete.moving_slices[carrier], residual @ rotation.T @ self._motion(carrier)[3:, :])
         force, moment = force - hat(igm.statics.base_force), moment - hat(igm.statics.base_moment)
         self._add_turn(blocks, carrier, carrier, *(-(rotation @ m @ rotation.T) for m in (force, moment)))
+        if reaction.with_shift is not None:
+            residual, force, moment = reaction.with_shift
+            blocks.add(rod, discrete.moving_slices[carrier], residual @ rotation.T @ self._motion(carrier)[:3, :])
+            self._add_shift(blocks, carrier, *(-(rotation @ m @ rotation.T) for m in (force, moment)))
         for tie in self.couplings.ties:
             if tie.rod == name:
                 self._add_passed(blocks, carrier, tie, tie.joint)
@@ -311,6 +295,11 @@ class Coupled:
         """Variations of force and moment on a frame with the turn of a frame, 3×3 each, world axes."""
         turn = self._motion(turning)[3:, :]
         self._add_rows(blocks, carrier, self.system.discrete.moving_slices[turning], force @ turn, moment @ turn)
+
+    def _add_shift(self, blocks: Blocks, carrier: Carrier, force: Matrix, moment: Matrix) -> None:
+        """Variations of force and moment on a frame with its own shift, 3×3 each, world axes."""
+        shift = self._motion(carrier)[:3, :]
+        self._add_rows(blocks, carrier, self.system.discrete.moving_slices[carrier], force @ shift, moment @ shift)
 
     def _add_rows(self, blocks: Blocks, carrier: Carrier, columns: slice, force: Matrix, moment: Matrix) -> None:
         """Variations of force and moment on a frame, 3×k each, as rows of its balance."""

@@ -11,8 +11,12 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier
-from cosserat_casadi.model.system import Arguments, DiscreteScene, System, balance, ratio_of, rod_actions
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, rod_actuation
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import Arguments, DiscreteScene, System, ratio_of
 from cosserat_casadi.rod import kinematics
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import largest_turn
 
 RESOLVED_TURN = 2.0
@@ -125,7 +129,8 @@ def igm(discrete: DiscreteScene, rod: str) -> ca.Function:
     rotation = quaternion_to_matrix(quaternion)
     arguments = Arguments(q, inputs)
     place = kinematics.shape(discrete_rod, q, ratio_of(discrete, rod, arguments))
-    model = balance(place, rod_actions(discrete, rod, rotation.T, arguments))
+    loads = RodLoads(discrete, rod, RodBase(position, rotation.T), arguments, place.ratio).all()
+    model = InverseGeometricModel(Statics(place, loads), tuple(rod_actuation(discrete, rod, arguments)))
     actuated = model.actuation_force
     outputs = [
         model.generalised_force if actuated is None else model.generalised_force + actuated,
@@ -226,8 +231,8 @@ def actuator(discrete: DiscreteScene, name: str) -> ca.Function:
     """
     a = _arguments(discrete)
     effort, extent, gradient = System(discrete, a).actuator(name)
-    kind = next(one.kind for one in discrete.scene.actuators if one.name == name)
-    names = {"tendon": ["tension", "length"], "chamber": ["pressure", "volume"]}[kind]
+    member = next(EFFECTS[one.kind] for one in discrete.scene.actuators if one.name == name)
+    names = [member.effort, member.conjugate]
     outputs = [ca.densify(ca.MX(value)) for value in (effort, extent, gradient)]
     return ca.Function(
         _name("actuator", name), [a.x, a.inputs], outputs, ["x", "inputs"], [*names, f"d_{names[1]}_d_x"]

@@ -16,7 +16,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.couplings import FLAT, Carrier
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.load_assembly import BodyLoads
 from cosserat_casadi.model.system import System
 
 
@@ -41,8 +41,9 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:
     """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
-    actions = [EFFECTS[load.kind].on_body(load, body, system.values(load)) for load in system.discrete.scene.loads]
-    points = [a.position for a in actions if a is not None and a.force is not None and not a.follower]
+    place = system.coupled.placements[Carrier("body", body.name)]
+    loads = BodyLoads(system.discrete, body, place.position, place.rotation, system.arguments).all()
+    points = [load.position for load in loads if load.aligns]
     return np.reshape(points, (-1, 3))
 
 

@@ -15,26 +15,25 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.actuators.chamber import PRESSED, volume_rates
-from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.constraints.cable_length import HeldLength
 from cosserat_casadi.constraints.tip_support import Hold, Pose
-from cosserat_casadi.loads.load import Site, constant
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.assembly import Coupled
 from cosserat_casadi.model.couplings import Carrier, Couplings, MovingFrame
-from cosserat_casadi.model.inputs import InputLayout, magnitude
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
 from cosserat_casadi.model.rods import base_pose, rod_properties
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.actuation import Actuation
+from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.kinematics import Shape, shape
+from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, Routing, Wrench
+from cosserat_casadi.rod.wrenches import PoseWrench, RodLoad, Wrench
 
 
 @dataclass(frozen=True)
@@ -120,10 +119,10 @@ class DiscreteScene:
         return self.strain_size + self.multiplier_size + moving + len(self.cables)
 
     @cached_property
-    def cables(self) -> list[tuple[scenes.Tendon, Routing]]:
+    def cables(self) -> list[tuple[scenes.Actuator, Routing]]:
         """Tendons of given length, whose tensions are unknowns, unit EI/ℓ² each."""
-        held = [a for a in self.scene.actuators if a.kind == "tendon" and a.length is not None]
-        return [(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in held]
+        held = [a for a in self.scene.actuators if EFFECTS[a.kind].prescribes_conjugate(a)]
+        return [(tendon, EFFECTS[tendon.kind].quantity(tendon, self.rods[tendon.rod].grid)) for tendon in held]
 
     @cached_property
     def tension_slices(self) -> list[slice]:
@@ -216,23 +215,17 @@ class System:
     def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
         """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
         one = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
-        place, discrete_rod = self.rods[one.rod].shape, self.discrete.rods[one.rod]
-        if one.kind == "chamber":
-            rates = ca.DM(
-                volume_rates(one, discrete_rod.grid) * discrete_rod.properties.length * discrete_rod.grid.weights
-            )
-            effort, extent, gradient = self._effort(one, "pressure"), *place.strain_work(PRESSED, rates)
-        else:
-            cable = RoutedCable(place, routing(one, discrete_rod.grid))
-            held = one.length is not None
-            effort = self._tension(one) if held else self._effort(one, "tension")
-            effort = ca.fmax(effort, 0.0) if one.slack else effort
-            extent, gradient = cable.length, cable.length_gradient
+        member = EFFECTS[one.kind]
+        conjugate = member.quantity(one, self.discrete.rods[one.rod].grid).on(self.rods[one.rod].shape)
+        unknown = member.prescribes_conjugate(one)
+        effort = self._tension(one) if unknown else self._effort(one, member.effort)
+        effort = ca.fmax(effort, 0.0) if member.may_go_slack(one) else effort
+        extent, gradient = conjugate.value, conjugate.gradient
         rest = type(self.arguments.x)(self.discrete.size - self.discrete.strain_size, 1)
         return effort, extent, ca.vertcat(self._among_strains(one.rod, gradient), rest).T
 
     def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
-        value = _value(self.discrete.layout, actuator, field, self.arguments)
+        value = input_value(self.discrete.layout, actuator, field, self.arguments)
         return ca.DM(0.0) if value is None else value
 
     def base(self, rod: str) -> Pose:
@@ -275,15 +268,15 @@ class System:
         factor = self.arguments.factor
         return gap if self.whole else factor * gap + (1 - factor) * multipliers
 
-    def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
-        """Magnitudes of a load in these arguments; None where one is zero for good."""
-        magnitudes = EFFECTS[load.kind].magnitudes
-        return {field: _value(self.discrete.layout, load, field, self.arguments) for field in magnitudes}
-
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
-        actions = rod_actions(self.discrete, rod, self._base_R_world(rod), self.arguments)
-        return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
+        loads = self._loads(rod)
+        return [load for load in loads if not isinstance(load, PoseWrench) and not load.follower]
+
+    def _loads(self, rod: str) -> list[RodLoad]:
+        base = RodBase(self.base(rod).position, self._base_R_world(rod))
+        ratio = ratio_of(self.discrete, rod, self.arguments)
+        return RodLoads(self.discrete, rod, base, self.arguments, ratio).all()
 
     @cached_property
     def holds(self) -> list[tuple[scenes.Support, Hold, Matrix]]:
@@ -306,13 +299,13 @@ class System:
         """Equations of the cables of given length."""
         return [self._held_length(tendon, routing) for tendon, routing in self.discrete.cables]
 
-    def _held_length(self, tendon: scenes.Tendon, routing: Routing) -> HeldLength:
+    def _held_length(self, tendon: scenes.Actuator, routing: Routing) -> HeldLength:
         whole = replace(self.arguments, factor=1.0)
         return HeldLength(
-            cable=next(cable for _, cable in self.rods[tendon.rod].cables if cable.routing is routing),
-            wanted=_value(self.discrete.layout, tendon, "length", whole),
+            cable=routing.on(self.rods[tendon.rod].shape),
+            wanted=input_value(self.discrete.layout, tendon, "length", whole),
             tension=self.arguments.x[self.discrete.tension_place(tendon.name)],
-            slack=tendon.slack,
+            slack=EFFECTS[tendon.kind].may_go_slack(tendon),
             factor=self.arguments.factor,
         )
 
@@ -326,14 +319,16 @@ class System:
     def _rod(self, name: str) -> InverseGeometricModel:
         discrete_rod = self.discrete.rods[name]
         q = self.arguments.x[self.discrete.rod_slices[name]]
-        actions = rod_actions(self.discrete, name, self._base_R_world(name), self.arguments)
-        actions += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
+        loads = self._loads(name)
+        loads += [hold.wrench(m) for s, hold, m in self.holds if s.rod == name]
         ties = [tie for tie in self.discrete.couplings.ties if tie.rod == name]
-        actions += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
-        actions += [Cable(routing, self._tension(t)) for t, routing in self.discrete.cables if t.rod == name]
-        return balance(shape(discrete_rod, q, ratio_of(self.discrete, name, self.arguments)), actions)
+        loads += [tie.joint.wrench(self.coupled.multipliers(tie)) for tie in ties]
+        efforts = rod_actuation(self.discrete, name, self.arguments)
+        efforts += [Actuation(routing, self._tension(t)) for t, routing in self.discrete.cables if t.rod == name]
+        place = shape(discrete_rod, q, ratio_of(self.discrete, name, self.arguments))
+        return InverseGeometricModel(Statics(place, loads), tuple(efforts))
 
-    def _tension(self, tendon: scenes.Tendon) -> Matrix:
+    def _tension(self, tendon: scenes.Actuator) -> Matrix:
         """Unknown tension of a tendon of given length, N."""
         return self.discrete.tension_unit(tendon.rod) * self.arguments.x[self.discrete.tension_place(tendon.name)]
 
@@ -344,47 +339,7 @@ class System:
         return ca.sparsify(rotation, 1e-16).T if isinstance(rotation, ca.DM) else rotation.T
 
 
-def balance(place: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
-    """Balance of a rod of this shape under these actions."""
-    wrenches = [action for action in actions if not isinstance(action, Actuation)]
-    actuation = tuple(action for action in actions if isinstance(action, Actuation))
-    return InverseGeometricModel(Statics(place, wrenches), actuation)
-
-
-def rod_actions(discrete: DiscreteScene, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
-    """What the scene's loads and actuators do to one rod, in its base frame."""
-    discrete_rod = discrete.rods[rod]
-    site = Site(discrete_rod.properties, discrete_rod.grid, base_R_world)
-    found: list[Action] = []
-    ratio = ratio_of(discrete, rod, arguments)
-    for cause in discrete.scene.causes:
-        effect = EFFECTS[cause.kind]
-        if effect.acts_on(cause, rod):
-            values = {field: _value(discrete.layout, cause, field, arguments) for field in effect.magnitudes}
-            found.extend(drawn_out(action, ratio) for action in effect.actions(cause, site, values))
-    return found
-
-
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
     """Length of a rod relative to the scene's where it is an input, else None."""
     place = discrete.layout.slices.get(f"{rod}.length") if rod in discrete.layout.rods else None
     return None if place is None else arguments.inputs[place] / discrete.rods[rod].properties.length
-
-
-def drawn_out(action: Action, ratio: Ratio) -> Action:
-    """An action on a rod whose length is free: what acts per length acts on more or less of it."""
-    if ratio is None or not isinstance(action, LineWrench):
-        return action
-    force, moment = (part if part is None else part * ratio for part in (action.force, action.moment))
-    return replace(action, force=force, moment=moment)
-
-
-def _value(
-    layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, arguments: Arguments
-) -> Matrix | None:
-    place = layout.slices.get(f"{cause.name}.{field}")
-    default = magnitude(cause, field)
-    value = constant(default) if place is None else ca.reshape(arguments.inputs[place], *default.shape)
-    if value is None or (isinstance(arguments.factor, float) and arguments.factor == 1.0):
-        return value
-    return arguments.factor * value
