@@ -17,6 +17,7 @@ from typing import Any, ClassVar, Literal
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
@@ -141,6 +142,36 @@ class Load(ABC):
     def data(self, load: Any, site: Site) -> FloatArray:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
         return np.zeros((0, len(site.X)))
+
+    def arrows(self, load: Any, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
+        """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
+
+        Args:
+            load: the load as the scene has it.
+            label: its name in the legend; empty where the legend names it already.
+            position: of the k sections it is drawn at, world axes, shape (3, k), m.
+            force: on them, world axes, shape (3, k), N or N/m.
+            moment: likewise, N m or N m/m.
+        """
+        if self.abscissa(load) is not None:
+            return self.point_arrows(label, position, force, moment)
+        largest = float(np.linalg.norm(force, axis=0).max())
+        legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
+        found = []
+        for k, (start, vector) in enumerate(zip(position.T, force.T, strict=True)):
+            if np.any(vector):
+                found.append(Arrow(start, vector, "line", "" if k else legend))
+        return found
+
+    def point_arrows(self, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
+        """Force and moment on one section or on a body, shape (3, 1) each; what is zero is not drawn."""
+        found = []
+        vectors: tuple[tuple[Sort, FloatArray], ...] = (("point", force[:, 0]), ("moment", moment[:, 0]))
+        for sort, vector in vectors:
+            if np.any(vector):
+                legend = f"{label}: {np.linalg.norm(vector):.3g} {UNITS[sort]}" if label else ""
+                found.append(Arrow(position[:, 0], vector, sort, legend))
+        return found
 
 
 def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:

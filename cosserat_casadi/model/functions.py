@@ -11,7 +11,7 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.couplings import Carrier
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, rod_actuation
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, DiscreteScene, System, ratio_of
 from cosserat_casadi.rod import kinematics
@@ -98,11 +98,12 @@ def path_tangent(discrete: DiscreteScene) -> ca.Function:
     """Inputs ↦ dx/dfactor of the unloaded scene: its linear response.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
-    lengths and bases of rods are inputs, it is the map's linear part at the scene's own values.
+    lengths and bases of rods are inputs, or those of loads that depend on poses, it is the map's linear part at the
+    scene's own values.
     """
     size, inputs = discrete.layout.size, ca.MX.sym("inputs", discrete.layout.size)
     unloaded, still, rest = np.zeros(discrete.size), np.zeros(size), np.zeros(size)
-    geometry = discrete.layout.geometry
+    geometry = sorted({*discrete.layout.geometry, *nonlinear_inputs(discrete)})
     rest[geometry] = discrete.layout.pack()[geometry]
     jacobian = path_jacobian(discrete)(unloaded, rest, 0.0)
     rate, probes = path_rate(discrete), np.hstack([np.zeros((size, 1)), np.eye(size)])

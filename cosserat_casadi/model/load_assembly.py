@@ -13,7 +13,6 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
-from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.inputs import InputLayout, load_values, magnitude
@@ -120,18 +119,45 @@ def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
     discrete_rod, at = discrete.rods[rod], EFFECTS[load.kind].abscissa(load)
     grid = discrete_rod.grid
     nodes = np.arange(grid.size) if at is None else np.array([grid.node_at(at)])
-    return Site(discrete_rod.properties, grid.nodes[nodes], lambda: _unloaded_poses(discrete, rod, nodes))
+    at_nodes = np.eye(grid.size)[nodes]
+    return Site(discrete_rod.properties, grid.nodes[nodes], lambda: unloaded_poses(discrete, rod, at_nodes))
 
 
-def _unloaded_poses(discrete: DiscreteScene, rod: str, nodes: Indices) -> Poses:
-    """World poses of a rod's nodes in the unloaded scene, at the lengths and bases that the scene gives."""
+def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> Poses:
+    """World poses of sections in the unloaded scene, at the lengths and bases that the scene gives.
+
+    Args:
+        discrete: the scene.
+        rod: name of the rod.
+        interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
+    """
     discrete_rod, base = discrete.rods[rod], discrete.couplings.unloaded_base(rod)
     unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
-    position = ca.evalf(ca.densify(unloaded.position)).full()[:, nodes]
-    directors = np.array([ca.evalf(ca.densify(d)).full()[:, nodes] for d in unloaded.directors])
-    # directors[a, i, k]: component i of director a at node k, the column a of the rotation matrix.
-    rotations = base.rotation @ np.transpose(directors, (2, 1, 0))
-    return base.position[:, None] + base.rotation @ position, rotations
+    position, *directors = (ca.evalf(ca.densify(field)).full() for field in (unloaded.position, *unloaded.directors))
+    # Column a of the rotation matrix is director a.
+    rotations = np.stack([director @ interpolation.T for director in directors], axis=-1).transpose(1, 0, 2)
+    return base.position[:, None] + base.rotation @ position @ interpolation.T, base.rotation @ rotations
+
+
+def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
+    """Indices of the inputs of loads that depend on poses: the equations need not be linear in them."""
+    layout = discrete.layout
+    found: list[int] = []
+    for load in discrete.scene.loads:
+        names = [name for name in layout.names if name.startswith(f"{load.name}.")]
+        values = {field: ca.DM.ones(*magnitude(load, field).shape) for field in EFFECTS[load.kind].magnitudes}
+        if names and not all(kernel.pose_free for kernel in _kernels(discrete, load, values)):
+            for name in names:
+                found += range(layout.size)[layout.slices[name]]
+    return found
+
+
+def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Matrix]) -> list[TracedLoad]:
+    """The kernel of a load for each rod and body that it acts on."""
+    member = EFFECTS[load.kind]
+    sizes = [len(member.data(load, _site(discrete, rod, load))) for rod in discrete.rods if member.acts_on(load, rod)]
+    sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
+    return [traced(member, load, values, size) for size in sizes]
 
 
 def input_values(layout: InputLayout, cause: scenes.Load | scenes.Actuator, arguments: Arguments) -> dict[str, Matrix]:

@@ -369,3 +369,13 @@ def test_load_without_wrench_and_energy_says_so() -> None:
 
     with pytest.raises(NotImplementedError, match="Empty gives neither a wrench nor an energy"):
         Empty().wrench(None, None, {})  # type: ignore[arg-type]
+
+
+def test_first_tangent_of_the_load_path_is_exact_at_the_inputs_of_the_scene() -> None:
+    """The wrench of a spring is bilinear in stiffness and anchor: no linear map of the inputs by probes."""
+    model = made("kirchhoff", "spring")
+    none, inputs = np.zeros(model.size), model.pack()
+    rate = model.path_rate(none, inputs, 0.0, np.zeros(model.inputs.size), 1.0).full()
+    expected = -np.linalg.solve(model.path_jacobian(none, inputs, 0.0).full(), rate)
+    assert np.abs(expected).max() > 0.1
+    assert_allclose(model.path_tangent(inputs).full(), expected, rtol=0, atol=1e-12)
