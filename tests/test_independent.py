@@ -12,13 +12,13 @@ from scipy.linalg import expm
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from cosserat_casadi import Scene, Solution, build, discretise, solve, solve_scene
+from cosserat_casadi.rod.actuation import Actuation, StrainSum
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
-from cosserat_casadi.rod.wrenches import ActuationStress
 from tests.initial_value import integrate
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
@@ -244,7 +244,8 @@ def test_actuation_stress_bends_to_the_curvature_it_balances() -> None:
 def _actuation(basis: DiscreteRod, q: np.ndarray, stress: np.ndarray) -> np.ndarray:
     import casadi as ca
 
-    action = ActuationStress(ca.DM(stress), np.ones((1, basis.grid.size)))
+    densities = np.outer(stress, np.ones(basis.grid.size))
+    action = Actuation(StrainSum(range(6), densities), ca.DM(1.0))
     model = InverseGeometricModel(Statics(shape(basis, ca.DM(q)), []), (action,))
     assert model.actuation_force is not None
     assert_allclose(

@@ -9,43 +9,32 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-import casadi as ca
 import numpy as np
 
-from cosserat_casadi.actuators.routing import routing, span_ends
-from cosserat_casadi.loads.load import Effect, Site
+from cosserat_casadi.actuators.actuator import Actuator
+from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod.wrenches import Action, ActuationStress
+from cosserat_casadi.rod.actuation import StrainSum
 
-PRESSED = (0, 1, 5)
-"""Strains on which the pressure does work: bendings and extension."""
+BENDINGS_AND_EXTENSION = (0, 1, 5)
+"""Strains K_x, K_y and Γ_z, on which the pressure does work."""
 
 
 @final
-class Chamber(Effect):
+class Chamber(Actuator):
     """A pressure (Pa) in a channel along the rod."""
 
     kind = "chamber"
     magnitudes: ClassVar[Mapping[str, str]] = {"pressure": "Pa"}
+    effort = "pressure"
+    conjugate = "volume"
+    units: ClassVar[Mapping[str, str]] = {"pressure": "Pa", "volume": "m³"}
+    energy_sign = -1.0
 
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """The stress of the pressure, against the elastic one."""
-        pressure = values["pressure"]
-        if pressure is None:
-            return []
-        places = ca.DM.triplet(list(PRESSED), [0, 1, 2], ca.DM.ones(3), 6, 3)
-        return [ActuationStress(-pressure * places, volume_rates(load, site.grid))]
-
-    def breaks(self, load: Any) -> tuple[float, ...]:
-        """The ends of the channel."""
-        return span_ends(load)
-
-
-def volume_rates(chamber: Any, grid: Grid) -> FloatArray:
-    """Rates of the volume per length with K_x, K_y and Γ_z, shape (3, M): m³ and m²; zero outside the span."""
-    place = routing(chamber, grid)
-    x, y = place.offset
-    rates = np.zeros((3, grid.size))
-    rates[:, place.nodes] = chamber.area * np.array([y, -x, np.ones_like(x)])
-    return rates
+    def quantity(self, actuator: Any, grid: Grid) -> StrainSum:
+        """The volume: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
+        channel = routing(actuator, grid)
+        x, y = channel.offset
+        densities = np.zeros((3, grid.size))
+        densities[:, channel.nodes] = actuator.area * np.array([y, -x, np.ones_like(x)])
+        return StrainSum(BENDINGS_AND_EXTENSION, densities)

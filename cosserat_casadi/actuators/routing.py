@@ -10,7 +10,7 @@ from numpy.polynomial import polynomial
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.grid import Grid, Indices
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.rod.wrenches import Routing
+from cosserat_casadi.rod.cable import Routing
 
 
 def routing(actuator: Any, grid: Grid) -> Routing:

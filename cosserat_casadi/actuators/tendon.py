@@ -5,24 +5,33 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-from cosserat_casadi.actuators.routing import routing, span_ends
-from cosserat_casadi.loads.load import Effect, Site
-from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action, Cable
+from cosserat_casadi.actuators.actuator import Actuator
+from cosserat_casadi.actuators.routing import routing
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.rod.cable import Routing
 
 
 @final
-class Tendon(Effect):
+class Tendon(Actuator):
     """A tension (N) along a routing through the sections; a length (m) makes the tension an unknown of the scene."""
 
     kind = "tendon"
     magnitudes: ClassVar[Mapping[str, str]] = {"tension": "N", "length": "m"}
+    effort = "tension"
+    conjugate = "length"
+    units: ClassVar[Mapping[str, str]] = {"tension": "N", "length": "m"}
+    energy_sign = 1.0
+    least_effort = 0.0
+    drawn_as = "cable"
 
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """The cable, where its tension is known."""
-        tension = values["tension"]
-        return [] if load.length is not None or tension is None else [Cable(routing(load, site.grid), tension)]
+    def quantity(self, actuator: Any, grid: Grid) -> Routing:
+        """The routing, whose length the tension works on."""
+        return routing(actuator, grid)
 
-    def breaks(self, load: Any) -> tuple[float, ...]:
-        """Where the cable enters the rod and where it is anchored."""
-        return span_ends(load)
+    def prescribes_conjugate(self, actuator: Any) -> bool:
+        """Where the scene gives a length."""
+        return actuator.length is not None
+
+    def may_go_slack(self, actuator: Any) -> bool:
+        """Where the scene lets a cable of given length sag."""
+        return bool(actuator.slack)

@@ -43,12 +43,12 @@ class CableLength:
     @cached_property
     def pull(self) -> Matrix:
         """Derivative of the rod's residual with respect to the tension, n×1: ∂L/∂q / ℓ."""
-        return self.cable.length_gradient / self._rod_length
+        return self.cable.gradient / self._rod_length
 
     @cached_property
     def sag(self) -> Matrix:
         """What the wanted length exceeds that of the cable by, relative to the rod's length, 1×1."""
-        return (self.wanted - self.cable.length) / self._rod_length
+        return (self.wanted - self.cable.value) / self._rod_length
 
     @cached_property
     def residual(self) -> Matrix:

@@ -5,35 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-import numpy as np
-
-from cosserat_casadi.loads.load import BodyAction, Effect, Site
-from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod.wrenches import Action
+from cosserat_casadi.loads.load import BodyPoint, Load, Section
+from cosserat_casadi.maths.typing import Matrix
 
 
 @final
-class BodyWrench(Effect):
+class BodyWrench(Load):
     """A force (N) and a moment (N m) on a body."""
 
     kind = "body_wrench"
     magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
 
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """Nothing: it acts on no rod."""
-        return []
+    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+        """The point of the body it names."""
+        return BodyPoint(load.position) if load.body == body.name else None
 
-    def acts_on(self, load: Any, rod: str) -> bool:
-        """No rod."""
-        return False
-
-    def on_body(self, load: Any, body: Any, values: Mapping[str, Matrix | None]) -> BodyAction | None:
-        """The wrench, on the body it names."""
-        if load.body != body.name:
-            return None
-        return BodyAction(load.position, values["force"], values["moment"], load.frame == "body")
-
-    def has_potential_on_bodies(self, load: Any, values: Mapping[str, FloatArray], *, flat: bool) -> bool:
-        """A force of fixed direction has; a moment of fixed direction where bodies turn about one axis."""
-        dead = load.frame == "world"
-        return (dead or not np.any(values["force"])) and ((dead and flat) or not np.any(values["moment"]))
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force and moment as given."""
+        return values["force"], values["moment"]

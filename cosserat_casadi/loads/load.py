@@ -1,73 +1,91 @@
-"""What an effect is: a word of the scene format turned into wrenches on a rod."""
+"""What a load is: a kind of table of the scene, as the wrench that it puts on one section of a rod or on a body.
+
+A member is one file and one line of the registry. It gives :meth:`Load.wrench`, a small function of a section, or
+:meth:`Load.energy`, of which the wrench is the derivative. What the mechanics do with it follows from its structure: a
+wrench that does not depend on the pose is coefficients times known profiles, dead or follower as its axes say, and any
+other is evaluated section by section and differentiated by CasADi. Whether it has a potential follows in the same way.
+"""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from abc import ABC
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Literal
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
-from cosserat_casadi.rod.wrenches import Action, PointWrench
+from cosserat_casadi.rod.section_kernel import wrench_of_energy
+
+Axes = Literal["world", "section"]
+Poses = tuple[FloatArray, FloatArray]
+"""World positions (3, k) in m and rotation matrices world_R_section (k, 3, 3) of k sections."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """The section of a rod, or the point of a body, that a load acts on.
+
+    Attributes:
+        position: 3×1, world axes, m.
+        rotation: 3×3, world_R_section, or world_R_body.
+        data: the numbers that :meth:`Load.data` gives for this section, d×1.
+    """
+
+    position: Matrix
+    rotation: Matrix
+    data: Matrix
 
 
 @dataclass(frozen=True)
 class Site:
-    """The rod that an effect meets.
+    """Sections of a rod before it is loaded.
 
     Attributes:
-        rod: what it is made of.
-        grid: its nodes.
-        base_R_world: 3×3, turns world coordinates into those of the rod's base frame.
+        rod: what the rod is made of.
+        X: abscissae of the sections, shape (k,).
+        unloaded: poses of the sections in the unloaded scene, found when they are asked for.
     """
 
     rod: RodProperties
-    grid: Grid
-    base_R_world: Matrix
+    X: FloatArray
+    unloaded: Callable[[], Poses]
 
-    def placed(self, vector: Matrix | None, *, follower: bool) -> Matrix | None:
-        """Coordinates in which the mechanics want a vector: base frame if dead, section frame if follower."""
-        return vector if vector is None or follower else self.base_R_world @ vector
+    @cached_property
+    def unloaded_position(self) -> FloatArray:
+        """World positions in the unloaded scene, shape (3, k), m."""
+        return self.unloaded()[0]
 
-    def wrench_at(self, X: float, values: Mapping[str, Matrix | None], *, follower: bool) -> PointWrench:
-        """Force and moment on the section at X."""
-        force = self.placed(values["force"], follower=follower)
-        moment = self.placed(values["moment"], follower=follower)
-        return PointWrench(X, force, moment, follower)
+    @cached_property
+    def unloaded_rotation(self) -> FloatArray:
+        """World rotation matrices in the unloaded scene, shape (k, 3, 3)."""
+        return self.unloaded()[1]
 
 
 @dataclass(frozen=True)
-class BodyAction:
-    """Force and moment on a rigid body.
+class BodyPoint:
+    """How a load acts on a rigid body.
 
     Attributes:
         position: the point that the force acts on, in the axes of the body, m.
-        force: 3×1, N, or None.
-        moment: 3×1, N m, or None.
-        follower: whether force and moment turn with the body; their axes are then those of the body.
+        factor: what force and moment are multiplied by.
     """
 
-    position: tuple[float, float, float]
-    force: Matrix | None
-    moment: Matrix | None
-    follower: bool
-
-    def scaled(self, factor: Matrix | None) -> BodyAction:
-        """The load times a factor; itself where there is none."""
-        if factor is None:
-            return self
-        force = None if self.force is None else factor * self.force
-        moment = None if self.moment is None else factor * self.moment
-        return replace(self, force=force, moment=moment)
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    factor: float = 1.0
 
 
-class Effect(ABC):
-    """One kind of load. A member is one file and one line of the registry.
+class Load(ABC):
+    """One kind of load.
+
+    The methods take ``load``, the frozen record of the scene. ``values`` holds each input as a 3×k or 1×1 matrix,
+    symbolic or numeric; an entry that is zero for good is not stored in it.
 
     Attributes:
         kind: the word of the scene format.
@@ -77,47 +95,83 @@ class Effect(ABC):
     kind: ClassVar[str]
     magnitudes: ClassVar[Mapping[str, str]]
 
-    @abstractmethod
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """What the load does to one rod.
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.
 
-        Args:
-            load: the load as the scene has it.
-            site: the rod it acts on.
-            values: each magnitude as a 3×k matrix, symbolic or numeric; None where it is zero for good.
+        Returns:
+            force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
+            multiplies profile j of :meth:`profiles`.
         """
+        energy = self.energy(load, section, values)
+        if energy is None:
+            raise NotImplementedError(f"{type(self).__name__} gives neither a wrench nor an energy")
+        return wrench_of_energy(energy, section.position, section.rotation)
+
+    def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
+        """Potential energy on a section, 1×1, J or J/m; None for a load that is not given by one."""
+        return None
+
+    def axes(self, load: Any) -> Axes:
+        """Axes that force and moment are given in; what is given by an energy is in world axes."""
+        return "section" if getattr(load, "frame", "world") == "body" else "world"
+
+    def abscissa(self, load: Any) -> float | None:
+        """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod."""
+        return None
 
     def acts_on(self, load: Any, rod: str) -> bool:
         """Whether the load acts on the rod of this name."""
-        return bool(load.rod == rod)
+        return bool(getattr(load, "rod", None) == rod)
 
-    def on_body(self, load: Any, body: Any, values: Mapping[str, Matrix | None]) -> BodyAction | None:
-        """What the load does to a rigid body; most loads act on rods alone.
-
-        Args:
-            load: the load as the scene has it.
-            body: the body as the scene has it.
-            values: as in :meth:`actions`.
-        """
+    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+        """How the load acts on a rigid body of the scene; None where it does not."""
         return None
-
-    def has_potential_on_bodies(self, load: Any, values: Mapping[str, FloatArray], *, flat: bool) -> bool:
-        """Whether what these values do to bodies derives from a potential; ``flat``: all turn about one axis."""
-        return True
 
     def breaks(self, load: Any) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
-        return ()
+        at = self.abscissa(load)
+        return () if at is None else (at,)
 
-    def has_potential(self, load: Any, values: Mapping[str, FloatArray], rod: RodProperties) -> bool:
-        """Whether these values derive from a potential, so that stability is the sign of an eigenvalue.
+    def profiles(self, load: Any, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
+        """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
 
-        A force of fixed direction does. A moment of fixed direction does only where the rod turns about one axis.
+        By default the columns are coefficients of Legendre polynomials in 2X − 1.
         """
-        forces = not np.any(values.get("force", 0.0))
-        moments = not np.any(values.get("moment", 0.0))
-        dead = getattr(load, "frame", "world") == "world"
-        return (dead or forces) and (moments or (dead and len(rod.turning_axes) < 2))
+        return np.asarray(legendre_polynomials(columns, X).T)
+
+    def data(self, load: Any, site: Site) -> FloatArray:
+        """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
+        return np.zeros((0, len(site.X)))
+
+    def arrows(self, load: Any, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
+        """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
+
+        Args:
+            load: the load as the scene has it.
+            label: its name in the legend; empty where the legend names it already.
+            position: of the k sections it is drawn at, world axes, shape (3, k), m.
+            force: on them, world axes, shape (3, k), N or N/m.
+            moment: likewise, N m or N m/m.
+        """
+        if self.abscissa(load) is not None:
+            return self.point_arrows(label, position, force, moment)
+        largest = float(np.linalg.norm(force, axis=0).max())
+        legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
+        found = []
+        for k, (start, vector) in enumerate(zip(position.T, force.T, strict=True)):
+            if np.any(vector):
+                found.append(Arrow(start, vector, "line", "" if k else legend))
+        return found
+
+    def point_arrows(self, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
+        """Force and moment on one section or on a body, shape (3, 1) each; what is zero is not drawn."""
+        found = []
+        vectors: tuple[tuple[Sort, FloatArray], ...] = (("point", force[:, 0]), ("moment", moment[:, 0]))
+        for sort, vector in vectors:
+            if np.any(vector):
+                legend = f"{label}: {np.linalg.norm(vector):.3g} {UNITS[sort]}" if label else ""
+                found.append(Arrow(position[:, 0], vector, sort, legend))
+        return found
 
 
 def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:

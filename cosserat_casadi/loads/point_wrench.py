@@ -9,22 +9,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-from cosserat_casadi.loads.load import Effect, Site
+from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action
 
 
 @final
-class PointForceAndMoment(Effect):
+class PointForceAndMoment(Load):
     """A force (N) and a moment (N m) at X = at, dead or follower."""
 
     kind = "point_wrench"
     magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
 
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """The wrench on the section."""
-        return [site.wrench_at(load.at, values, follower=load.frame == "body")]
-
-    def breaks(self, load: Any) -> tuple[float, ...]:
+    def abscissa(self, load: Any) -> float:
         """The loaded section."""
-        return (load.at,)
+        return float(load.at)
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force and moment as given."""
+        return values["force"], values["moment"]

@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, final
 
-from cosserat_casadi.loads.load import Effect, Site
+from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action
 
 
 @final
-class TipWrench(Effect):
+class TipWrench(Load):
     """A force (N) and a moment (N m) at X = 1, dead or follower."""
 
     kind = "tip_wrench"
     magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
 
-    def actions(self, load: Any, site: Site, values: Mapping[str, Matrix | None]) -> list[Action]:
-        """The wrench on the tip section."""
-        return [site.wrench_at(1.0, values, follower=load.frame == "body")]
+    def abscissa(self, load: Any) -> float:
+        """The tip."""
+        return 1.0
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force and moment as given."""
+        return values["force"], values["moment"]

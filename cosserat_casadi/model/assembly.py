@@ -24,21 +24,22 @@ with d. Docs/theory.md, section 8.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import Variations
-from cosserat_casadi.loads.load import BodyAction
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.constraints import ASSEMBLED, PlacedConstraint
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
 from cosserat_casadi.model.homotopy import column_at, row_at, spring
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.load_assembly import BodyLoad, BodyLoads
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.reaction import Reaction
 
@@ -240,13 +241,18 @@ class Assembly:
             blocks.add(strains, self.system.discrete.deviation(name), work @ derivative @ self._frame_motion(name))
 
     def _add_turned_loads(self, blocks: Blocks, rod: str) -> None:
-        """What the turn of a floating base does to its rod: dead loads turn the other way."""
+        """What the motion of a floating base does to its rod: dead loads turn back, pose-dependent ones change."""
         name = FrameName("rod", rod)
-        world_R_base = self.poses[name].pose.rotation
-        residual, _, _ = self._reactions[rod].with_turn
-        turn = self._frame_motion(name)[:3, :]
+        base_R_world = self.poses[name].pose.rotation.T
+        reaction = self._reactions[rod]
+        motion = self._frame_motion(name)
         strains = self.system.discrete.unknowns.strain(rod)
-        blocks.add(strains, self.system.discrete.deviation(name), residual @ world_R_base.T @ turn)
+        deviation = self.system.discrete.deviation(name)
+        by_turn, _, _ = reaction.with_turn
+        blocks.add(strains, deviation, by_turn @ base_R_world @ motion[:3, :])
+        if reaction.with_shift is not None:
+            by_shift, _, _ = reaction.with_shift
+            blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
     # Rows of floating frames
 
@@ -261,8 +267,8 @@ class Assembly:
         for name in self.frames:
             if name.kind == "rod":
                 wrenches[name] = wrenches[name] + self._rod_reaction(name)
-            for action in self._body_actions(name):
-                wrenches[name] = wrenches[name] + self._body_wrench(name, action)
+            for load in self._body_loads[name]:
+                wrenches[name] = wrenches[name] + load.wrench
         return wrenches
 
     def _rod_reaction(self, name: FrameName) -> Matrix:
@@ -311,8 +317,8 @@ class Assembly:
                 variations.append((strains, by_poses.section @ self._section_motion(placed)))
         if name.kind == "rod":
             variations += self._rod_reaction_variations(name, by_motion)
-        for action in self._body_actions(name):
-            by_motion[name] = by_motion[name] + self._body_wrench_variation(name, action)
+        for load in self._body_loads[name]:
+            by_motion[name] = by_motion[name] + load.variation
         for frame, derivative in by_motion.items():
             variations.append((discrete.deviation(frame), derivative @ self._frame_motion(frame)))
         return variations
@@ -332,7 +338,12 @@ class Assembly:
         _, force, moment = reaction.with_turn
         # In the axes of the base, dead loads turn back; the base wrench itself turns with the base.
         by_turn = ca.vertcat(moment - hat(statics.base_moment), force - hat(statics.base_force))
-        by_motion[name] = by_motion[name] - ca.horzcat(to_world @ by_turn @ rotation.T, ca.DM(6, 3))
+        by_shift: Matrix = ca.DM(6, 3)
+        if reaction.with_shift is not None:
+            _, force, moment = reaction.with_shift
+            by_shift = ca.vertcat(moment, force)
+        in_base_axes = ca.horzcat(by_turn @ rotation.T, by_shift @ rotation.T)
+        by_motion[name] = by_motion[name] - to_world @ in_base_axes
         for placed in discrete.constraints_on(rod):
             variations += self._passed_on(placed, to_world, by_motion)
         return variations
@@ -354,41 +365,18 @@ class Assembly:
 
     # Loads on bodies
 
-    def _body_actions(self, name: FrameName) -> list[BodyAction]:
-        body = self.frames[name].body
+    @cached_property
+    def _body_loads(self) -> dict[FrameName, list[BodyLoad]]:
+        """Loads on the bodies at the load factor; none on the bases of rods."""
+        return {name: list(self._loads_on(name, frame.body)) for name, frame in self.frames.items()}
+
+    def _loads_on(self, name: FrameName, body: scenes.Body | None) -> Iterator[BodyLoad]:
         if body is None:
-            return []
-        actions = []
-        for load in self.system.discrete.scene.loads:
-            action = EFFECTS[load.kind].on_body(load, body, self.system.values(load))
-            if action is not None:
-                actions.append(action.scaled(self._load_factor))
-        return actions
-
-    def _body_wrench(self, name: FrameName, action: BodyAction) -> Matrix:
-        """Wrench of a load on a body about its origin, world axes, 6×1."""
-        force, moment, lever = self._body_vectors(name, action)
-        return ca.vertcat(ca.cross(lever, force) + moment, force)
-
-    def _body_wrench_variation(self, name: FrameName, action: BodyAction) -> Matrix:
-        """Its derivative with the motion of the body, 6×6: a follower turns with it, the lever always does."""
-        force, moment, lever = self._body_vectors(name, action)
-        if action.follower:
-            by_turn = ca.vertcat(-hat(ca.cross(lever, force) + moment), -hat(force))
-        else:
-            by_turn = ca.vertcat(hat(force) @ hat(lever), ca.DM(3, 3))
-        return ca.horzcat(by_turn, ca.DM(6, 3))
-
-    def _body_vectors(self, name: FrameName, action: BodyAction) -> tuple[Matrix, Matrix, Matrix]:
-        """Force, moment and lever of a load on a body, world axes."""
-        rotation = self.poses[name].pose.rotation
-        zero = ca.DM.zeros(3, 1)
-        force = zero if action.force is None else action.force
-        moment = zero if action.moment is None else action.moment
-        if action.follower:
-            force = rotation @ force
-            moment = rotation @ moment
-        return force, moment, rotation @ ca.DM(action.position)
+            return
+        pose = self.poses[name].pose
+        loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
+        for load in loads.all():
+            yield load.scaled(self._load_factor)
 
     # Cables of given length
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -14,12 +14,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.model.inputs import InputLayout, input_layout, load_values
+from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.rank import check_constraints
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.rod.properties import RodProperties
 
 
 @dataclass(frozen=True)
@@ -80,26 +79,7 @@ class Model(functions.ModelFunctions):
 
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
-        values = load_values(self.scene, self.inputs, inputs)
-        on_rods = all(
-            EFFECTS[cause.kind].has_potential(cause, values[cause.name], self._turning(discrete_rod.properties))
-            for cause in self.scene.causes
-            for discrete_rod in self.discrete.rods.values()
-            if EFFECTS[cause.kind].acts_on(cause, discrete_rod.properties.name)
-        )
-        return on_rods and all(
-            EFFECTS[load.kind].has_potential_on_bodies(
-                load, values[load.name], flat=self.discrete.unloaded.all_in_parallel_planes
-            )
-            for load in self.scene.loads
-        )
-
-    def _turning(self, rod: RodProperties) -> RodProperties:
-        """A rod as it turns in the world: one that is carried about may turn about every axis."""
-        still = (
-            self.discrete.unloaded.floating_base(rod.name) is None or self.discrete.unloaded.plane(rod.name) is not None
-        )
-        return rod if still else replace(rod, admitted=(0, 1, 2))
+        return loads_have_potential(self.discrete, inputs)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""

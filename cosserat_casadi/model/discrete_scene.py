@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
+from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import DiscreteRod
-from cosserat_casadi.rod.wrenches import Routing
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,14 @@ class CableOfLength:
         compliance: how its equation yields on the way to the scene.
     """
 
-    tendon: scenes.Tendon
+    tendon: scenes.Actuator
     routing: Routing
 
     @property
     def compliance(self) -> Compliance:
         """The spring between its length and the wanted one; slack cables have their tension in the equation."""
-        return Compliance(power=1, sign=1.0 if self.tendon.slack else -1.0)
+        slack = EFFECTS[self.tendon.kind].may_go_slack(self.tendon)
+        return Compliance(power=1, sign=1.0 if slack else -1.0)
 
 
 @dataclass(frozen=True)
@@ -71,9 +72,12 @@ class DiscreteScene:
     @cached_property
     def cables(self) -> list[CableOfLength]:
         """Tendons of given length."""
-        tendons = [actuator for actuator in self.scene.actuators if actuator.kind == "tendon"]
-        of_length = [tendon for tendon in tendons if tendon.length is not None]
-        return [CableOfLength(tendon, routing(tendon, self.rods[tendon.rod].grid)) for tendon in of_length]
+        cables = []
+        for actuator in self.scene.actuators:
+            member = EFFECTS[actuator.kind]
+            if member.prescribes_conjugate(actuator):
+                cables.append(CableOfLength(actuator, member.quantity(actuator, self.rods[actuator.rod].grid)))
+        return cables
 
     def constraint(self, where: str) -> SectionConstraint:
         """The constraint of a table of the scene, by its path."""

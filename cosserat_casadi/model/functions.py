@@ -16,8 +16,12 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
-from cosserat_casadi.model.system import Arguments, System, balance, ratio_of, rod_actions
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs, rod_actuation
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.rod import kinematics
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import largest_turn
 
 RESOLVED_TURN = 2.0
@@ -38,11 +42,9 @@ POSE_DERIVATIVES = (Output("d_pose_d_x"), Output("d_pose_d_inputs"))
 
 def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     """Effort and conjugate of an actuator by their own names, and the derivative of the conjugate."""
-    kind = next(actuator.kind for actuator in discrete.scene.actuators if actuator.name == name)
-    effort, conjugate = {
-        "tendon": (Output("tension", "N"), Output("length", "m")),
-        "chamber": (Output("pressure", "Pa"), Output("volume", "m³")),
-    }[kind]
+    member = next(EFFECTS[actuator.kind] for actuator in discrete.scene.actuators if actuator.name == name)
+    effort = Output(member.effort, member.units[member.effort])
+    conjugate = Output(member.conjugate, member.units[member.conjugate])
     return effort, conjugate, Output(f"d_{conjugate.name}_d_x")
 
 
@@ -205,14 +207,16 @@ def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
     """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
 
     The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
-    lengths and bases of rods are inputs, it is the map's linear part at the scene's own values.
+    lengths and bases of rods are inputs, or those of loads that depend on poses, it is the map's linear part at the
+    scene's own values.
     """
     discrete = model.discrete
     size = discrete.layout.size
     unloaded = np.zeros(discrete.size)
     no_rate = np.zeros(size)
     origin = np.zeros(size)
-    geometry = discrete.layout.geometry
+    # What the rate is not affine in: geometry, and inputs of loads that depend on poses.
+    geometry = sorted({*discrete.layout.geometry, *nonlinear_inputs(discrete)})
     origin[geometry] = discrete.layout.pack()[geometry]
     jacobian = model.path_jacobian(unloaded, origin, 0.0)
     # The rate at the origin, and with one input at a time set to one.
@@ -247,8 +251,12 @@ def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
     rod = written.discrete.rods[written.owner]
     arguments = Arguments(written["q"], written["inputs"])
     rotation = quaternion_to_matrix(written["base_quaternion"])
-    rod_shape = kinematics.shape(rod, written["q"], ratio_of(written.discrete, written.owner, arguments))
-    model = balance(rod_shape, rod_actions(written.discrete, written.owner, rotation.T, arguments))
+    ratio = ratio_of(written.discrete, written.owner, arguments)
+    rod_shape = kinematics.shape(rod, written["q"], ratio)
+    base = RodBase(written["base_position"], rotation.T)
+    loads = RodLoads(written.discrete, written.owner, base, written["inputs"], ratio).all()
+    efforts = rod_actuation(written.discrete, written.owner, written["inputs"])
+    model = InverseGeometricModel(Statics(rod_shape, loads), tuple(efforts))
     force = model.generalised_force
     if model.actuation_force is not None:
         force = force + model.actuation_force

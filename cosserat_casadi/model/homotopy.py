@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.wrenches import Action, ActuationStress, Cable
+from cosserat_casadi.rod.actuation import Actuation
+from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
 
 LoadFactor = Matrix | None
 """λ, 1×1; None stands for the scene itself, λ = 1, and adds no instruction."""
@@ -36,17 +37,26 @@ class Compliance:
         return self.sign * (1 - load_factor) ** self.power
 
 
-def scaled(action: Action, load_factor: LoadFactor) -> Action:
-    """A load or an actuator at a load factor."""
+def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
+    """A load on a rod at a load factor."""
     if load_factor is None:
-        return action
-    if isinstance(action, Cable):
-        return replace(action, tension=load_factor * action.tension)
-    if isinstance(action, ActuationStress):
-        return replace(action, stress=load_factor * action.stress)
-    force = None if action.force is None else load_factor * action.force
-    moment = None if action.moment is None else load_factor * action.moment
-    return replace(action, force=force, moment=moment)
+        return load
+    if isinstance(load, PoseWrench):
+        return replace(load, scale=load_factor * load.scale)
+    return _scaled_wrench(load, load_factor)
+
+
+def _scaled_wrench(load: PointWrench | LineWrench, load_factor: Matrix) -> PointWrench | LineWrench:
+    force = None if load.force is None else load_factor * load.force
+    moment = None if load.moment is None else load_factor * load.moment
+    return replace(load, force=force, moment=moment)
+
+
+def scaled_effort(actuation: Actuation, load_factor: LoadFactor) -> Actuation:
+    """An actuator at a load factor."""
+    if load_factor is None:
+        return actuation
+    return replace(actuation, effort=load_factor * actuation.effort)
 
 
 def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: LoadFactor) -> Matrix:

@@ -15,8 +15,8 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.floating_frames import FLAT
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.floating_frames import FLAT, FrameName
+from cosserat_casadi.model.load_assembly import BodyLoads
 from cosserat_casadi.model.system import System
 
 
@@ -53,8 +53,9 @@ def _joints(system: System, body: scenes.Body) -> FloatArray | None:
 
 def _forces(system: System, body: scenes.Body) -> FloatArray:
     """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
-    actions = [EFFECTS[load.kind].on_body(load, body, system.values(load)) for load in system.discrete.scene.loads]
-    points = [a.position for a in actions if a is not None and a.force is not None and not a.follower]
+    frame = system.frame(FrameName("body", body.name))
+    loads = BodyLoads(system.discrete, body, frame.position, frame.rotation, system.arguments.inputs).all()
+    points = [load.position for load in loads if load.aligns]
     return np.reshape(points, (-1, 3))
 
 

@@ -11,18 +11,14 @@ The equations of docs/theory.md, sections 2 to 8, in the order of the unknowns:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.actuators.chamber import PRESSED, volume_rates
-from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.constraints.cable_length import CableLength
 from cosserat_casadi.constraints.section_constraint import Poses
-from cosserat_casadi.loads.load import Site, constant
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -30,17 +26,17 @@ from cosserat_casadi.model.assembly import Assembly
 from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.homotopy import LoadFactor, row_at, scaled
-from cosserat_casadi.model.inputs import InputLayout, magnitude
+from cosserat_casadi.model.homotopy import LoadFactor, row_at, scaled, scaled_effort
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.kinematics import Shape, shape
+from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Tangent
-from cosserat_casadi.rod.wrenches import Action, Actuation, Cable, LineWrench, PointWrench, Wrench
+from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
 
 
 @dataclass(frozen=True)
@@ -131,32 +127,24 @@ class System:
     def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
         """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
         actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
-        rod_shape = self.rods[actuator.rod].shape
-        rod = self.discrete.rods[actuator.rod]
-        if actuator.kind == "chamber":
-            rates = ca.DM(volume_rates(actuator, rod.grid) * rod.properties.length * rod.grid.weights)
-            effort = self._effort(actuator, "pressure")
-            conjugate, gradient = rod_shape.strain_work(PRESSED, rates)
-        else:
-            cable = RoutedCable(rod_shape, routing(actuator, rod.grid))
-            effort = self._cable_tension(actuator)
-            effort = ca.fmax(effort, 0.0) if actuator.slack else effort
-            conjugate = cable.length
-            gradient = cable.length_gradient
-        return effort, conjugate, self._among_unknowns(actuator.rod, gradient).T
+        member = EFFECTS[actuator.kind]
+        quantity = member.quantity(actuator, self.discrete.rods[actuator.rod].grid)
+        conjugate = quantity.on(self.rods[actuator.rod].shape)
+        effort = self._effort(actuator)
+        if member.may_go_slack(actuator):
+            effort = ca.fmax(effort, 0.0)
+        return effort, conjugate.value, self._among_unknowns(actuator.rod, conjugate.gradient).T
 
-    def _cable_tension(self, tendon: scenes.Tendon) -> Matrix:
-        """Tension of a tendon, N: an input, or unknown where its length is given."""
-        if tendon.length is None:
-            return self._effort(tendon, "tension")
-        return self._unknown_tension(self._cable(tendon.name))
+    def _effort(self, actuator: scenes.Actuator) -> Matrix:
+        """Effort of an actuator: an input, or unknown where the scene gives what it works on."""
+        member = EFFECTS[actuator.kind]
+        if member.prescribes_conjugate(actuator):
+            return self._unknown_tension(self._cable(actuator.name))
+        value = input_value(self.discrete.layout, actuator, member.effort, self.arguments.inputs)
+        return ca.DM(0.0) if value is None else value
 
     def _cable(self, name: str) -> CableOfLength:
         return next(cable for cable in self.discrete.cables if cable.tendon.name == name)
-
-    def _effort(self, actuator: scenes.Actuator, field: str) -> Matrix:
-        value = self._value(actuator, field)
-        return ca.DM(0.0) if value is None else value
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
@@ -187,14 +175,16 @@ class System:
             return None
         return ca.sum1(ca.vertcat(*known))
 
-    def values(self, load: scenes.Load | scenes.Actuator) -> dict[str, Matrix | None]:
-        """Magnitudes of a load in these arguments; None where one is zero for good."""
-        return {field: self._value(load, field) for field in load.inputs}
-
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
-        actions = [scaled(action, self.arguments.load_factor) for action in self._actions(rod)]
-        return [a for a in actions if not isinstance(a, Actuation) and not a.follower]
+        return [load for load in self._loads(rod) if not isinstance(load, PoseWrench) and not load.follower]
+
+    def _loads(self, rod: str) -> list[RodLoad]:
+        """The scene's loads on a rod at the load factor, base frame."""
+        base = RodBase(self.base(rod).position, self._base_R_world(rod))
+        ratio = ratio_of(self.discrete, rod, self.arguments)
+        loads = RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio).all()
+        return [scaled(load, self.arguments.load_factor) for load in loads]
 
     @cached_property
     def cable_lengths(self) -> dict[str, CableLength]:
@@ -202,14 +192,14 @@ class System:
         return {cable.tendon.name: self._cable_length(cable) for cable in self.discrete.cables}
 
     def _cable_length(self, cable: CableOfLength) -> CableLength:
-        cables = self.rods[cable.tendon.rod].cables
-        wanted = self._value(cable.tendon, "length")
+        tendon = cable.tendon
+        wanted = input_value(self.discrete.layout, tendon, "length", self.arguments.inputs)
         assert wanted is not None
         return CableLength(
-            cable=next(routed for _, routed in cables if routed.routing is cable.routing),
+            cable=cable.routing.on(self.rods[tendon.rod].shape),
             wanted=wanted,
             tension=self.arguments.x[self.discrete.tension(cable)],
-            slack=cable.tendon.slack,
+            slack=EFFECTS[tendon.kind].may_go_slack(tendon),
         )
 
     def _length_row(self, cable: CableOfLength) -> Matrix:
@@ -228,11 +218,13 @@ class System:
     def _rod(self, name: str) -> InverseGeometricModel:
         rod = self.discrete.rods[name]
         q = self.arguments.x[self.discrete.unknowns.strain(name)]
-        actions = [scaled(action, self.arguments.load_factor) for action in self._actions(name)]
-        actions += [self._constraint_wrench(placed) for placed in self.discrete.constraints_on(name)]
+        loads = [*self._loads(name), *map(self._constraint_wrench, self.discrete.constraints_on(name))]
+        given = rod_actuation(self.discrete, name, self.arguments.inputs)
+        efforts = [scaled_effort(actuation, self.arguments.load_factor) for actuation in given]
         cables = [cable for cable in self.discrete.cables if cable.tendon.rod == name]
-        actions += [Cable(cable.routing, self._unknown_tension(cable)) for cable in cables]
-        return balance(shape(rod, q, ratio_of(self.discrete, name, self.arguments)), actions)
+        efforts += [Actuation(cable.routing, self._unknown_tension(cable)) for cable in cables]
+        rod_shape = shape(rod, q, ratio_of(self.discrete, name, self.arguments))
+        return InverseGeometricModel(Statics(rod_shape, loads), tuple(efforts))
 
     def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:
         """Wrench of a constraint on its section, in the axes of the rod's base."""
@@ -256,57 +248,15 @@ class System:
         """Tension of a cable of given length, N."""
         return self.discrete.tension_unit(cable.tendon.rod) * self.arguments.x[self.discrete.tension(cable)]
 
-    def _actions(self, rod: str) -> list[Action]:
-        return rod_actions(self.discrete, rod, self._base_R_world(rod), self.arguments)
-
     def _base_R_world(self, rod: str) -> Matrix:
         rotation = quaternion_to_matrix(self.base(rod).quaternion)
         return ca.sparsify(rotation, 1e-16).T if isinstance(rotation, ca.DM) else rotation.T
-
-    def _value(self, load: scenes.Load | scenes.Actuator, field: str) -> Matrix | None:
-        return _value(self.discrete.layout, load, field, self.arguments.inputs)
-
-
-def balance(rod_shape: Shape, actions: Sequence[Action]) -> InverseGeometricModel:
-    """Balance of a rod of this shape under these actions."""
-    wrenches = [action for action in actions if not isinstance(action, Actuation)]
-    actuation = tuple(action for action in actions if isinstance(action, Actuation))
-    return InverseGeometricModel(Statics(rod_shape, wrenches), actuation)
-
-
-def rod_actions(discrete: DiscreteScene, rod: str, base_R_world: Matrix, arguments: Arguments) -> list[Action]:
-    """What the scene's loads and actuators do to one rod, in its base frame."""
-    discrete_rod = discrete.rods[rod]
-    site = Site(discrete_rod.properties, discrete_rod.grid, base_R_world)
-    ratio = ratio_of(discrete, rod, arguments)
-    actions: list[Action] = []
-    for cause in discrete.scene.causes:
-        effect = EFFECTS[cause.kind]
-        if effect.acts_on(cause, rod):
-            values = {f: _value(discrete.layout, cause, f, arguments.inputs) for f in cause.inputs}
-            actions.extend(per_length(action, ratio) for action in effect.actions(cause, site, values))
-    return actions
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
     """Length of a rod relative to the scene's where it is an input, else None."""
     entries = discrete.layout.of_rod(rod, "length")
     return None if entries is None else arguments.inputs[entries] / discrete.rods[rod].properties.length
-
-
-def per_length(action: Action, ratio: Ratio) -> Action:
-    """An action on a rod whose length is free: what acts per length acts on more or less of it."""
-    if ratio is None or not isinstance(action, LineWrench):
-        return action
-    return scaled(action, ratio)
-
-
-def _value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, inputs: Matrix) -> Matrix | None:
-    entries = layout.of_load(cause.name, field)
-    default = magnitude(cause, field)
-    if entries is None:
-        return constant(default)
-    return ca.reshape(inputs[entries], *default.shape)
 
 
 def _sparse(vectors: FloatArray) -> ca.DM:

@@ -15,12 +15,31 @@ from typing import cast
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.wrenches import Routing
 
 Row = Matrix | None
 """A field on the nodes of the routing, 1×k; None where it is zero whatever the rod does."""
+
+
+@dataclass(frozen=True)
+class Routing:
+    """Where a cable runs through the sections, at the k nodes of the elements that it passes.
+
+    Attributes:
+        nodes: indices of the nodes, shape (k,).
+        offset: D_x and D_y in the section, shape (2, k), m.
+        slope: dD/dX, shape (2, k), m.
+    """
+
+    nodes: Indices
+    offset: FloatArray
+    slope: FloatArray
+
+    def on(self, shape: Shape) -> RoutedCable:
+        """The cable on a rod of this shape: the quantity is its length."""
+        return RoutedCable(shape, self)
 
 
 @dataclass(frozen=True)
@@ -85,12 +104,12 @@ class RoutedCable:
         return {c: levers[c] for c in self.shape.rod.properties.admitted}
 
     @cached_property
-    def length(self) -> Matrix:
-        """Length along the routing, 1×1, m."""
+    def value(self) -> Matrix:
+        """Length L along the routing, 1×1, m."""
         return self.stretch @ ca.DM(self._weights)
 
     @cached_property
-    def length_gradient(self) -> Matrix:
+    def gradient(self) -> Matrix:
         """∂L/∂q, n×1, m."""
         rod = self.shape.rod
         parts: list[Matrix] = []
@@ -99,7 +118,7 @@ class RoutedCable:
             parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
         return ca.vertcat(*parts)
 
-    def stretch_curvature(self, a: int, b: int) -> Row:
+    def curvature(self, a: int, b: int) -> Row:
         """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
         x, y, _ = self.tangent
         if x is None and y is None:

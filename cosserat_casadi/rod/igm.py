@@ -13,11 +13,10 @@ import casadi as ca
 from cosserat_casadi.maths.blocks import stack
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.cable import RoutedCable
+from cosserat_casadi.rod.actuation import Actuation, Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.transport import interval_kernels
-from cosserat_casadi.rod.wrenches import Actuation, Cable
 
 
 @dataclass(frozen=True)
@@ -45,21 +44,16 @@ class InverseGeometricModel:
         return self._transposed_force()
 
     @cached_property
-    def cables(self) -> tuple[tuple[Matrix, RoutedCable], ...]:
-        """Tension, N, and course of every cable."""
-        return tuple((a.tension, RoutedCable(self.shape, a.routing)) for a in self.actuation if isinstance(a, Cable))
+    def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
+        """Every effort of an actuator with the quantity that it works on, at this shape."""
+        return tuple((a.effort, a.quantity.on(self.shape)) for a in self.actuation)
 
     @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
         unit = self.shape.rod.energy_unit
-        forces = self._stress_forces + [tension / unit * cable.length_gradient for tension, cable in self.cables]
+        forces = [effort / unit * conjugate.gradient for effort, conjugate in self.efforts]
         return sum(forces[1:], forces[0]) if forces else None
-
-    @cached_property
-    def _stress_forces(self) -> list[Matrix]:
-        """What stresses that no strain changes put against the elastic one, n×1 each."""
-        return [self._project(a.stress @ ca.DM(a.profiles)) for a in self.actuation if not isinstance(a, Cable)]
 
     @cached_property
     def residual(self) -> Matrix:
@@ -80,24 +74,25 @@ class InverseGeometricModel:
 
     @cached_property
     def potential(self) -> Matrix | None:
-        """Elastic energy less the work of loads and actuators, 1×1, J; None unless every load is a dead force.
+        """Elastic energy less the work of loads and actuators, 1×1, J.
 
-        With r = S t and n̂ = Sᵀ f the work of the forces is Σ n̂_k·t_k, so the residual is its exact gradient.
+        None unless every load is a dead force or has an energy. With r = S t and n̂ = Sᵀ f the work of the dead forces
+        is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
-        if any(w.follower or w.moment is not None for w in self.statics.wrenches):
+        if any(w.follower or w.moment is not None for w in self.statics.fixed_wrenches):
             return None
-        covector = self.statics.force_covector
-        loads = self.energy if covector is None else self.energy - ca.dot(covector, self.shape.tangent)
-        return loads if not self.actuation else loads + self._actuation_energy()
-
-    def _actuation_energy(self) -> Matrix:
-        """τ L of every cable, and of stresses that do not vary their work on the strains, 1×1, J."""
-        energy: Matrix = ca.DM(0.0)
-        for tension, cable in self.cables:
-            energy = energy + tension * cable.length
-        for force in self._stress_forces:
-            energy = energy + self.shape.rod.energy_unit * ca.dot(force, self.shape.q)
-        return energy
+        if any(load.energy is None for load in self.statics.pose_loads):
+            return None
+        covector = self.statics.fixed_force_covector
+        total = self.energy
+        if covector is not None:
+            total = total - ca.dot(covector, self.shape.tangent)
+        for load in self.statics.pose_loads:
+            assert load.energy is not None
+            total = total + load.energy
+        for effort, conjugate in self.efforts:
+            total = total + effort * conjugate.value
+        return total
 
     def _transposed_force(self) -> Matrix:
         """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""

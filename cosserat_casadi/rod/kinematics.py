@@ -6,7 +6,6 @@ pose of the base enters where loads come in and results go out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -86,23 +85,6 @@ class Shape:
     def position_at(self, node: int) -> Matrix:
         """Position of one node, 3×1."""
         return self.tangent @ ca.DM(self.rod.grid.integration_matrix[node])
-
-    def strain_work(self, components: Sequence[int], rates: Matrix) -> tuple[Matrix, Matrix]:
-        """Sum over the nodes of rates times strains, 1×1, and its derivative with q, n×1.
-
-        Args:
-            components: strains that work is done on.
-            rates: one row for each of them, k×M.
-        """
-        rows = self.rod.strain_rows(self.q, components, self.ratio)
-        parts = [row @ rates[i, :].T for i, row in enumerate(rows) if row is not None]
-        gradient = [
-            ca.DM(self.rod.at_nodes[c]).T @ rates[components.index(c), :].T
-            if c in components
-            else ca.DM(self.rod.at_nodes[c].shape[1], 1)
-            for c in self.rod.properties.admitted
-        ]
-        return sum(parts[1:], parts[0]), ca.vertcat(*gradient)
 
     @staticmethod
     def scale(vectors: Matrix, row: Matrix) -> Matrix:

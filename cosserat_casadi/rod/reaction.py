@@ -1,8 +1,9 @@
-"""What a rod does to whatever carries its base, and how that changes: for a rod whose base moves.
+"""What a rod does to its base, and how that changes, for a rod whose base moves.
 
-In the base frame a rod knows nothing of the motion of its base, but for loads of fixed direction in the world: they
-turn the other way. The rod's equations are linear in them, so their change with a rotation of the base is the same
-equations under other loads.
+A rod is written in the axes of its base. Motions of the base therefore do not appear in its equations, but for loads
+that know the world: when the base turns by δφ, a load of fixed direction turns by −δφ in the axes of the base. Loads
+that depend on poses vary besides, since all their sections move with the base. The equations of a rod are linear in
+the wrenches on it, so its residual and base wrench under the variations of the wrenches are their own variations.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import casadi as ca
 
@@ -18,14 +18,18 @@ from cosserat_casadi.maths.blocks import hat_operator
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import PointWrench, Wrench
 
+Variation = tuple[Matrix, Matrix, Matrix]
+"""Derivatives of residual (n×3), base force and base moment (3×3 each) with a motion of the base along three axes."""
+
 
 @dataclass(frozen=True)
 class Reaction:
-    """Variations of a rod's base wrench, and of its residual, when its base turns.
+    """Variations of a rod's base wrench, and of its residual, when its base moves.
 
     Attributes:
         tangent: variations of the rod's fields.
@@ -37,11 +41,14 @@ class Reaction:
 
     @cached_property
     def force_with_strain(self) -> Matrix:
-        """∂ base force / ∂q, base frame, 3×n, N: only forces that follow the sections change it."""
+        """∂ base force / ∂q, base frame, 3×n, N: dead forces do not change it."""
         force = ca.DM(3, self._size)
         for wrench in self._followers:
             if wrench.force is not None:
                 force = force - self._resultant(self._turned(wrench, wrench.force), wrench)
+        for load in self._statics.pose_loads:
+            forces, _ = _halves(self.tangent.wrench_variation(load))
+            force = force - _summed(forces, load)
         return force
 
     @cached_property
@@ -55,16 +62,25 @@ class Reaction:
                 moment = moment - self._lever(wrench) @ self._turned(wrench, wrench.force)
             if wrench.moment is not None:
                 moment = moment - self._resultant(self._turned(wrench, wrench.moment), wrench)
+        for load in self._statics.pose_loads:
+            forces, moments = _halves(self.tangent.wrench_variation(load))
+            moment = moment - _hat_row(load.position) @ forces - _summed(moments, load)
         return moment
 
     @cached_property
-    def with_turn(self) -> tuple[Matrix, Matrix, Matrix]:
-        """Derivatives of residual (n×3), base force and base moment (3×3) with a turn of the base, base axes, rad."""
-        turned = [self._under([_turned_back(wrench, axis) for wrench in self.dead]) for axis in range(3)]
-        residual = ca.horzcat(*[model.generalised_force for model in turned])
-        force = ca.horzcat(*[model.statics.base_force for model in turned])
-        moment = ca.horzcat(*[model.statics.base_moment for model in turned])
-        return residual, force, moment
+    def with_turn(self) -> Variation:
+        """Derivatives with a turn of the base, base axes, rad."""
+        turned_back = [*self.dead, *[load.frozen for load in self._statics.pose_loads]]
+        return self._joined(
+            [[*[_turned_back(wrench, axis) for wrench in turned_back], *self._changed(1, axis)] for axis in range(3)]
+        )
+
+    @cached_property
+    def with_shift(self) -> Variation | None:
+        """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
+        if not self._statics.pose_loads:
+            return None
+        return self._joined([self._changed(0, axis) for axis in range(3)])
 
     @property
     def _statics(self) -> Statics:
@@ -76,10 +92,19 @@ class Reaction:
 
     @property
     def _followers(self) -> list[Wrench]:
-        return [wrench for wrench in self._statics.wrenches if wrench.follower]
+        return [wrench for wrench in self._statics.fixed_wrenches if wrench.follower]
 
-    def _under(self, wrenches: Sequence[Wrench]) -> InverseGeometricModel:
-        return InverseGeometricModel(Statics(self._statics.shape, wrenches))
+    def _changed(self, motion: int, axis: int) -> list[Wrench]:
+        """Variations of the pose-dependent wrenches with a shift (0) or a turn (1) of the base along an axis."""
+        return [load.changed(load.with_base[motion][:, axis]) for load in self._statics.pose_loads]
+
+    def _joined(self, variations: Sequence[Sequence[Wrench]]) -> Variation:
+        """Residual and base wrench under each of the variations of the wrenches, side by side."""
+        models = [InverseGeometricModel(Statics(self._statics.shape, wrenches)) for wrenches in variations]
+        residual = ca.horzcat(*[model.generalised_force for model in models])
+        force = ca.horzcat(*[model.statics.base_force for model in models])
+        moment = ca.horzcat(*[model.statics.base_moment for model in models])
+        return residual, force, moment
 
     def _turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n."""
@@ -108,8 +133,19 @@ class Reaction:
         return ca.DM(rod.properties.length * rod.grid.weights).T
 
 
+def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
+    """Variations of the forces and of the moments, 3k×n each, from those of both."""
+    forces, moments = ca.vertsplit(variation, variation.shape[0] // 2)
+    return forces, moments
+
+
+def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
+    """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
+    return ca.kron(ca.DM.eye(3), ca.DM.ones(1, len(load.nodes))) @ variation
+
+
 def _hat_row(field: Matrix) -> Matrix:
-    """Operator v ↦ Σ field × v over the places, from a 3×k field: 3×3k on stacked fields."""
+    """Operator v ↦ Σ field × v over the sections, from a 3×k field: 3×3k on stacked fields."""
     x, y, z = ca.vertsplit(field)
     zero = type(x)(*x.shape)
     return ca.blockcat([[zero, -z, y], [z, zero, -x], [-y, x, zero]])
@@ -117,13 +153,14 @@ def _hat_row(field: Matrix) -> Matrix:
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
     """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
-    vectors = {name: getattr(wrench, name) for name in ("force", "moment")}
-    changed: dict[str, Any] = {name: _cross(vector, axis) for name, vector in vectors.items() if vector is not None}
-    return replace(wrench, **changed)
+    force = None if wrench.force is None else _cross_with_axis(wrench.force, axis)
+    moment = None if wrench.moment is None else _cross_with_axis(wrench.moment, axis)
+    return replace(wrench, force=force, moment=moment)
 
 
-def _cross(vectors: Matrix, axis: int) -> Matrix:
+def _cross_with_axis(vectors: Matrix, axis: int) -> Matrix:
     """Each column times the unit vector of an axis."""
     x, y, z = ca.vertsplit(vectors)
     zero = type(x)(*x.shape)
-    return ca.vertcat(*((zero, z, -y), (-z, zero, x), (y, -x, zero))[axis])
+    crossed = ((zero, z, -y), (-z, zero, x), (y, -x, zero))
+    return ca.vertcat(*crossed[axis])

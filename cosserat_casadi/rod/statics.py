@@ -19,25 +19,46 @@ import numpy as np
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
-from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
+from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad, Wrench
 
 
 @dataclass(frozen=True)
 class Statics:
-    """Internal wrench of a rod of known shape under known wrenches, base frame.
+    """Internal wrench of a rod of known shape under known loads, base frame.
 
     Attributes:
         shape: the rod's shape.
-        wrenches: what acts on it.
+        loads: what acts on it.
     """
 
     shape: Shape
-    wrenches: Sequence[Wrench]
+    loads: Sequence[RodLoad]
+
+    @cached_property
+    def pose_loads(self) -> list[LoadedSections]:
+        """Loads that depend on the poses of their sections."""
+        return [LoadedSections(load, self.shape) for load in self.loads if isinstance(load, PoseWrench)]
+
+    @cached_property
+    def fixed_wrenches(self) -> list[Wrench]:
+        """Dead and follower wrenches."""
+        return [load for load in self.loads if not isinstance(load, PoseWrench)]
+
+    @cached_property
+    def wrenches(self) -> list[Wrench]:
+        """All wrenches; those that depend on poses as dead ones, with the values that they have at this shape."""
+        return self.fixed_wrenches + [load.frozen for load in self.pose_loads]
 
     @cached_property
     def force_covector(self) -> Matrix | None:
         """n̂, 3×M, conjugate to the variations of the tangents, N; None without forces."""
-        return _total([self._force_covector(w, w.force) for w in self.wrenches if w.force is not None])
+        return self._force_covector_of(self.wrenches)
+
+    @cached_property
+    def fixed_force_covector(self) -> Matrix | None:
+        """The part of n̂ that dead and follower forces make, 3×M, N; None without such."""
+        return self._force_covector_of(self.fixed_wrenches)
 
     @cached_property
     def moment_covector(self) -> Matrix | None:
@@ -54,22 +75,21 @@ class Statics:
 
     @cached_property
     def interval_moment(self) -> Matrix | None:
-        """Internal moment that passes each interval between nodes, 3×(intervals), N m."""
+        """Internal moment that passes each interval between nodes, 3×(intervals), N m: m_i of docs/theory.md 6."""
         covector = self.moment_covector
         if covector is None:
             return None
-        sections = self._at_sections(covector)
-        rows = [ca.cumsum(ca.densify(row[:, ::-1]), 1)[:, ::-1] for row in ca.vertsplit(sections)]
+        rows = [_sums_to_the_tip(row) for row in ca.vertsplit(self._at_sections(covector))]
+        # What acts on the base section passes no interval.
         return ca.vertcat(*rows)[:, 1:]
 
     @cached_property
     def base_force(self) -> Matrix:
         """Force of the clamp on the rod, base frame, 3×1, N: minus the sum of the loads."""
-        grid = self.shape.rod.grid
         total = ca.DM.zeros(3, 1)
         for wrench in self.wrenches:
             if wrench.force is not None:
-                total = total - self._resultant(wrench, wrench.force, grid.weights)
+                total = total - self._resultant(wrench, wrench.force)
         return total
 
     @cached_property
@@ -81,7 +101,7 @@ class Statics:
     @cached_property
     def internal_force(self) -> Matrix:
         """N at the nodes, 3×M, N, report (1.17) integrated from the tip."""
-        return self._carried(lambda wrench: wrench.force)
+        return self._beyond_each_node(lambda wrench: wrench.force)
 
     @cached_property
     def internal_moment(self) -> Matrix:
@@ -89,47 +109,64 @@ class Statics:
 
         Integrated over each element from the internal force, so that it jumps where a couple acts.
         """
-        grid = self.shape.rod.grid
         lever = cross(self.shape.tangent, self.internal_force)
-        return lever @ ca.DM(_from_tip(grid.integration_matrix, grid.weights)).T + self._carried(
-            lambda wrench: wrench.moment
-        )
+        return lever @ ca.DM(self._from_tip).T + self._beyond_each_node(lambda wrench: wrench.moment)
 
     def internal_wrench(self) -> Matrix:
         """Λ = [M; N] at the nodes in the sections' frames, 6×M: report (1.23) inverted."""
-        moment, force = self.shape.to_body(self.internal_moment), self.shape.to_body(self.internal_force)
+        moment = self.shape.to_body(self.internal_moment)
+        force = self.shape.to_body(self.internal_force)
         return ca.vertcat(moment, force)
-
-    def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
-        grid, length = self.shape.rod.grid, self.shape.rod.properties.length
-        if isinstance(wrench, PointWrench):
-            node = grid.node_at(wrench.at)
-            return self._resultant(wrench, force, grid.weights) @ ca.DM(grid.integration_matrix[node]).T
-        to_covector = length * grid.weights[:, None] * grid.integration_matrix
-        if wrench.follower:
-            return self.line(wrench, force) @ ca.DM(to_covector)
-        return force @ ca.DM(wrench.profiles @ to_covector)
-
-    def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
-        grid, length = self.shape.rod.grid, self.shape.rod.properties.length
-        if isinstance(wrench, PointWrench):
-            node = grid.node_at(wrench.at)
-            place = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
-            return self._resultant(wrench, moment, grid.weights) @ place
-        return self.line(wrench, moment) @ ca.diag(ca.DM(length * grid.weights))
 
     def line(self, wrench: LineWrench, coefficients: Matrix) -> Matrix:
         """Force or moment per length at the nodes from the coefficients of a line wrench, 3×M, base frame."""
-        values = coefficients @ ca.DM(wrench.profiles)
+        values = coefficients if wrench.profiles is None else coefficients @ ca.DM(wrench.profiles)
         return self.shape.to_base(values) if wrench.follower else values
 
-    def _resultant(self, wrench: Wrench, vector: Matrix, weights: FloatArray) -> Matrix:
-        if isinstance(wrench, PointWrench):
-            node = self.shape.rod.grid.node_at(wrench.at)
-            return self.shape.rotation_at(node) @ vector if wrench.follower else vector
-        return self.line(wrench, vector) @ ca.DM(self.shape.rod.properties.length * weights)
+    @property
+    def _node_lengths(self) -> FloatArray:
+        """Length of rod that each node stands for, ℓ w, shape (M,), m."""
+        rod = self.shape.rod
+        return np.asarray(rod.properties.length * rod.grid.weights)
 
-    def _carried(self, part: Callable[[Wrench], Matrix | None]) -> Matrix:
+    @property
+    def _from_tip(self) -> FloatArray:
+        """Matrix of the integral over X from each node to the tip, shape (M, M)."""
+        grid = self.shape.rod.grid
+        return np.asarray(grid.weights[None, :] - grid.integration_matrix)
+
+    def _force_covector_of(self, wrenches: Sequence[Wrench]) -> Matrix | None:
+        return _total([self._force_covector(w, w.force) for w in wrenches if w.force is not None])
+
+    def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
+        grid = self.shape.rod.grid
+        if isinstance(wrench, PointWrench):
+            node = grid.node_at(wrench.at)
+            return self._resultant(wrench, force) @ ca.DM(grid.integration_matrix[node]).T
+        to_covector = self.shape.rod.properties.length * grid.weights[:, None] * grid.integration_matrix
+        if wrench.follower or wrench.profiles is None:
+            return self.line(wrench, force) @ ca.DM(to_covector)
+        # Profiles are numbers: a dead force per length needs no product with S at run time.
+        return force @ ca.DM(wrench.profiles @ to_covector)
+
+    def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
+        grid = self.shape.rod.grid
+        if isinstance(wrench, PointWrench):
+            node = grid.node_at(wrench.at)
+            to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
+            return self._resultant(wrench, moment) @ to_node
+        return self.line(wrench, moment) @ ca.diag(ca.DM(self._node_lengths))
+
+    def _resultant(self, wrench: Wrench, vector: Matrix) -> Matrix:
+        """Sum of the forces or moments of a wrench, 3×1, base frame."""
+        if isinstance(wrench, LineWrench):
+            return self.line(wrench, vector) @ ca.DM(self._node_lengths)
+        if not wrench.follower:
+            return vector
+        node = self.shape.rod.grid.node_at(wrench.at)
+        return self.shape.rotation_at(node) @ vector
+
+    def _beyond_each_node(self, part: Callable[[Wrench], Matrix | None]) -> Matrix:
         """Sum over the wrenches of what acts between each node and the tip, 3×M."""
         grid = self.shape.rod.grid
         total: Matrix = ca.DM.zeros(3, grid.size)
@@ -139,10 +176,10 @@ class Statics:
                 continue
             if isinstance(wrench, PointWrench):
                 before = (np.arange(grid.size) <= grid.node_at(wrench.at)).astype(float)
-                total = total + self._resultant(wrench, vector, grid.weights) @ ca.DM(before).T
+                total = total + self._resultant(wrench, vector) @ ca.DM(before).T
             else:
-                rest = self.shape.rod.properties.length * _from_tip(grid.integration_matrix, grid.weights)
-                total = total + self.line(wrench, vector) @ ca.DM(rest).T
+                to_tip = self.shape.rod.properties.length * self._from_tip
+                total = total + self.line(wrench, vector) @ ca.DM(to_tip).T
         return total
 
     def _at_sections(self, covector: Matrix) -> Matrix:
@@ -155,12 +192,14 @@ class Statics:
         return covector @ ca.DM(ca.sparsify(ca.DM(gather)))
 
 
-def _from_tip(integration: FloatArray, weights: FloatArray) -> FloatArray:
-    """Matrix of the integral from each node to the tip."""
-    return weights[None, :] - integration
+def _sums_to_the_tip(row: Matrix) -> Matrix:
+    """Sum of each entry of a row and of all behind it."""
+    reversed_row = ca.densify(row[:, ::-1])
+    return ca.cumsum(reversed_row, 1)[:, ::-1]
 
 
 def _total(terms: Sequence[Matrix]) -> Matrix | None:
+    """Sum of the terms in their order; None without any."""
     if not terms:
         return None
     total = terms[0]

@@ -27,6 +27,7 @@ from cosserat_casadi.maths.blocks import (
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.pose_load import LoadedSections
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
 
@@ -134,8 +135,10 @@ class Tangent:
         elastic = ca.sparsify(ca.DM(rod.stiffness))
         elastic = elastic if self.igm.shape.ratio is None else elastic / self.igm.shape.ratio
         matrix = elastic + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
-        parts = [part for part in (self._following_forces(), self._cable_stiffness()) if part is not None]
-        return sum(parts, matrix)
+        for part in (self._following_forces(), self._pose_stiffness(), self._actuation_stiffness()):
+            if part is not None:
+                matrix = matrix + part
+        return matrix
 
     @property
     def _linear(self) -> list[int]:
@@ -212,8 +215,30 @@ class Tangent:
         to_covector = ca.DM(length * grid.weights[:, None] * grid.integration_matrix).T
         return ca.vertcat(*[to_covector @ part for part in ca.vertsplit(turned, grid.size)])
 
-    def _cable_stiffness(self) -> Matrix | None:
-        """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all cables, n×n: sums over the nodes of rows that cables share."""
+    def motion(self, load: LoadedSections) -> Matrix:
+        """[δr; δθ] of the sections of a load, stacked component by component, 6k×n, m and rad."""
+        rod = self.igm.shape.rod
+        if load.load.at is not None:
+            node = load.nodes[0]
+            return ca.vertcat(self.position(node), self.rotation_of(node))
+        integrate = ca.DM(rod.grid.integration_matrix)
+        moved = [integrate @ part for part in ca.vertsplit(self.tangent, rod.grid.size)]
+        turned = ca.horzcat(self.rotation, ca.DM(3 * rod.grid.size, rod.size - self.angular_size))
+        return ca.vertcat(*moved, turned)
+
+    def wrench_variation(self, load: LoadedSections) -> Matrix:
+        """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
+        return load.weighted(load.stiffness @ self.motion(load))
+
+    def _pose_stiffness(self) -> Matrix | None:
+        """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
+        parts = [self.motion(load).T @ self.wrench_variation(load) for load in self.igm.statics.pose_loads]
+        if not parts:
+            return None
+        return sum(parts[1:], parts[0]) / -self.igm.shape.rod.energy_unit
+
+    def _actuation_stiffness(self) -> Matrix | None:
+        """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
         rod = self.igm.shape.rod
         admitted = rod.properties.admitted
         blocks = {(a, b): self._curvature_block(a, b) for a in admitted for b in admitted if a <= b}
@@ -224,8 +249,8 @@ class Tangent:
     def _curvature_block(self, a: int, b: int) -> Matrix:
         rod = self.igm.shape.rod
         first, second = (ca.sparsify(ca.DM(rod.at_nodes[c])) for c in (a, b))
-        curved = [(tension, cable.stretch_curvature(a, b)) for tension, cable in self.igm.cables]
-        rows = [tension / rod.energy_unit * row for tension, row in curved if row is not None]
+        curved = [(effort, conjugate.curvature(a, b)) for effort, conjugate in self.igm.efforts]
+        rows = [effort / rod.energy_unit * row for effort, row in curved if row is not None]
         if not rows:
             return ca.DM(first.shape[1], second.shape[1])
         block = first.T @ (ca.diag(sum(rows[1:], rows[0])) @ second)

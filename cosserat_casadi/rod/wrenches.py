@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.section_kernel import SectionKernel
 
 
 @dataclass(frozen=True)
@@ -36,59 +36,42 @@ class LineWrench:
     Attributes:
         force: 3×k coefficients, N/m, or None.
         moment: 3×k coefficients, N, or None.
-        profiles: values of the k profiles at the nodes, shape (k, M), without unit.
+        profiles: values of the k profiles at the nodes, shape (k, M), without unit; None where the coefficients are the
+            values at the M nodes.
         follower: whether the wrench turns with the sections.
     """
 
     force: Matrix | None
     moment: Matrix | None
-    profiles: FloatArray
+    profiles: FloatArray | None
     follower: bool
 
 
 Wrench = PointWrench | LineWrench
+"""A wrench whose direction does not depend on where its section is."""
 
 
 @dataclass(frozen=True)
-class ActuationStress:
-    """Stress Λ_ad that an actuator adds to the elastic one, report (2.15), whatever the rod's strain.
+class PoseWrench:
+    """A wrench that depends on the position or the rotation of its section, in any way but turning with it.
 
     Attributes:
-        stress: 6×k coefficients of [M; N] in the sections' frames, N m and N.
-        profiles: values of the k profiles at the nodes, shape (k, M), without unit.
+        at: abscissa X of the section, a break of the rod's grid; None for a wrench per metre of undeformed length.
+        kernel: force and moment as a function of a section's pose.
+        base_position: world position of the rod's base, 3×1, m.
+        base_rotation: world_R_base, 3×3.
+        parameters: what the kernel depends on at run time, p×1.
+        data: what it depends on along the rod, shape (d, M); (d, 1) on one section.
+        scale: factor on force, moment and energy.
     """
 
-    stress: Matrix
-    profiles: FloatArray
+    at: float | None
+    kernel: SectionKernel
+    base_position: Matrix
+    base_rotation: Matrix
+    parameters: Matrix
+    data: FloatArray
+    scale: Matrix | float
 
 
-@dataclass(frozen=True)
-class Routing:
-    """Where a cable runs through the sections, at the k nodes of the elements that it passes.
-
-    Attributes:
-        nodes: indices of the nodes, shape (k,).
-        offset: D_x and D_y in the section, shape (2, k), m.
-        slope: dD/dX, shape (2, k), m.
-    """
-
-    nodes: Indices
-    offset: FloatArray
-    slope: FloatArray
-
-
-@dataclass(frozen=True)
-class Cable:
-    """A cable under one tension all along its routing: it slides without friction.
-
-    Attributes:
-        routing: where it runs.
-        tension: 1×1, N.
-    """
-
-    routing: Routing
-    tension: Matrix
-
-
-Actuation = ActuationStress | Cable
-Action = Wrench | Actuation
+RodLoad = Wrench | PoseWrench

@@ -25,7 +25,7 @@ from rods import (
 )
 from scipy.spatial.transform import Rotation
 
-from cosserat_casadi.loads.load import Site
+from cosserat_casadi.model.load_assembly import RodBase
 from cosserat_casadi.rod.tangent import Tangent
 
 BREAKS = pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.4, 1.0)])
@@ -96,11 +96,11 @@ def test_floating_base_vs_wrench_in_the_world(seed):
     basis = strain_basis(rod(REISSNER), nodes=28)
     q, wrenches = coordinates(basis, seed), mixed_loads(basis, follower=False, seed=seed)
     world_R_base = Rotation.from_rotvec([0.4 + seed, -1.3, 0.7]).as_matrix()
-    site = Site(basis.properties, basis.grid, ca.DM(world_R_base.T))
+    base = RodBase(ca.DM(3, 1), ca.DM(world_R_base.T))
     tip, along = wrenches
     placed = [
-        point(1.0, *(site.placed(v, follower=False) for v in (tip.force, tip.moment))),
-        line(basis, *(site.placed(v, follower=False) for v in (along.force, along.moment))),
+        point(1.0, *(base.in_base_axes(v, follower=False) for v in (tip.force, tip.moment))),
+        line(basis, *(base.in_base_axes(v, follower=False) for v in (along.force, along.moment))),
     ]
     found = model(basis, q, placed).statics.internal_wrench().full().T
     expected = reference_wrench(basis, q, wrenches, world_R_base)

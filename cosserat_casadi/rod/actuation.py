@@ -1,0 +1,112 @@
+"""Actuators as a rod sees them: an effort that works on a quantity which the strains alone make.
+
+The quantity is a sum over the nodes, L = ℓ Σ w_k g(ξ_k), the length of a cable or the volume of a channel. An effort τ
+with the energy τ L adds τ ∂L/∂q to the residual and τ ∂²L/∂q² to its Jacobian; no pose of a section enters. In the
+words of report (2.15), (2.16) the stress against the elastic one is Λ_ad = τ ∂g/∂ξ. See docs/theory.md section 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.kinematics import Shape
+
+
+class Conjugate(Protocol):
+    """What an effort works on, for a rod of known strain."""
+
+    @property
+    def value(self) -> Matrix:
+        """L, 1×1."""
+
+    @property
+    def gradient(self) -> Matrix:
+        """∂L/∂q, n×1."""
+
+    def curvature(self, a: int, b: int) -> Matrix | None:
+        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+
+
+class Quantity(Protocol):
+    """What an effort works on, before the strain of the rod is known."""
+
+    def on(self, shape: Shape) -> Conjugate:
+        """The quantity on a rod of this shape."""
+
+
+@dataclass(frozen=True)
+class Actuation:
+    """An effort on a rod.
+
+    Attributes:
+        quantity: what it works on.
+        effort: 1×1; the energy is effort times quantity, so a pressure is negative and a tension positive.
+    """
+
+    quantity: Quantity
+    effort: Matrix
+
+
+@dataclass(frozen=True)
+class StrainSum:
+    """A quantity that is linear in the strains: L = ℓ Σ_k w_k Σ_c g_ck ξ_ck.
+
+    Attributes:
+        components: the strains c that it depends on.
+        densities: g, shape (len(components), M).
+    """
+
+    components: Sequence[int]
+    densities: FloatArray
+
+    def on(self, shape: Shape) -> StrainSumOnRod:
+        """The quantity on a rod of this shape."""
+        return StrainSumOnRod(shape, self)
+
+
+@dataclass(frozen=True)
+class StrainSumOnRod:
+    """A quantity that is linear in the strains, on a rod: its gradient is constant.
+
+    Attributes:
+        shape: the rod's shape.
+        quantity: the quantity.
+    """
+
+    shape: Shape
+    quantity: StrainSum
+
+    @cached_property
+    def value(self) -> Matrix:
+        """L, 1×1."""
+        strains = self.shape.rod.strain_rows(self.shape.q, self.quantity.components, self.shape.ratio)
+        parts = [row @ ca.DM(weights) for row, weights in zip(strains, self._weighted, strict=True) if row is not None]
+        return sum(parts, ca.DM(0.0))
+
+    @cached_property
+    def gradient(self) -> Matrix:
+        """∂L/∂q, n×1."""
+        rod = self.shape.rod
+        weights = dict(zip(self.quantity.components, self._weighted, strict=True))
+        rows = []
+        for c in rod.properties.admitted:
+            at_nodes = rod.at_nodes[c]
+            rows.append(at_nodes.T @ weights[c] if c in weights else np.zeros(at_nodes.shape[1]))
+        return ca.sparsify(ca.DM(np.concatenate(rows)))
+
+    def curvature(self, a: int, b: int) -> None:
+        """Zero."""
+        return
+
+    @property
+    def _weighted(self) -> FloatArray:
+        """ℓ w g, shape (len(components), M)."""
+        rod = self.shape.rod
+        return np.asarray(rod.properties.length * rod.grid.weights * self.quantity.densities)

@@ -1,0 +1,90 @@
+"""A wrench as a function of the pose of the section it acts on, differentiated by CasADi.
+
+Rods are written in the axes of their base, loads in those of the world: the kernel composes the pose of the base with
+that of the section, calls the load, and turns force and moment back. With the pose (p, R) of the base and (r, θ) of the
+section in it, f = Rᵀ f_w(p + R r, R exp(θ^) …), so the derivatives below are in the axes of the base too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.rotation import hat
+from cosserat_casadi.maths.typing import Matrix
+
+ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "parameters", "data"]
+
+
+@dataclass(frozen=True)
+class SectionKernel:
+    """A small function of one section, its derivative, and its energy where it has one.
+
+    All three functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in
+    the axes of the base, those of the base in the world, the run-time parameters and the numbers of this section.
+
+    Attributes:
+        world_wrench: (position, rotation, parameters, data) ↦ (force, moment), world axes, 3×1 each.
+        world_energy: the same arguments ↦ energy, J or J/m; None for a wrench that is no derivative of an energy.
+    """
+
+    world_wrench: ca.Function
+    world_energy: ca.Function | None = None
+
+    @cached_property
+    def wrench(self) -> ca.Function:
+        """Force and moment in the axes of the base, 3×1 each."""
+        symbols = self._symbols()
+        return ca.Function("wrench", symbols, self._in_base(symbols), ARGUMENTS, ["force", "moment"])
+
+    @cached_property
+    def stiffness(self) -> ca.Function:
+        """6×6 derivative of [force; moment] with [δr; δθ], all in the axes of the base."""
+        symbols = self._symbols()
+        position, rotation = symbols[0], symbols[1]
+        wrench = ca.vertcat(*self._in_base(symbols))
+        # δR = δθ^ R: one column of rates for each axis.
+        rates = ca.horzcat(*[ca.vec(hat(axis) @ rotation) for axis in ca.horzsplit(ca.DM.eye(3))])
+        with_position = ca.jacobian(wrench, position)
+        with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ rates
+        stiffness = ca.sparsify(ca.cse(ca.horzcat(with_position, with_rotation)))
+        return ca.Function("stiffness", symbols, [stiffness], ARGUMENTS, ["stiffness"])
+
+    @cached_property
+    def energy(self) -> ca.Function | None:
+        """Energy, J on one section, J/m along a rod; None where there is none."""
+        if self.world_energy is None:
+            return None
+        symbols = self._symbols()
+        energy = self.world_energy(*self._in_world(symbols))
+        return ca.Function("energy", symbols, [energy], ARGUMENTS, ["energy"])
+
+    def _symbols(self) -> list[ca.SX]:
+        parameters = ca.SX.sym("parameters", self.world_wrench.size1_in(2))
+        data = ca.SX.sym("data", self.world_wrench.size1_in(3))
+        section = [ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)]
+        base = [ca.SX.sym("base_position", 3), ca.SX.sym("base_rotation", 3, 3)]
+        return [*section, *base, parameters, data]
+
+    def _in_world(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
+        position, rotation, base_position, base_rotation, parameters, data = symbols
+        return [base_position + base_rotation @ position, base_rotation @ rotation, parameters, data]
+
+    def _in_base(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
+        base_rotation = symbols[3]
+        force, moment = self.world_wrench(*self._in_world(symbols))
+        return [ca.sparsify(base_rotation.T @ force), ca.sparsify(base_rotation.T @ moment)]
+
+
+def wrench_of_energy(energy: Matrix, position: Matrix, rotation: Matrix) -> tuple[Matrix, Matrix]:
+    """Force −∂U/∂r and moment −∂U/∂θ of an energy in the symbols of a pose, 3×1 each, world axes.
+
+    With δR = δθ^ R the energy varies by Σ ∂U/∂R ∘ (δθ^ R).
+    """
+    force = -ca.gradient(energy, position)
+    with_rotation = ca.reshape(ca.gradient(energy, ca.vec(rotation)), 3, 3)
+    rates = [ca.sum1(ca.sum2(with_rotation * (hat(axis) @ rotation))) for axis in ca.horzsplit(ca.DM.eye(3))]
+    return force, -ca.vertcat(*rates)

@@ -1,0 +1,185 @@
+"""Kinds of load that do not ship, written as a user would write them: one record, one class, one registration each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any, ClassVar, Literal
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import Scene, scene_from_dict
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.registry import EFFECTS, register
+from cosserat_casadi.scene.records import Record
+
+Vector = tuple[float, float, float]
+
+
+class SpringRecord(Record):
+    """A spring between a section, or a point of a body, and a point of the world."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("stiffness", "anchor")
+
+    name: str
+    kind: Literal["spring", "elastic_spring"]
+    rod: str | None = None
+    body: str | None = None
+    at: float = 1.0
+    position: Vector = (0.0, 0.0, 0.0)
+    stiffness: float
+    anchor: Vector
+
+
+class _OnSectionOrBody(Load):
+    def abscissa(self, load: Any) -> float:
+        return float(load.at)
+
+    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+        return BodyPoint(load.position) if load.body == body.name else None
+
+
+class Spring(_OnSectionOrBody):
+    """A linear spring of no length at rest, given as a wrench."""
+
+    kind = "spring"
+    magnitudes: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "anchor": "m"}
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        return values["stiffness"] * (values["anchor"] - section.position), ca.DM(3, 1)
+
+
+class ElasticSpring(_OnSectionOrBody):
+    """The same given as an energy."""
+
+    kind = "elastic_spring"
+    magnitudes: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "anchor": "m"}
+
+    def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        return values["stiffness"] / 2 * ca.sumsqr(section.position - values["anchor"])
+
+
+class DipoleRecord(Record):
+    """A dipole fixed in a section or a body, in a field that is uniform but for a gradient along its own axis."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("field",)
+
+    name: str
+    kind: Literal["dipole"]
+    rod: str | None = None
+    body: str | None = None
+    at: float = 1.0
+    position: Vector = (0.0, 0.0, 0.0)
+    dipole: Vector
+    gradient: float = 0.0
+    field: Vector
+
+
+class Dipole(_OnSectionOrBody):
+    """Energy −m·B of a dipole m = R m₀, with B + g z e_z: rotation and position are coupled."""
+
+    kind = "dipole"
+    magnitudes: ClassVar[Mapping[str, str]] = {"field": "T"}
+
+    def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        field = values["field"] + load.gradient * ca.vertcat(0, 0, section.position[2])
+        return -ca.dot(section.rotation @ ca.DM(load.dipole), field)
+
+
+class TorqueRecord(Record):
+    """A dipole in a uniform field, as a moment."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("field",)
+
+    name: str
+    kind: Literal["torque"]
+    rod: str
+    at: float = 1.0
+    dipole: Vector
+    field: Vector
+
+
+class Torque(_OnSectionOrBody):
+    """The moment R m₀ × B on a section."""
+
+    kind = "torque"
+    magnitudes: ClassVar[Mapping[str, str]] = {"field": "T"}
+
+    def on_body(self, load: Any, body: Any) -> None:
+        return None
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        return ca.DM(3, 1), ca.cross(section.rotation @ ca.DM(load.dipole), values["field"])
+
+
+class LineRecord(Record):
+    """A load all along a rod with one number."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("strength",)
+
+    name: str
+    kind: Literal["foundation", "whirl", "flag"]
+    rod: str
+    frame: Literal["world", "body"] = "world"
+    strength: float
+
+
+class Foundation(Load):
+    """An elastic foundation: every section is drawn to where it was, and turned back, as an energy per length."""
+
+    kind = "foundation"
+    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m²"}
+
+    def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        apart = section.position - section.data[:3]
+        turned = 3 - ca.dot(ca.vec(section.rotation), section.data[3:])
+        return values["strength"] * (ca.sumsqr(apart) / 2 + 0.1 * turned)
+
+    def data(self, load: Any, site: Site) -> FloatArray:
+        columns = np.transpose(site.unloaded_rotation, (2, 1, 0)).reshape(9, -1)
+        return np.vstack([site.unloaded_position, columns])
+
+
+class Whirl(Load):
+    """A circulating force and moment per length, with no potential, in the axes of the sections or of the world."""
+
+    kind = "whirl"
+    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m²"}
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        x, y, z = ca.vertsplit(section.position)
+        force = values["strength"] * ca.vertcat(-y, x, ca.sin(z))
+        return force, 0.1 * values["strength"] * section.rotation[:, 2] * (1 + x)
+
+
+class Flag(Load):
+    """A dead force per length, written with the pose in its hands and not touching it."""
+
+    kind = "flag"
+    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m"}
+
+    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        return values["strength"] * ca.DM([1.0, 0.0, 0.0]), ca.DM(3, 1)
+
+
+KINDS: tuple[type[Load], ...] = (Spring, ElasticSpring, Dipole, Torque, Foundation, Whirl, Flag)
+
+
+@contextmanager
+def registered() -> Iterator[None]:
+    """The kinds of this file known to the package."""
+    for kind in KINDS:
+        register(kind)
+    try:
+        yield
+    finally:
+        for kind in KINDS:
+            EFFECTS.pop(kind.kind, None)
+
+
+def with_loads(tables: dict[str, Any], *loads: Record, inputs: tuple[str, ...] | None = None) -> Scene:
+    """A scene with loads of these kinds beside those of its tables."""
+    scene = scene_from_dict(tables)
+    return scene.model_copy(update={"loads": (*scene.loads, *loads), "inputs": inputs})
