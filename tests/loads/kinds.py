@@ -13,17 +13,17 @@ from cosserat_casadi import Scene, scene_from_dict
 from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.registry import EFFECTS, register
-from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import LoadRecord
 
 Vector = tuple[float, float, float]
 
 
-class SpringRecord(Record):
+class SpringRecord(LoadRecord):
     """A spring between a section, or a point of a body, and a point of the world."""
 
-    magnitudes: ClassVar[tuple[str, ...]] = ("stiffness", "anchor")
+    inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m", 1), "anchor": InputField("m", 3)}
 
-    name: str
     kind: Literal["spring", "elastic_spring"]
     rod: str | None = None
     body: str | None = None
@@ -45,7 +45,6 @@ class Spring(_OnSectionOrBody):
     """A linear spring of no length at rest, given as a wrench."""
 
     kind = "spring"
-    magnitudes: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "anchor": "m"}
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         return values["stiffness"] * (values["anchor"] - section.position), ca.DM(3, 1)
@@ -55,18 +54,16 @@ class ElasticSpring(_OnSectionOrBody):
     """The same given as an energy."""
 
     kind = "elastic_spring"
-    magnitudes: ClassVar[Mapping[str, str]] = {"stiffness": "N/m", "anchor": "m"}
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         return values["stiffness"] / 2 * ca.sumsqr(section.position - values["anchor"])
 
 
-class DipoleRecord(Record):
+class DipoleRecord(LoadRecord):
     """A dipole fixed in a section or a body, in a field that is uniform but for a gradient along its own axis."""
 
-    magnitudes: ClassVar[tuple[str, ...]] = ("field",)
+    inputs: ClassVar[Mapping[str, InputField]] = {"field": InputField("T", 3)}
 
-    name: str
     kind: Literal["dipole"]
     rod: str | None = None
     body: str | None = None
@@ -81,19 +78,17 @@ class Dipole(_OnSectionOrBody):
     """Energy −m·B of a dipole m = R m₀, with B + g z e_z: rotation and position are coupled."""
 
     kind = "dipole"
-    magnitudes: ClassVar[Mapping[str, str]] = {"field": "T"}
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         field = values["field"] + load.gradient * ca.vertcat(0, 0, section.position[2])
         return -ca.dot(section.rotation @ ca.DM(load.dipole), field)
 
 
-class TorqueRecord(Record):
+class TorqueRecord(LoadRecord):
     """A dipole in a uniform field, as a moment."""
 
-    magnitudes: ClassVar[tuple[str, ...]] = ("field",)
+    inputs: ClassVar[Mapping[str, InputField]] = {"field": InputField("T", 3)}
 
-    name: str
     kind: Literal["torque"]
     rod: str
     at: float = 1.0
@@ -105,7 +100,6 @@ class Torque(_OnSectionOrBody):
     """The moment R m₀ × B on a section."""
 
     kind = "torque"
-    magnitudes: ClassVar[Mapping[str, str]] = {"field": "T"}
 
     def on_body(self, load: Any, body: Any) -> None:
         return None
@@ -114,12 +108,11 @@ class Torque(_OnSectionOrBody):
         return ca.DM(3, 1), ca.cross(section.rotation @ ca.DM(load.dipole), values["field"])
 
 
-class LineRecord(Record):
+class LineRecord(LoadRecord):
     """A load all along a rod with one number."""
 
-    magnitudes: ClassVar[tuple[str, ...]] = ("strength",)
+    inputs: ClassVar[Mapping[str, InputField]] = {"strength": InputField("N/m²", 1)}
 
-    name: str
     kind: Literal["foundation", "whirl", "flag"]
     rod: str
     frame: Literal["world", "body"] = "world"
@@ -130,7 +123,6 @@ class Foundation(Load):
     """An elastic foundation: every section is drawn to where it was, and turned back, as an energy per length."""
 
     kind = "foundation"
-    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m²"}
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         apart = section.position - section.data[:3]
@@ -146,7 +138,6 @@ class Whirl(Load):
     """A circulating force and moment per length, with no potential, in the axes of the sections or of the world."""
 
     kind = "whirl"
-    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m²"}
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         x, y, z = ca.vertsplit(section.position)
@@ -158,7 +149,6 @@ class Flag(Load):
     """A dead force per length, written with the pose in its hands and not touching it."""
 
     kind = "flag"
-    magnitudes: ClassVar[Mapping[str, str]] = {"strength": "N/m"}
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         return values["strength"] * ca.DM([1.0, 0.0, 0.0]), ca.DM(3, 1)
@@ -179,7 +169,7 @@ def registered() -> Iterator[None]:
             EFFECTS.pop(kind.kind, None)
 
 
-def with_loads(tables: dict[str, Any], *loads: Record, inputs: tuple[str, ...] | None = None) -> Scene:
+def with_loads(tables: dict[str, Any], *loads: LoadRecord, inputs: tuple[str, ...] | None = None) -> Scene:
     """A scene with loads of these kinds beside those of its tables."""
     scene = scene_from_dict(tables)
     return scene.model_copy(update={"loads": (*scene.loads, *loads), "inputs": inputs})

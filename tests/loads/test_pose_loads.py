@@ -140,12 +140,8 @@ def energy_of(record: Any, position: ca.MX, rotation: ca.MX) -> ca.MX:
 
 def units(model: Model) -> np.ndarray:
     """Energy unit of every unknown that moves something; NaN for multipliers."""
-    found = np.full(model.size, np.nan)
-    for name, entries in model.discrete.rod_slices.items():
-        found[entries] = model.discrete.rods[name].energy_unit
-    for carrier, entries in model.discrete.moving_slices.items():
-        found[entries] = model.discrete.couplings.moving[carrier].unit
-    return found
+    unknowns = model.discrete.unknowns
+    return np.where(unknowns.differential, unknowns.units, np.nan)
 
 
 def assert_residual_is_gradient(with_load: Model, energy: Callable[[ca.MX], ca.MX], x: np.ndarray) -> None:
