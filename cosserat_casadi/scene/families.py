@@ -42,6 +42,7 @@ class Family(Generic[Member]):
         Raises:
             ValueError: another record has the same word, or the record does not have one word.
         """
+        # The word is the only value of a Literal, so that pydantic refuses any other.
         field = record.model_fields.get(self.key)
         words = () if field is None else get_args(field.annotation)
         if len(words) != 1:
@@ -61,15 +62,18 @@ class Family(Generic[Member]):
 
     def marked(self, mark: str) -> type[Member] | None:
         """The record that a mark in one of pydantic's locations stands for."""
-        return self.records.get(mark.strip("⟨⟩"))
+        word = mark.strip("⟨⟩")
+        return self.records.get(word)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         # A union would be frozen when the class of the scene is made; a function asks the family each time.
         return core_schema.no_info_plain_validator_function(self._validated)
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        # Only this description is a union: it is made from the kinds that are known now.
         choices = {word: _referable(record) for word, record in self.records.items()}
-        return handler(core_schema.tagged_union_schema(choices, discriminator=lambda value: value[self.key]))
+        union = core_schema.tagged_union_schema(choices, discriminator=_no_word)
+        return handler(union)
 
     def _validated(self, value: Any) -> Member:
         if isinstance(value, BaseModel):
@@ -81,15 +85,22 @@ class Family(Generic[Member]):
         try:
             return self.records[word].model_validate(value)
         except ValidationError as error:
-            raise restated(error, below=(f"⟨{word}⟩",)) from None
+            # The mark says to whoever reads the locations which record they go on in.
+            mark = f"⟨{word}⟩"
+            raise restated(error, below=(mark,)) from None
 
     def _known_word(self, word: Any) -> str:
+        if isinstance(word, str) and word in self.records:
+            return word
         choices = ", ".join(repr(known) for known in self.records)
+        fault = Fault((self.key,), f"must be one of {choices}, got {shown(word)}")
         if word is None:
-            raise refusal([Fault((self.key,), "missing", f"one of {choices}")])
-        if not isinstance(word, str) or word not in self.records:
-            raise refusal([Fault((self.key,), f"must be one of {choices}, got {shown(word)}")])
-        return word
+            fault = Fault((self.key,), "missing", f"one of {choices}")
+        raise refusal([fault])
+
+
+def _no_word(value: Any) -> None:
+    """The word of a value in a union that is described but never asked for one."""
 
 
 def _referable(record: type[Record]) -> CoreSchema:
@@ -112,6 +123,7 @@ def _contents(annotation: Any) -> Family[Any] | type[Record] | None:
         for entry in annotation.__metadata__:
             if isinstance(entry, Family):
                 return entry
+    # Optional values, lists and unions: what they hold stands one level down.
     for argument in get_args(annotation):
         contents = _contents(argument)
         if contents is not None:

@@ -24,6 +24,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     for i, entry in enumerate(entries):
         if not isinstance(entry, str):
             continue
+        # Names have no dots; fields of inner tables do.
         name, _, field = entry.partition(".")
         if not field:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
@@ -44,6 +45,7 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
         name = bound.get("input")
         if not isinstance(name, str):
             continue
+        # What is no input has no count that the bound could differ from.
         if name not in counts:
             yield Fault(("bounds", i, "input"), f"{shown(name)} is not free at run time", listing(counts, "inputs"))
             continue
@@ -64,15 +66,17 @@ def _numbers(count: int) -> str:
 
 def _owners(scene: SceneTables) -> Owners:
     """What may have inputs, by name, with its record where the kind is known."""
-    rods: Owners = {name: (Rod, table) for name, (_, table) in scene.named("rods").items()}
-    # Inputs of a load or an actuator hide those of a rod of the same name, which is listed last.
-    causes = _causes(scene)
-    return {**causes, **{name: rod for name, rod in rods.items() if name not in causes}}
+    owners = _causes(scene)
+    for name, (_, table) in scene.named("rods").items():
+        # Inputs of a load or an actuator hide those of a rod of the same name.
+        owners.setdefault(name, (Rod, table))
+    return owners
 
 
 def _causes(scene: SceneTables) -> Owners:
     """Actuators and loads by name, with the record where the kind is known."""
     causes: Owners = {}
+    # A load hides an actuator of the same name; that they share it is a fault of its own.
     for family in (ACTUATORS, LOADS):
         for name, (_, table) in scene.named(family.table).items():
             causes[name] = (family.record_of(table), table)
@@ -85,6 +89,7 @@ def _field_faults(field: str, record: type[Entry] | None, table: Table, scene: S
         return
     name = shown(table["name"])
     fields = record.free_fields(table)
+    # What is free of a load or an actuator are its magnitudes; of a rod it is its geometry.
     if field not in fields and record is Rod:
         yield Fault((), f"{name} has no {shown(field)} to leave free", listing(fields, "fields"))
     elif field not in fields:

@@ -91,6 +91,7 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     for segment in segments[:-1]:
         index = _index(container, segment)
         path.append(index)
+        # Tables that a scene leaves out, such as accuracy, are made on the way.
         if isinstance(container, dict) and index not in container:
             container[index] = {}
             created = created or tuple(path)
@@ -103,6 +104,7 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
 
 def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
     """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
+    # Both loads[0].force and loads.0.force are read.
     segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
     lists = _lists_by_name(tables)
     first = segments[0]

@@ -100,6 +100,7 @@ inputs = ["push.force", "cable.tension"]
         Returns:
             listed inputs in their order; magnitudes of loads, then of actuators, in the order of the file.
         """
+        # An empty list is an answer too: nothing stays free.
         if self.inputs is not None:
             return tuple(self._named_input(name) for name in self.inputs)
         return tuple(
@@ -111,12 +112,17 @@ inputs = ["push.force", "cable.tension"]
 
     def input_names(self) -> tuple[str, ...]:
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
-        return tuple(entry.name for entry in self.free_inputs())
+        inputs = self.free_inputs()
+        return tuple(entry.name for entry in inputs)
 
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
-        # A load or an actuator goes before a rod of the same name.
-        record = next(record for record in (*self.causes, *self.rods) if record.name == owner)
+        # The rules have seen to it that every listed input has its owner and is one of its fields.
+        records: dict[str, Entry] = {rod.name: rod for rod in self.rods}
+        # Inputs of a load or an actuator hide those of a rod of the same name.
+        for cause in self.causes:
+            records[cause.name] = cause
+        record = records[owner]
         return FreeInput(record, field, record.inputs[field])
 
     @classmethod

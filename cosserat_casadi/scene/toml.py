@@ -6,6 +6,7 @@ import math
 import os
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -86,10 +87,16 @@ def parsed(text: str) -> dict[str, Any]:
 
 def keys_are_too_deep(text: str) -> bool:
     """Whether a dotted key is so deep that parsing it would take all memory; keys cannot span lines."""
-    # Bare keys end at these signs; quoted keys may hold them, so that quotes before dots are counted by line.
-    bare = max(len(re.findall(r"[^.\s]\s*\.", part)) for part in re.split(r"[=,{}\[\]#\n]", text))
-    quoted = max(len(re.findall(r"[\"']\s*\.", line)) for line in text.split("\n"))
-    return bare > DEEPEST or quoted > DEEPEST
+    # A bare key ends at one of these signs; a quoted key may hold them, but its dots follow quotes.
+    bare = re.split(r"[=,{}\[\]#\n]", text)
+    lines = text.split("\n")
+    return _most(r"[^.\s]\s*\.", bare) > DEEPEST or _most(r"[\"']\s*\.", lines) > DEEPEST
+
+
+def _most(pattern: str, parts: Iterable[str]) -> int:
+    """How often a pattern is in the part of a text that has it most often."""
+    counts = [len(re.findall(pattern, part)) for part in parts]
+    return max(counts)
 
 
 def _syntax_problem(message: str) -> Problem:
