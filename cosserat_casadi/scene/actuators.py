@@ -35,7 +35,8 @@ ACTUATORS: Family[ActuatorRecord] = Family("actuators")
 def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
     if not value[0] < value[1]:
         problem = f"must begin before it ends, got {list(value)}"
-        raise refusal([Fault((), problem, "two abscissae X, base side first")])
+        fault = Fault((), problem, "two abscissae X, base side first")
+        raise refusal([fault])
     return value
 
 

@@ -18,8 +18,8 @@ def bases_on_nothing(scene: SceneTables) -> Iterator[Fault]:
         circle = _circle(carriers, name)
         # The poses of rods follow one another from carrier to carried: they must begin in the world.
         if carrier not in rods:
-            others = [known for known in rods if known != name]
-            yield Fault(path, f"no rod is named {shown(carrier)}", listing(others, "rods"))
+            candidates = [known for known in rods if known != name]
+            yield Fault(path, f"no rod is named {shown(carrier)}", listing(candidates, "rods"))
         elif carrier == name:
             yield Fault(path, "a rod cannot start on itself", "name another rod, or give its base in the world")
         elif circle:

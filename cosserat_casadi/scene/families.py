@@ -43,13 +43,16 @@ class Family(Generic[Member]):
             ValueError: another record has the same word, or the record does not have one word.
         """
         # The word is the only value of a Literal, so that pydantic refuses any other.
-        field = record.model_fields.get(self.key)
-        words = () if field is None else get_args(field.annotation)
+        words: tuple[Any, ...] = ()
+        if self.key in record.model_fields:
+            annotation = record.model_fields[self.key].annotation
+            words = get_args(annotation)
         if len(words) != 1:
             raise ValueError(f"{record.__name__} needs a field {self.key} with one word, such as Literal['spring']")
         word = words[0]
         if word in self.records:
-            raise ValueError(f"{self.table} have a {self.key} {word!r} already: {self.records[word].__name__}")
+            first = self.records[word].__name__
+            raise ValueError(f"{self.table} have a {self.key} {word!r} already: {first}")
         self.records[word] = record
         return record
 
@@ -76,14 +79,17 @@ class Family(Generic[Member]):
         return handler(union)
 
     def _validated(self, value: Any) -> Member:
+        # A scene may be built from records in Python as well as from tables.
         if isinstance(value, BaseModel):
-            word = self._known_word(getattr(value, self.key, None))
+            given = getattr(value, self.key, None)
         elif isinstance(value, Mapping):
-            word = self._known_word(value.get(self.key))
+            given = value.get(self.key)
         else:
             raise refusal([Fault((), f"must be a table, got {shown(value)}")])
+        word = self._known_word(given)
+        record = self.records[word]
         try:
-            return self.records[word].model_validate(value)
+            return record.model_validate(value)
         except ValidationError as error:
             # The mark says to whoever reads the locations which record they go on in.
             mark = f"⟨{word}⟩"

@@ -37,8 +37,9 @@ WRENCH = {
 
 def force_or_moment(given: Table) -> Iterator[Fault]:
     """A wrench has a force or a moment."""
-    if "force" not in given and "moment" not in given:
-        yield Fault(("force",), "missing", "give force, moment or both")
+    if "force" in given or "moment" in given:
+        return
+    yield Fault(("force",), "missing", "give force, moment or both")
 
 
 @LOADS.register

@@ -48,7 +48,8 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
         tables: the scene, whose order is that of the problems.
         applied: overrides, the last one first: what they brought in is said of them.
     """
-    faults = [_fault(details) for details in error.errors(include_url=False)]
+    errors = error.errors(include_url=False)
+    faults = [_fault(details) for details in errors]
     order = _FileOrder(tables)
     faults.sort(key=order.position)
     return [_problem(fault, applied) for fault in faults]
@@ -98,8 +99,10 @@ def record_at(location: Path) -> type[Record]:
         if family is not None:
             record = family.marked(part) or record
             family = None
-        field = keys_of(record).get(part)
-        contents = None if field is None else contents_of(field)
+        keys = keys_of(record)
+        if part not in keys:
+            continue
+        contents = contents_of(keys[part])
         if isinstance(contents, Family):
             family = contents
         elif contents is not None:
@@ -157,6 +160,7 @@ class _FileOrder:
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables = tables
+        # By identity: tables cannot be keys of a dictionary.
         self._orders: dict[int, dict[Any, int]] = {}
 
     def position(self, fault: Fault) -> tuple[int, ...]:

@@ -99,7 +99,9 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     last = _index(container, segments[-1])
     container[last] = value
     leaf = (*path, last)
-    return Assignment(key, leaf, created or leaf)
+    if created is None:
+        created = leaf
+    return Assignment(key, leaf, created)
 
 
 def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
@@ -112,7 +114,8 @@ def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> lis
         return [lists[first], *segments]
     if first not in known:
         problem = f"no load, actuator, rod, support or table is named {shown(first)}"
-        raise RefusedOverride(problem, closest(first, [*lists, *known]))
+        remedy = closest(first, [*lists, *known])
+        raise RefusedOverride(problem, remedy)
     return segments
 
 

@@ -73,8 +73,8 @@ def _is_constant(components: Sequence[float | tuple[float, ...]], values: Sequen
         if not isinstance(coefficients, tuple):
             coefficients = (coefficients,)
         # The Legendre polynomial of degree 0 is 1; those above have no part in a constant.
-        constant, *others = coefficients
-        if constant != value or any(others):
+        constant, *higher = coefficients
+        if constant != value or any(higher):
             return False
     return True
 

@@ -39,7 +39,8 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     Raises:
         SceneError: with every fault of the file and the overrides.
     """
-    return parse_scene(file_text(Path(path)), overrides)
+    text = file_text(Path(path))
+    return parse_scene(text, overrides)
 
 
 def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
@@ -52,7 +53,8 @@ def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
     Raises:
         SceneError: with every fault.
     """
-    return scene_from_dict(parsed(text), overrides)
+    tables = parsed(text)
+    return scene_from_dict(tables, overrides)
 
 
 def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -> Scene:
@@ -66,7 +68,9 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
         SceneError: with every fault.
     """
     try:
-        return _validated(_copy(mapping), overrides)
+        tables = _copy(mapping)
+        return _validated(tables, overrides)
+    # Copying, reading and judging all go down the tables by recursion.
     except RecursionError:
         raise SceneError(Problem("", TOO_DEEP)) from None
 

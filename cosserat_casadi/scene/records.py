@@ -36,7 +36,8 @@ def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault
         below: path that its locations are put behind.
         faults: faults that follow those of the error.
     """
-    lines = [_line(details, below) for details in error.errors(include_url=False)]
+    errors = error.errors(include_url=False)
+    lines = [_line(details, below) for details in errors]
     lines += [_wrapped(fault) for fault in faults]
     return ValidationError.from_exception_data("scene", lines)
 

@@ -106,7 +106,9 @@ def _title(key: str) -> str:
 def _kinds(family: Family[Any], level: int) -> Iterator[str]:
     """One section for each kind of a family."""
     for word, record in family.records.items():
-        yield _heading(level, f'`{family.key} = "{word}"`')
+        title = f'`{family.key} = "{word}"`'
+        yield _heading(level, title)
+        # The word stands in the heading, and needs no line in the table.
         yield from _record(record, path=family.table, level=level, without=family.key)
 
 
@@ -218,7 +220,9 @@ def _word(word: Any) -> str:
 def _choice(nodes: Sequence[Mapping[str, Any]]) -> str:
     """Choices in words, without the null that stands for a key left out, and without repetition."""
     words = [_value(node) for node in nodes if node.get("type") != "null"]
-    return ", or ".join(dict.fromkeys(words))
+    # A dictionary drops what comes again and keeps the order.
+    distinct = dict.fromkeys(words)
+    return ", or ".join(distinct)
 
 
 def _typed(node: Mapping[str, Any]) -> str:

@@ -317,4 +317,5 @@ def admitted_strains(strain: Any) -> tuple[int, ...]:
         return PRESETS.get(strain, ())
     if not isinstance(strain, list | tuple):
         return ()
+    # In the order of the strains, whatever the order of the list.
     return tuple(index for index, name in enumerate(STRAINS) if name in strain)

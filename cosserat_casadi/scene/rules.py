@@ -35,7 +35,14 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
 }
 """What the lists of a scene hold."""
 
-SINGULAR = {"rods": "rod", "bodies": "body", "loads": "load", "actuators": "actuator"}
+SINGULAR = {
+    "loads": "load",
+    "supports": "support",
+    "joints": "joint",
+    "actuators": "actuator",
+    "rods": "rod",
+    "bodies": "body",
+}
 """One of what a list holds, in the words of an error."""
 
 
@@ -73,7 +80,8 @@ def repeated_names(scene: SceneTables) -> Iterator[Fault]:
                 continue
             first, _ = named[name]
             if first != i:
-                yield Fault((key, i, "name"), f"{shown(name)} is already the name of {key}[{first}]")
+                problem = f"{shown(name)} is already the name of {key}[{first}]"
+                yield Fault((key, i, "name"), problem)
 
 
 def shared_names(scene: SceneTables) -> Iterator[Fault]:
@@ -83,7 +91,8 @@ def shared_names(scene: SceneTables) -> Iterator[Fault]:
         name = table.get("name")
         if isinstance(name, str) and name in loads:
             load, _ = loads[name]
-            yield Fault(("actuators", i, "name"), f"{shown(name)} is already the name of loads[{load}]")
+            problem = f"{shown(name)} is already the name of loads[{load}]"
+            yield Fault(("actuators", i, "name"), problem)
 
 
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:
@@ -114,11 +123,8 @@ def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, 
 
 def _holds_one_name(record: type[Entry], field: str) -> bool:
     """Whether a field that refers to other tables is one name, or a list of them."""
-    annotation = record.model_fields[field].annotation
-    if annotation is str:
-        return True
-    optional: Any = str | None
-    return bool(annotation == optional)
+    annotation: Any = record.model_fields[field].annotation
+    return annotation in (str, str | None)
 
 
 # Rods, supports and accuracy
@@ -177,8 +183,9 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
             continue
         holder = first.setdefault(name, i)
         if holder != i:
+            path = ("supports", i, "rod")
             problem = f"overlapping supports: supports[{holder}] holds the tip of {shown(name)} already"
-            yield Fault(("supports", i, "rod"), problem, "one support for each tip")
+            yield Fault(path, problem, "one support for each tip")
 
 
 def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:

@@ -14,7 +14,7 @@ from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import Load
-from cosserat_casadi.scene.records import Entry, Record, refusal
+from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.targets import Bound, Target
@@ -38,15 +38,14 @@ class FreeInput:
         declared: what the record says of it: unit, components, axes.
     """
 
-    record: Entry
+    record: Rod | Load | Actuator
     field: str
     declared: InputField
 
     @property
     def owner(self) -> str:
         """Name of the rod, load or actuator."""
-        name: str = self.record.name  # type: ignore[attr-defined]
-        return name
+        return self.record.name
 
     @property
     def name(self) -> str:
@@ -118,7 +117,7 @@ inputs = ["push.force", "cable.tension"]
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
         # The rules have seen to it that every listed input has its owner and is one of its fields.
-        records: dict[str, Entry] = {rod.name: rod for rod in self.rods}
+        records: dict[str, Rod | Load | Actuator] = {rod.name: rod for rod in self.rods}
         # Inputs of a load or an actuator hide those of a rod of the same name.
         for cause in self.causes:
             records[cause.name] = cause

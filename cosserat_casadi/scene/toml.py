@@ -61,7 +61,9 @@ def _decoded(path: Path, content: bytes) -> str:
 
 
 def _too_large(where: str, size: int) -> Problem:
-    megabytes = math.ceil(size / 1e5) / 10
+    # Rounded up: a file of one byte too many is not shown as one of 1.0 MB.
+    tenths = math.ceil(size / 1e5)
+    megabytes = tenths / 10
     return Problem(where, f"is {megabytes:.1f} MB; a scene is at most 1 MB")
 
 
@@ -102,6 +104,8 @@ def _most(pattern: str, parts: Iterable[str]) -> int:
 def _syntax_problem(message: str) -> Problem:
     """A problem from the message of the parser, which ends in the line and column where there is one."""
     parts = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
+    # Without one it comes from Python's own reading of a number of thousands of digits.
     if parts is None:
         return Problem("", "is not TOML: a number in it is beyond all range")
-    return Problem(parts[2], f"is not TOML: {parts[1]}")
+    problem, position = parts.groups()
+    return Problem(position, f"is not TOML: {problem}")

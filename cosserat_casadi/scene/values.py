@@ -59,7 +59,8 @@ class NotEmpty:
 
     def _check(self, value: Any) -> Any:
         if isinstance(value, list | tuple) and not value:
-            raise refusal([Fault((), "must have at least one entry")])
+            fault = Fault((), "must have at least one entry")
+            raise refusal([fault])
         return value
 
 
@@ -117,7 +118,8 @@ def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
     seen: set[str] = set()
     for i, name in enumerate(names):
         if name in seen:
-            yield Fault((i,), f"{shown(name)} is listed twice")
+            problem = f"{shown(name)} is listed twice"
+            yield Fault((i,), problem)
         seen.add(name)
 
 
