@@ -52,14 +52,6 @@ class FreeInput:
         """Name of the input, ``owner.field``."""
         return f"{self.owner}.{self.field}"
 
-    @property
-    def value(self) -> Any:
-        """The scene's value; None where it is left out and has no default."""
-        value: Any = self.record
-        for key in self.field.split("."):
-            value = getattr(value, key)
-        return value
-
 
 class Scene(Record):
     """Rods, and what acts on them. SI units, right-handed world axes."""
