@@ -44,5 +44,6 @@ shape = true
     @property
     def fixed(self) -> bool:
         """Whether the scene itself chooses what it is computed with, or part of that."""
-        choices = (self.modes, self.nodes, self.rotation)
-        return any(choice is not None for choice in choices)
+        if self.modes is not None or self.nodes is not None:
+            return True
+        return self.rotation is not None

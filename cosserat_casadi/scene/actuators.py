@@ -35,7 +35,8 @@ ACTUATORS: Family[ActuatorRecord] = Family("actuators")
 def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
     if not value[0] < value[1]:
         problem = f"must begin before it ends, got {list(value)}"
-        raise refusal([Fault((), problem, "two abscissae X, base side first")])
+        fault = Fault((), problem, "two abscissae X, base side first")
+        raise refusal([fault])
     return value
 
 
@@ -91,19 +92,28 @@ offset = [1.5e-3, 0.0]
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """One of tension and length, one of offset and helix."""
-        for first, second in (("tension", "length"), ("offset", "helix")):
-            if first in given and second in given:
-                yield Fault((second,), f"stands beside {first}", "give one of the two")
-            elif first not in given and second not in given:
-                yield Fault((first,), "missing", f"give {first} or {second}")
+        yield from _one_of("tension", "length", given)
+        yield from _one_of("offset", "helix", given)
+        # Only an unknown tension can be held at zero from below.
         if given.get("slack") is True and "length" not in given:
             yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
         """Tension or length, whichever is given: the other is an unknown or a result."""
-        fields = tuple(field for field in cls.inputs if field in given)
-        return fields or tuple(cls.inputs)
+        fields = [field for field in cls.inputs if field in given]
+        # Where neither is given the table has a fault already; both are known names.
+        if not fields:
+            return tuple(cls.inputs)
+        return tuple(fields)
+
+
+def _one_of(first: str, second: str, given: Table) -> Iterator[Fault]:
+    """Exactly one of two keys is given."""
+    if first in given and second in given:
+        yield Fault((second,), f"stands beside {first}", "give one of the two")
+    if first not in given and second not in given:
+        yield Fault((first,), "missing", f"give {first} or {second}")
 
 
 @ACTUATORS.register

@@ -16,9 +16,10 @@ def bases_on_nothing(scene: SceneTables) -> Iterator[Fault]:
         index, _ = rods[name]
         path = ("rods", index, "base", "rod")
         circle = _circle(carriers, name)
+        # The poses of rods follow one another from carrier to carried: they must begin in the world.
         if carrier not in rods:
-            others = [known for known in rods if known != name]
-            yield Fault(path, f"no rod is named {shown(carrier)}", listing(others, "rods"))
+            candidates = [known for known in rods if known != name]
+            yield Fault(path, f"no rod is named {shown(carrier)}", listing(candidates, "rods"))
         elif carrier == name:
             yield Fault(path, "a rod cannot start on itself", "name another rod, or give its base in the world")
         elif circle:
@@ -51,7 +52,9 @@ def _circle(carriers: Mapping[str, str], name: str) -> list[str]:
 
 def bodies_that_nobody_holds(scene: SceneTables) -> Iterator[Fault]:
     """A body has no joint: nothing would keep it where it is."""
-    held = {joint.get("body") for _, joint in scene.tables("joints") if isinstance(joint.get("body"), str)}
+    # A list, as a faulty name may be what no set can hold.
+    bodies = [joint.get("body") for _, joint in scene.tables("joints")]
+    held = {body for body in bodies if isinstance(body, str)}
     for name, (i, _) in scene.named("bodies").items():
         if name not in held:
             problem = f"nobody holds the body {shown(name)}: no joint names it"
@@ -65,6 +68,7 @@ def tips_held_twice(scene: SceneTables) -> Iterator[Fault]:
     holders: dict[str, str] = {}
     for i, support in scene.tables("supports"):
         name = support.get("rod")
+        # Two supports of one tip are another rule's; the first of them counts.
         if isinstance(name, str):
             holders.setdefault(name, f"supports[{i}]")
     for i, joint in scene.tables("joints"):

@@ -42,13 +42,17 @@ class Family(Generic[Member]):
         Raises:
             ValueError: another record has the same word, or the record does not have one word.
         """
-        field = record.model_fields.get(self.key)
-        words = () if field is None else get_args(field.annotation)
+        # The word is the only value of a Literal, so that pydantic refuses any other.
+        words: tuple[Any, ...] = ()
+        if self.key in record.model_fields:
+            annotation = record.model_fields[self.key].annotation
+            words = get_args(annotation)
         if len(words) != 1:
             raise ValueError(f"{record.__name__} needs a field {self.key} with one word, such as Literal['spring']")
         word = words[0]
         if word in self.records:
-            raise ValueError(f"{self.table} have a {self.key} {word!r} already: {self.records[word].__name__}")
+            first = self.records[word].__name__
+            raise ValueError(f"{self.table} have a {self.key} {word!r} already: {first}")
         self.records[word] = record
         return record
 
@@ -61,35 +65,48 @@ class Family(Generic[Member]):
 
     def marked(self, mark: str) -> type[Member] | None:
         """The record that a mark in one of pydantic's locations stands for."""
-        return self.records.get(mark.strip("⟨⟩"))
+        word = mark.strip("⟨⟩")
+        return self.records.get(word)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         # A union would be frozen when the class of the scene is made; a function asks the family each time.
         return core_schema.no_info_plain_validator_function(self._validated)
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        # Only this description is a union: it is made from the kinds that are known now.
         choices = {word: _referable(record) for word, record in self.records.items()}
-        return handler(core_schema.tagged_union_schema(choices, discriminator=lambda value: value[self.key]))
+        union = core_schema.tagged_union_schema(choices, discriminator=_no_word)
+        return handler(union)
 
     def _validated(self, value: Any) -> Member:
+        # A scene may be built from records in Python as well as from tables.
         if isinstance(value, BaseModel):
-            word = self._known_word(getattr(value, self.key, None))
+            given = getattr(value, self.key, None)
         elif isinstance(value, Mapping):
-            word = self._known_word(value.get(self.key))
+            given = value.get(self.key)
         else:
             raise refusal([Fault((), f"must be a table, got {shown(value)}")])
+        word = self._known_word(given)
+        record = self.records[word]
         try:
-            return self.records[word].model_validate(value)
+            return record.model_validate(value)
         except ValidationError as error:
-            raise restated(error, below=(f"⟨{word}⟩",)) from None
+            # The mark says to whoever reads the locations which record they go on in.
+            mark = f"⟨{word}⟩"
+            raise restated(error, below=(mark,)) from None
 
     def _known_word(self, word: Any) -> str:
+        if isinstance(word, str) and word in self.records:
+            return word
         choices = ", ".join(repr(known) for known in self.records)
+        fault = Fault((self.key,), f"must be one of {choices}, got {shown(word)}")
         if word is None:
-            raise refusal([Fault((self.key,), "missing", f"one of {choices}")])
-        if not isinstance(word, str) or word not in self.records:
-            raise refusal([Fault((self.key,), f"must be one of {choices}, got {shown(word)}")])
-        return word
+            fault = Fault((self.key,), "missing", f"one of {choices}")
+        raise refusal([fault])
+
+
+def _no_word(value: Any) -> None:
+    """The word of a value in a union that is described but never asked for one."""
 
 
 def _referable(record: type[Record]) -> CoreSchema:
@@ -112,6 +129,7 @@ def _contents(annotation: Any) -> Family[Any] | type[Record] | None:
         for entry in annotation.__metadata__:
             if isinstance(entry, Family):
                 return entry
+    # Optional values, lists and unions: what they hold stands one level down.
     for argument in get_args(annotation):
         contents = _contents(argument)
         if contents is not None:

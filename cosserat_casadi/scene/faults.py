@@ -33,7 +33,8 @@ class Fault(NamedTuple):
 
     def below(self, path: Path) -> Fault:
         """The same fault, its path counted from where ``path`` starts."""
-        return self._replace(path=(*path, *self.path))
+        full_path = (*path, *self.path)
+        return self._replace(path=full_path)
 
 
 class SceneTables:

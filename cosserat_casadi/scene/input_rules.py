@@ -24,6 +24,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     for i, entry in enumerate(entries):
         if not isinstance(entry, str):
             continue
+        # Names have no dots; fields of inner tables do.
         name, _, field = entry.partition(".")
         if not field:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
@@ -44,11 +45,14 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
         name = bound.get("input")
         if not isinstance(name, str):
             continue
+        # What is no input has no count that the bound could differ from.
+        path = ("bounds", i, "input")
         if name not in counts:
-            yield Fault(("bounds", i, "input"), f"{shown(name)} is not free at run time", listing(counts, "inputs"))
+            problem = f"{shown(name)} is not free at run time"
+            yield Fault(path, problem, listing(counts, "inputs"))
             continue
         if first.setdefault(name, i) != i:
-            yield Fault(("bounds", i, "input"), f"bounds[{first[name]}] bounds {shown(name)} already")
+            yield Fault(path, f"bounds[{first[name]}] bounds {shown(name)} already")
         for side in ("lower", "upper"):
             count = len(bound_numbers(bound.get(side)))
             wanted = counts[name]
@@ -64,15 +68,17 @@ def _numbers(count: int) -> str:
 
 def _owners(scene: SceneTables) -> Owners:
     """What may have inputs, by name, with its record where the kind is known."""
-    rods: Owners = {name: (Rod, table) for name, (_, table) in scene.named("rods").items()}
-    # Inputs of a load or an actuator hide those of a rod of the same name, which is listed last.
-    causes = _causes(scene)
-    return {**causes, **{name: rod for name, rod in rods.items() if name not in causes}}
+    owners = _causes(scene)
+    for name, (_, table) in scene.named("rods").items():
+        # Inputs of a load or an actuator hide those of a rod of the same name.
+        owners.setdefault(name, (Rod, table))
+    return owners
 
 
 def _causes(scene: SceneTables) -> Owners:
     """Actuators and loads by name, with the record where the kind is known."""
     causes: Owners = {}
+    # A load hides an actuator of the same name; that they share it is a fault of its own.
     for family in (ACTUATORS, LOADS):
         for name, (_, table) in scene.named(family.table).items():
             causes[name] = (family.record_of(table), table)
@@ -83,14 +89,18 @@ def _field_faults(field: str, record: type[Entry] | None, table: Table, scene: S
     """Why a field of a table cannot stay free at run time, without path; nothing where the kind is not known."""
     if record is None:
         return
-    name = shown(table["name"])
     fields = record.free_fields(table)
-    if field not in fields and record is Rod:
-        yield Fault((), f"{name} has no {shown(field)} to leave free", listing(fields, "fields"))
-    elif field not in fields:
-        yield Fault((), f"{name} has no magnitude {shown(field)}", listing(fields, "magnitudes"))
-    else:
+    if field in fields:
         yield from record.input_conflicts(field, table, scene)
+        return
+    name = shown(table["name"])
+    # What is free of a load or an actuator are its magnitudes; of a rod it is its geometry.
+    if record is Rod:
+        problem = f"{name} has no {shown(field)} to leave free"
+        yield Fault((), problem, listing(fields, "fields"))
+    else:
+        problem = f"{name} has no magnitude {shown(field)}"
+        yield Fault((), problem, listing(fields, "magnitudes"))
 
 
 def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
@@ -119,4 +129,7 @@ def _entry_count(name: str, owners: Owners) -> int | None:
     record, table = owners.get(owner, (None, {}))
     if record is None or field not in record.inputs:
         return None
-    return record.inputs[field].entry_count(table.get(field))
+    declared = record.inputs[field]
+    # Fields of inner tables are not looked up: none of them is a polynomial.
+    value = table.get(field)
+    return declared.entry_count(value)

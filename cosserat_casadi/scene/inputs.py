@@ -35,6 +35,9 @@ class InputField:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
         if not self.polynomial or not isinstance(value, list | tuple):
             return self.components
-        coefficients = [len(component) for component in value if isinstance(component, list | tuple)]
+        coefficients = 1
         # Components share the highest degree that one of them has; the others are filled up with zeros.
-        return self.components * max(coefficients, default=1)
+        for component in value:
+            if isinstance(component, list | tuple):
+                coefficients = max(coefficients, len(component))
+        return self.components * coefficients

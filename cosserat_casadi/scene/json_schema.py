@@ -14,16 +14,20 @@ from cosserat_casadi.scene.scene import Scene
 COMMITTED = Path(__file__).with_name("scene.schema.json")
 """The copy that editors are pointed at."""
 
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
 
 def scene_json_schema() -> dict[str, Any]:
     """The schema of a scene file, JSON Schema 2020-12."""
     schema = Scene.model_json_schema(by_alias=True)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    return {"$schema": DIALECT, **schema}
 
 
 def schema_text() -> str:
     """The schema as it is committed: keys sorted, two spaces, a newline at the end."""
-    return json.dumps(scene_json_schema(), indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+    schema = scene_json_schema()
+    text = json.dumps(schema, indent=2, sort_keys=True, ensure_ascii=False)
+    return f"{text}\n"
 
 
 if __name__ == "__main__":

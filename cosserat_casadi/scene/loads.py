@@ -37,8 +37,9 @@ WRENCH = {
 
 def force_or_moment(given: Table) -> Iterator[Fault]:
     """A wrench has a force or a moment."""
-    if "force" not in given and "moment" not in given:
-        yield Fault(("force",), "missing", "give force, moment or both")
+    if "force" in given or "moment" in given:
+        return
+    yield Fault(("force",), "missing", "give force, moment or both")
 
 
 @LOADS.register
@@ -71,11 +72,15 @@ acceleration = [0, 0, -9.81]
 
     def acts_on_rod(self, rod: str) -> bool:
         """Whether it weighs the rod of this name."""
-        return self.acts_on_all or rod in (self.rods or ())
+        if self.rods is None:
+            return self.acts_on_all
+        return rod in self.rods
 
     def acts_on_body(self, body: str) -> bool:
         """Whether it weighs the body of this name."""
-        return self.acts_on_all or body in (self.bodies or ())
+        if self.bodies is None:
+            return self.acts_on_all
+        return body in self.bodies
 
 
 class SectionWrench(LoadRecord):

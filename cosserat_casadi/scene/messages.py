@@ -8,14 +8,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
-from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.scene.families import Family, contents_of
 from cosserat_casadi.scene.faults import Fault, Path, shortened, shown
 from cosserat_casadi.scene.overrides import Assignment
-from cosserat_casadi.scene.records import REFUSED, Record
+from cosserat_casadi.scene.records import REFUSED, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.spelling import close_matches, closest
 
@@ -49,7 +48,8 @@ def problems_of(error: ValidationError, tables: Mapping[str, Any], applied: Sequ
         tables: the scene, whose order is that of the problems.
         applied: overrides, the last one first: what they brought in is said of them.
     """
-    faults = [_fault(details) for details in error.errors(include_url=False)]
+    errors = error.errors(include_url=False)
+    faults = [_fault(details) for details in errors]
     order = _FileOrder(tables)
     faults.sort(key=order.position)
     return [_problem(fault, applied) for fault in faults]
@@ -65,6 +65,7 @@ def _fault(details: ErrorDetails) -> Fault:
     if kind == REFUSED:
         context = details["ctx"]
         return Fault(path, context["problem"], context["remedy"])
+    # The last part is the key with the fault, in the record that the others lead to.
     record = record_at(location[:-1])
     if kind in ("extra_forbidden", "invalid_key"):
         return Fault(path, "unknown key", closest(str(location[-1]), keys_of(record)))
@@ -73,15 +74,17 @@ def _fault(details: ErrorDetails) -> Fault:
 
 def _path_of(location: Path, kind: str) -> Path:
     """A location of pydantic without its marks; an unknown key is kept even where it looks like one."""
-    path = tuple(part for part in location[:-1] if not _is_mark(part))
-    last = location[-1:]
-    if kind == "extra_forbidden" or not any(_is_mark(part) for part in last):
-        path += last
-    return path
+    *leading, last = location
+    path = [part for part in leading if not _is_mark(part)]
+    if kind == "extra_forbidden" or not _is_mark(last):
+        path.append(last)
+    return tuple(path)
 
 
 def _is_mark(part: str | int) -> bool:
-    return isinstance(part, str) and part.startswith("⟨") and part.endswith("⟩")
+    if isinstance(part, int):
+        return False
+    return part.startswith("⟨") and part.endswith("⟩")
 
 
 def record_at(location: Path) -> type[Record]:
@@ -89,13 +92,17 @@ def record_at(location: Path) -> type[Record]:
     record: type[Record] = Scene
     family: Family[Any] | None = None
     for part in location:
-        if family is not None and isinstance(part, str):
+        # An index leads to an entry of the same list.
+        if isinstance(part, int):
+            continue
+        # After the key of a family, and an index where it is a list, comes the mark of the kind.
+        if family is not None:
             record = family.marked(part) or record
             family = None
-        field = keys_of(record).get(part) if isinstance(part, str) else None
-        if field is None:
+        keys = keys_of(record)
+        if part not in keys:
             continue
-        contents = contents_of(field)
+        contents = contents_of(keys[part])
         if isinstance(contents, Family):
             family = contents
         elif contents is not None:
@@ -103,16 +110,12 @@ def record_at(location: Path) -> type[Record]:
     return record
 
 
-def keys_of(record: type[Record]) -> dict[str, FieldInfo]:
-    """The keys of a record's table, as the file writes them."""
-    return {field.alias or name: field for name, field in record.model_fields.items()}
-
-
 def _problem_text(kind: str, details: ErrorDetails) -> str:
     context = details.get("ctx", {})
     got = shown(details["input"])
     if kind == "missing":
         return "missing"
+    # Pydantic lists the words as "'a', 'b' or 'c'"; our families list theirs with commas.
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ")
         return f"must be one of {words}, got {got}"
@@ -124,6 +127,7 @@ def _problem_text(kind: str, details: ErrorDetails) -> str:
 
 def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) -> str:
     """The closest word, or what the field is, where the problem alone does not say it."""
+    # A number out of its range has its range in the problem.
     if kind in BOUNDS or kind == "finite_number":
         return ""
     word = details["input"]
@@ -132,11 +136,16 @@ def _remedy(kind: str, path: Path, record: type[Record], details: ErrorDetails) 
         close = close_matches(word, known)
         if close:
             return f"did you mean '{close[0]}'?"
+    return _description(path, record)
+
+
+def _description(path: Path, record: type[Record]) -> str:
+    """What the schema says of the key that a path ends in; nothing where the record does not have it."""
+    keys = keys_of(record)
     names = [part for part in path if isinstance(part, str)]
-    field = keys_of(record).get(names[-1]) if names else None
-    if field is None:
+    if not names or names[-1] not in keys:
         return ""
-    return field.description or ""
+    return keys[names[-1]].description or ""
 
 
 # From faults to problems
@@ -151,7 +160,8 @@ class _FileOrder:
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
         self.tables = tables
-        self._keys: dict[int, dict[Any, int]] = {}
+        # By identity: tables cannot be keys of a dictionary.
+        self._orders: dict[int, dict[Any, int]] = {}
 
     def position(self, fault: Fault) -> tuple[int, ...]:
         """Indices of the keys of a fault, level by level; what is missing stands at the end of its table."""
@@ -166,31 +176,43 @@ class _FileOrder:
                 indices.append(part)
                 container = container[part]
             else:
-                indices.append(part if isinstance(part, int) else 0)
+                # A fault below what is no table or list: they are in the order of the entries that it could have.
+                index = part if isinstance(part, int) else 0
+                indices.append(index)
                 container = None
         return tuple(indices)
 
     def _order(self, table: dict[str, Any]) -> dict[Any, int]:
         """Index of each key of a table, kept: a table may have many faults."""
-        known = self._keys.get(id(table))
-        if known is None:
-            known = {key: i for i, key in enumerate(table)}
-            self._keys[id(table)] = known
-        return known
+        order = self._orders.get(id(table))
+        if order is None:
+            order = {key: i for i, key in enumerate(table)}
+            self._orders[id(table)] = order
+        return order
 
 
 def _problem(fault: Fault, applied: Sequence[Assignment]) -> Problem:
     """A fault as it is shown; one that an override brought in is shown at the override."""
+    where = _dotted(fault.path).removeprefix(".")
+    # The last override of a key counts: it stands first.
     for assignment in applied:
-        if fault.path[: len(assignment.created)] == assignment.created:
+        depth = len(assignment.created)
+        if fault.path[:depth] == assignment.created:
             beyond = fault.path[len(assignment.leaf) :]
-            return Problem(f"--set {assignment.key}{_suffix(beyond)}", fault.problem, fault.remedy)
-    where = _suffix(fault.path).removeprefix(".")
+            where = f"--set {assignment.key}{_dotted(beyond)}"
+            break
     return Problem(where, fault.problem, fault.remedy)
 
 
-def _suffix(path: Path) -> str:
-    return "".join(f"[{part}]" if isinstance(part, int) else f".{_quoted(part)}" for part in path)
+def _dotted(path: Path) -> str:
+    """A path as it follows another in a key: ``[0].length``."""
+    text = ""
+    for part in path:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            text += f".{_quoted(part)}"
+    return text
 
 
 def _quoted(key: str) -> str:

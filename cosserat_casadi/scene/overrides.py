@@ -91,6 +91,7 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     for segment in segments[:-1]:
         index = _index(container, segment)
         path.append(index)
+        # Tables that a scene leaves out, such as accuracy, are made on the way.
         if isinstance(container, dict) and index not in container:
             container[index] = {}
             created = created or tuple(path)
@@ -98,11 +99,14 @@ def assign(tables: dict[str, Any], key: str, value: Any, known: Sequence[str]) -
     last = _index(container, segments[-1])
     container[last] = value
     leaf = (*path, last)
-    return Assignment(key, leaf, created or leaf)
+    if created is None:
+        created = leaf
+    return Assignment(key, leaf, created)
 
 
 def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> list[str]:
     """The segments of a key from the root: a load, actuator, rod or support may stand for itself."""
+    # Both loads[0].force and loads.0.force are read.
     segments = re.sub(r"\[(\d+)\]", r".\1", key).split(".")
     lists = _lists_by_name(tables)
     first = segments[0]
@@ -110,7 +114,8 @@ def _from_root(tables: Mapping[str, Any], key: str, known: Sequence[str]) -> lis
         return [lists[first], *segments]
     if first not in known:
         problem = f"no load, actuator, rod, support or table is named {shown(first)}"
-        raise RefusedOverride(problem, closest(first, [*lists, *known]))
+        remedy = closest(first, [*lists, *known])
+        raise RefusedOverride(problem, remedy)
     return segments
 
 

@@ -39,8 +39,10 @@ def out_of_reach(rod: Rod, position: Triple, orientation: Quadruple | None) -> I
     Yields:
         faults with the key of what is out of reach as path.
     """
+    # A straight line is the shortest way between two points: no bending takes the tip further than the length.
     distance = math.dist(position, rod.base.position)
-    if _keeps_its_length(rod) and distance > rod.length * (1 + LENGTH_SLACK):
+    reach = rod.length * (1 + LENGTH_SLACK)
+    if _keeps_its_length(rod) and distance > reach:
         problem = f"{distance:.9g} m from the base of a rod of {rod.length:.9g} m"
         yield Fault(("position",), problem, "admit extension, or move the support")
     if _stays_in_its_plane(rod):
@@ -49,22 +51,30 @@ def out_of_reach(rod: Rod, position: Triple, orientation: Quadruple | None) -> I
 
 def _keeps_its_length(rod: Rod) -> bool:
     """Whether neither the admitted strains nor the unloaded shape shear or stretch the rod."""
-    strains = set(rod.admitted) & SHEAR_AND_EXTENSION
-    return not strains and _is_constant(rod.intrinsic.tangent, (0.0, 0.0, 1.0))
+    changing = set(rod.admitted) & SHEAR_AND_EXTENSION
+    unit_tangent = _is_constant(rod.intrinsic.tangent, (0.0, 0.0, 1.0))
+    return not changing and unit_tangent
 
 
 def _stays_in_its_plane(rod: Rod) -> bool:
     """Whether nothing turns or shears the rod out of the local x–z plane of its base."""
+    if not set(rod.admitted) <= IN_PLANE:
+        return False
+    # The strains of the unloaded rod stay where the rod does not admit them.
     bending_x, _, torsion = rod.intrinsic.curvature
     _, shear_y, _ = rod.intrinsic.tangent
-    return set(rod.admitted) <= IN_PLANE and _is_constant((bending_x, torsion, shear_y), (0.0, 0.0, 0.0))
+    return _is_constant((bending_x, torsion, shear_y), (0.0, 0.0, 0.0))
 
 
 def _is_constant(components: Sequence[float | tuple[float, ...]], values: Sequence[float]) -> bool:
     """Whether components that may be polynomials are these values along the whole rod."""
     for component, value in zip(components, values, strict=True):
-        coefficients = component if isinstance(component, tuple) else (component,)
-        if coefficients[0] != value or any(coefficients[1:]):
+        coefficients = component
+        if not isinstance(coefficients, tuple):
+            coefficients = (coefficients,)
+        # The Legendre polynomial of degree 0 is 1; those above have no part in a constant.
+        constant, *higher = coefficients
+        if constant != value or any(higher):
             return False
     return True
 
@@ -73,15 +83,17 @@ def _out_of_plane(rod: Rod, position: Triple, orientation: Quadruple | None) -> 
     base_Q_world = quaternion_conjugate(_base_orientation(rod.base))
     remedy = "a planar rod stays in the local x–z plane of its base"
     from_base = ca.DM(position) - ca.DM(rod.base.position)
-    offset = abs(float(rotate(base_Q_world, from_base)[1]))
+    in_base = rotate(base_Q_world, from_base)
+    offset = abs(float(in_base[1]))
     # The format bounds no position: an offset that is not a number has overflown, far out of the plane.
     if not offset <= LENGTH_SLACK * rod.length:
         yield Fault(("position",), f"{offset:.3g} m outside the plane of the rod", remedy)
     if orientation is None:
         return
     tip_in_base = quaternion_product(base_Q_world, ca.DM(orientation))
-    # Turns within the plane are about the local y axis: they have neither an x nor a z component.
-    if not math.hypot(float(tip_in_base[1]), float(tip_in_base[3])) <= NORM_SLACK:
+    _, x, _, z = (float(component) for component in ca.vertsplit(tip_in_base))
+    # Turns within the plane are about the local y axis: their quaternions have neither an x nor a z component.
+    if not math.hypot(x, z) <= NORM_SLACK:
         yield Fault(("quaternion",), "turned out of the plane of the rod", remedy)
 
 

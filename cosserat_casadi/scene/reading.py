@@ -15,10 +15,14 @@ from pydantic import ValidationError
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Path as FaultPath
 from cosserat_casadi.scene.faults import shown
-from cosserat_casadi.scene.messages import keys_of, problems_of
+from cosserat_casadi.scene.messages import problems_of
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
+from cosserat_casadi.scene.records import keys_of
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.toml import TOO_DEEP, file_text, parsed
+
+SCENE_KEYS = tuple(keys_of(Scene))
+"""Tables and plain keys of a scene."""
 
 
 def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -35,7 +39,8 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     Raises:
         SceneError: with every fault of the file and the overrides.
     """
-    return parse_scene(file_text(Path(path)), overrides)
+    text = file_text(Path(path))
+    return parse_scene(text, overrides)
 
 
 def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
@@ -48,7 +53,8 @@ def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
     Raises:
         SceneError: with every fault.
     """
-    return scene_from_dict(parsed(text), overrides)
+    tables = parsed(text)
+    return scene_from_dict(tables, overrides)
 
 
 def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -> Scene:
@@ -62,7 +68,9 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
         SceneError: with every fault.
     """
     try:
-        return _validated(_copy(mapping), overrides)
+        tables = _copy(mapping)
+        return _validated(tables, overrides)
+    # Copying, reading and judging all go down the tables by recursion.
     except RecursionError:
         raise SceneError(Problem("", TOO_DEEP)) from None
 
@@ -78,7 +86,8 @@ def place_of(mapping: Mapping[str, Any], key: str) -> FaultPath:
         SceneError: there is nothing of that name to set.
     """
     try:
-        assignment = assign(_copy(mapping), key, 0.0, list(keys_of(Scene)))
+        # Any value will do: what is asked is where it goes.
+        assignment = assign(_copy(mapping), key, 0.0, SCENE_KEYS)
     except RefusedOverride as error:
         raise SceneError(Problem(key, *error.args)) from None
     return assignment.leaf
@@ -87,7 +96,8 @@ def place_of(mapping: Mapping[str, Any], key: str) -> FaultPath:
 def _validated(tables: Any, overrides: Sequence[str]) -> Scene:
     if not isinstance(tables, dict):
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))
-    applied, problems = apply_overrides(tables, overrides, list(keys_of(Scene)))
+    # A refused override does not stop the reading: its problem comes together with those of the file.
+    applied, problems = apply_overrides(tables, overrides, SCENE_KEYS)
     try:
         scene = Scene.model_validate(tables)
     except ValidationError as error:
@@ -99,6 +109,7 @@ def _validated(tables: Any, overrides: Sequence[str]) -> Scene:
 
 def _copy(value: Any) -> Any:
     """A copy down to the values, with lists for tuples."""
+    # Overrides change the tables in place; the caller's must stay as they are.
     if isinstance(value, Mapping):
         return {key: _copy(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):

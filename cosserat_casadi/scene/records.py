@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, ClassVar, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ModelWrapValidatorHandler, ValidationError, model_validator
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table
@@ -23,7 +24,8 @@ REFUSED = "refused"
 
 def refusal(faults: Iterable[Fault]) -> ValidationError:
     """Wrap faults in the exception that pydantic passes on."""
-    return ValidationError.from_exception_data("scene", [_wrapped(fault) for fault in faults])
+    lines = [_wrapped(fault) for fault in faults]
+    return ValidationError.from_exception_data("scene", lines)
 
 
 def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault] = ()) -> ValidationError:
@@ -34,7 +36,8 @@ def restated(error: ValidationError, *, below: Path = (), faults: Iterable[Fault
         below: path that its locations are put behind.
         faults: faults that follow those of the error.
     """
-    lines = [_line(details, below) for details in error.errors(include_url=False)]
+    errors = error.errors(include_url=False)
+    lines = [_line(details, below) for details in errors]
     lines += [_wrapped(fault) for fault in faults]
     return ValidationError.from_exception_data("scene", lines)
 
@@ -48,6 +51,7 @@ def _wrapped(fault: Fault) -> InitErrorDetails:
 def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
     kind: str | PydanticCustomError = details["type"]
     context = details.get("ctx", {})
+    # Pydantic knows its own types of errors by name; ours has to bring its sentence along again.
     if kind == REFUSED:
         kind = PydanticCustomError(REFUSED, "{problem}", context)
     location = (*below, *details["loc"])
@@ -56,6 +60,7 @@ def _line(details: ErrorDetails, below: Path) -> InitErrorDetails:
 
 def _as_given(value: Any) -> Any:
     """Turn records back into the tables that they were read from, without what is not given."""
+    # A scene may be built from records in Python as well as from tables; the rules see tables in both cases.
     if isinstance(value, BaseModel):
         value = value.model_dump(by_alias=True, exclude_unset=True)
     if isinstance(value, Mapping):
@@ -63,6 +68,14 @@ def _as_given(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_as_given(entry) for entry in value]
     return value
+
+
+def keys_of(record: type[Record]) -> dict[str, FieldInfo]:
+    """The keys of a record's table, as the file writes them."""
+    keys = {}
+    for name, field in record.model_fields.items():
+        keys[field.alias or name] = field
+    return keys
 
 
 class Record(BaseModel):
@@ -88,6 +101,7 @@ class Record(BaseModel):
         faults: list[Fault] = []
         if isinstance(given, Mapping):
             faults = list(cls.conflicts(_as_given(given)))
+        # The rules go first but do not stop pydantic: its faults and theirs are reported together.
         try:
             record = handler(given)
         except ValidationError as error:

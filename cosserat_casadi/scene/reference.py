@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.scene.families import Family, contents_of
-from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
 
 COMMITTED = Path(__file__).parents[2] / "docs" / "scene.md"
@@ -68,9 +68,10 @@ def reference_text() -> str:
         _contents(),
         _heading(2, "Top level"),
         _example(Scene),
-        _key_table(Scene, "", [key for key, kinds in _inner(Scene).items() if kinds is None]),
+        _key_table(Scene, "", [key for key, kinds in contents_by_key(Scene).items() if kinds is None]),
     ]
-    for key, kinds in _inner(Scene).items():
+    # Sections follow the order of the schema, so that a new table is in the page without further ado.
+    for key, kinds in contents_by_key(Scene).items():
         if kinds is not None:
             sections += _list_or_table(key, kinds)
     return "\n".join(sections)
@@ -105,7 +106,9 @@ def _title(key: str) -> str:
 def _kinds(family: Family[Any], level: int) -> Iterator[str]:
     """One section for each kind of a family."""
     for word, record in family.records.items():
-        yield _heading(level, f'`{family.key} = "{word}"`')
+        title = f'`{family.key} = "{word}"`'
+        yield _heading(level, title)
+        # The word stands in the heading, and needs no line in the table.
         yield from _record(record, path=family.table, level=level, without=family.key)
 
 
@@ -114,11 +117,11 @@ def _record(record: type[Record], path: str, level: int, without: str = "") -> I
     yield f"{record.__doc__}\n"
     if record.example:
         yield _example(record)
-    yield _key_table(record, path, [key for key in _inner(record) if key != without])
+    yield _key_table(record, path, [key for key in contents_by_key(record) if key != without])
     if issubclass(record, Entry) and record.inputs:
         inputs = ", ".join(f"`{field}` ({_unit_word(declared.unit)})" for field, declared in record.inputs.items())
         yield f"Inputs: {inputs}.\n"
-    for key, kinds in _inner(record).items():
+    for key, kinds in contents_by_key(record).items():
         if kinds is None:
             continue
         yield _heading(level + 1, f"`{path}.{key}`")
@@ -129,9 +132,10 @@ def _record(record: type[Record], path: str, level: int, without: str = "") -> I
             yield from _record(kinds, f"{path}.{key}", level + 1)
 
 
-def _inner(record: type[Record]) -> dict[str, Family[Any] | type[Record] | None]:
+def contents_by_key(record: type[Record]) -> dict[str, Family[Any] | type[Record] | None]:
     """The keys of a record, each with the tables that it holds, or None for a value."""
-    return {field.alias or name: contents_of(field) for name, field in record.model_fields.items()}
+    keys = keys_of(record)
+    return {key: contents_of(field) for key, field in keys.items()}
 
 
 # Keys
@@ -146,6 +150,7 @@ def _key_table(record: type[Record], path: str, keys: Sequence[str]) -> str:
         node = schema["properties"][key]
         unit, meaning = _unit_and_meaning(node["description"])
         value = _value(node)
+        # References are texts to JSON Schema, names of tables to the reader.
         if meaning.startswith("name"):
             value = value.replace("text", "name")
         if value == TABLE:
@@ -215,11 +220,14 @@ def _word(word: Any) -> str:
 def _choice(nodes: Sequence[Mapping[str, Any]]) -> str:
     """Choices in words, without the null that stands for a key left out, and without repetition."""
     words = [_value(node) for node in nodes if node.get("type") != "null"]
-    return ", or ".join(dict.fromkeys(words))
+    # A dictionary drops what comes again and keeps the order.
+    distinct = dict.fromkeys(words)
+    return ", or ".join(distinct)
 
 
 def _typed(node: Mapping[str, Any]) -> str:
     kind = node["type"]
+    # Lists are of fixed length (vectors) or of any.
     if kind == "array":
         return _list(node)
     if kind == "number":
@@ -237,8 +245,10 @@ def _range(node: Mapping[str, Any]) -> str:
     """The range of a number, as it follows the word."""
     if "minimum" in node and "maximum" in node:
         return f" from {node['minimum']:g} to {node['maximum']:g}"
-    signs = {"exclusiveMinimum": ">", "minimum": "≥", "maximum": "≤"}
-    bounds = [f" {sign} {node[key]:g}" for key, sign in signs.items() if key in node]
+    bounds = []
+    for key, sign in (("exclusiveMinimum", ">"), ("minimum", "≥"), ("maximum", "≤")):
+        if key in node:
+            bounds.append(f" {sign} {node[key]:g}")
     return " and".join(bounds)
 
 

@@ -120,6 +120,7 @@ section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
         """The bore fits into the tube at both ends."""
         outer = _base_and_tip(given.get("outer_radius"))
         inner = _base_and_tip(given.get("inner_radius"))
+        # Both are linear in X: what holds at both ends holds between them.
         for bore, wall in zip(inner, outer, strict=False):
             if bore >= wall:
                 problem = f"must be < outer_radius at both ends, got {shown(bore)} in {shown(wall)}"
@@ -148,9 +149,12 @@ def _base_and_tip(size: Any) -> tuple[float, ...]:
     ends: tuple[Any, ...] = (size, size)
     if isinstance(size, list | tuple):
         ends = tuple(size)
-    sound = all(isinstance(end, int | float) and not isinstance(end, bool) for end in ends)
-    if not sound or len(ends) != 2:
+    if len(ends) != 2:
         return ()
+    # Truth values are integers in Python.
+    for end in ends:
+        if isinstance(end, bool) or not isinstance(end, int | float):
+            return ()
     return ends
 
 
@@ -281,11 +285,14 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
             return
         name = given.get("name")
         base = given.get("base")
+        # The base of a carried rod is an unknown, not an input.
         if isinstance(base, Mapping) and "rod" in base:
             yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
         held = any(table.get("rod") == name for _, table in holding)
-        if held and set(admitted_strains(given.get("strain"))) <= IN_PLANE:
+        admitted = set(admitted_strains(given.get("strain")))
+        # Constraints of a rod in a plane are those in its plane: out of it they would be too few.
+        if held and admitted <= IN_PLANE:
             problem = f"{shown(name)} bends in a plane and its tip is held"
             yield Fault((), problem, "admit torsion, or its base could leave the plane")
 
@@ -310,4 +317,5 @@ def admitted_strains(strain: Any) -> tuple[int, ...]:
         return PRESETS.get(strain, ())
     if not isinstance(strain, list | tuple):
         return ()
+    # In the order of the strains, whatever the order of the list.
     return tuple(index for index, name in enumerate(STRAINS) if name in strain)

@@ -35,7 +35,14 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
 }
 """What the lists of a scene hold."""
 
-SINGULAR = {"rods": "rod", "bodies": "body", "loads": "load", "actuators": "actuator"}
+SINGULAR = {
+    "loads": "load",
+    "supports": "support",
+    "joints": "joint",
+    "actuators": "actuator",
+    "rods": "rod",
+    "bodies": "body",
+}
 """One of what a list holds, in the words of an error."""
 
 
@@ -50,7 +57,11 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
     """Every table of the lists whose kind is known: its path, its record and the table."""
     for key, kinds in LISTS.items():
         for i, table in scene.tables(key):
-            record = kinds.record_of(table) if isinstance(kinds, Family) else kinds
+            if not isinstance(kinds, Family):
+                yield (key, i), kinds, table
+                continue
+            record = kinds.record_of(table)
+            # A word that no kind has is refused where the table is read.
             if record is not None:
                 yield (key, i), record, table
 
@@ -61,11 +72,16 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
     for key in ("rods", "loads", "supports", "actuators", "bodies", "joints"):
-        first = scene.named(key)
+        named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
-            if isinstance(name, str) and first[name][0] != i:
-                yield Fault((key, i, "name"), f"{shown(name)} is already the name of {key}[{first[name][0]}]")
+            # Faulty names have a fault of their own; supports and joints need none.
+            if not isinstance(name, str):
+                continue
+            first, _ = named[name]
+            if first != i:
+                problem = f"{shown(name)} is already the name of {key}[{first}]"
+                yield Fault((key, i, "name"), problem)
 
 
 def shared_names(scene: SceneTables) -> Iterator[Fault]:
@@ -74,7 +90,9 @@ def shared_names(scene: SceneTables) -> Iterator[Fault]:
     for i, table in scene.tables("actuators"):
         name = table.get("name")
         if isinstance(name, str) and name in loads:
-            yield Fault(("actuators", i, "name"), f"{shown(name)} is already the name of loads[{loads[name][0]}]")
+            load, _ = loads[name]
+            problem = f"{shown(name)} is already the name of loads[{load}]"
+            yield Fault(("actuators", i, "name"), problem)
 
 
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:
@@ -105,8 +123,8 @@ def _references(record: type[Entry], table: Table) -> Iterator[tuple[Path, str, 
 
 def _holds_one_name(record: type[Entry], field: str) -> bool:
     """Whether a field that refers to other tables is one name, or a list of them."""
-    annotation = record.model_fields[field].annotation
-    return annotation is str or annotation == str | None
+    annotation: Any = record.model_fields[field].annotation
+    return annotation in (str, str | None)
 
 
 # Rods, supports and accuracy
@@ -114,6 +132,7 @@ def _holds_one_name(record: type[Entry], field: str) -> bool:
 
 def own_rules(scene: SceneTables) -> Iterator[Fault]:
     """The rules that a kind brings along."""
+    # What concerns one kind alone, such as the reach of a support, is written beside its record.
     for path, record, table in _entries(scene):
         for fault in record.scene_conflicts(table, scene):
             yield fault.below(path)
@@ -123,6 +142,7 @@ def weightless_rods(scene: SceneTables) -> Iterator[Fault]:
     """Gravity acts on a rod whose mass is not given."""
     load_on_all, load_on_rod = _gravity(scene)
     for i, rod in scene.tables("rods"):
+        # One fault a rod, however many loads weigh it.
         load = load_on_all
         name = rod.get("name")
         if load is None and isinstance(name, str):
@@ -146,6 +166,7 @@ def _gravity(scene: SceneTables) -> tuple[str | None, dict[str, str]]:
         if load.get("kind") != "gravity":
             continue
         rods = load.get("rods")
+        # Gravity that names bodies alone weighs no rod.
         if rods is None and "bodies" not in load:
             load_on_all = load_on_all or f"loads[{i}]"
         elif isinstance(rods, list):
@@ -158,9 +179,13 @@ def overlapping_supports(scene: SceneTables) -> Iterator[Fault]:
     first: dict[str, int] = {}
     for i, support in scene.tables("supports"):
         name = support.get("rod")
-        if isinstance(name, str) and first.setdefault(name, i) != i:
-            problem = f"overlapping supports: supports[{first[name]}] holds the tip of {shown(name)} already"
-            yield Fault(("supports", i, "rod"), problem, "one support for each tip")
+        if not isinstance(name, str):
+            continue
+        holder = first.setdefault(name, i)
+        if holder != i:
+            path = ("supports", i, "rod")
+            problem = f"overlapping supports: supports[{holder}] holds the tip of {shown(name)} already"
+            yield Fault(path, problem, "one support for each tip")
 
 
 def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
@@ -171,6 +196,7 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
     count = len(accuracy["modes"])
     for i, rod in scene.tables("rods"):
         admitted = len(admitted_strains(rod.get("strain")))
+        # Zero stands for a faulty entry, which has a fault of its own.
         if admitted and count and admitted != count:
             problem = f"must have one entry per strain of every rod, got {count} where rods[{i}] admits {admitted}"
             yield Fault(("accuracy", "modes"), problem, "give one number for all")

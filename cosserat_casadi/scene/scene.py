@@ -14,7 +14,7 @@ from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import Load
-from cosserat_casadi.scene.records import Entry, Record, refusal
+from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.targets import Bound, Target
@@ -38,28 +38,19 @@ class FreeInput:
         declared: what the record says of it: unit, components, axes.
     """
 
-    record: Entry
+    record: Rod | Load | Actuator
     field: str
     declared: InputField
 
     @property
     def owner(self) -> str:
         """Name of the rod, load or actuator."""
-        name: str = self.record.name  # type: ignore[attr-defined]
-        return name
+        return self.record.name
 
     @property
     def name(self) -> str:
         """Name of the input, ``owner.field``."""
         return f"{self.owner}.{self.field}"
-
-    @property
-    def value(self) -> Any:
-        """The scene's value; None where it is left out and has no default."""
-        value: Any = self.record
-        for key in self.field.split("."):
-            value = getattr(value, key)
-        return value
 
 
 class Scene(Record):
@@ -100,6 +91,7 @@ inputs = ["push.force", "cable.tension"]
         Returns:
             listed inputs in their order; magnitudes of loads, then of actuators, in the order of the file.
         """
+        # An empty list is an answer too: nothing stays free.
         if self.inputs is not None:
             return tuple(self._named_input(name) for name in self.inputs)
         return tuple(
@@ -111,12 +103,17 @@ inputs = ["push.force", "cable.tension"]
 
     def input_names(self) -> tuple[str, ...]:
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
-        return tuple(entry.name for entry in self.free_inputs())
+        inputs = self.free_inputs()
+        return tuple(entry.name for entry in inputs)
 
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")
-        # A load or an actuator goes before a rod of the same name.
-        record = next(record for record in (*self.causes, *self.rods) if record.name == owner)
+        # The rules have seen to it that every listed input has its owner and is one of its fields.
+        records: dict[str, Rod | Load | Actuator] = {rod.name: rod for rod in self.rods}
+        # Inputs of a load or an actuator hide those of a rod of the same name.
+        for cause in self.causes:
+            records[cause.name] = cause
+        record = records[owner]
         return FreeInput(record, field, record.inputs[field])
 
     @classmethod

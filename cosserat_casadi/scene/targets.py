@@ -106,7 +106,9 @@ points = [[0.01, 0, 0.1], [0.05, 0, 0.18]]
         """A point for each section."""
         at = given.get("at")
         points = given.get("points")
-        if isinstance(at, list) and isinstance(points, list) and len(at) != len(points):
+        if not isinstance(at, list) or not isinstance(points, list):
+            return
+        if len(at) != len(points):
             yield Fault(("points",), f"must have one point for each of {len(at)} sections, got {len(points)}")
 
 
@@ -138,10 +140,13 @@ upper = 1.0
         upper = bound_numbers(given.get("upper"))
         if "lower" not in given and "upper" not in given:
             yield Fault(("lower",), "missing", "give lower, upper or both")
-        if len(lower) > 1 and len(upper) > 1 and len(lower) != len(upper):
+        count = max(len(lower), len(upper))
+        fewer = min(len(lower), len(upper))
+        # A single number bounds all entries, so that it goes with any count.
+        if fewer > 1 and fewer != count:
             yield Fault(("upper",), f"must have as many entries as lower, {len(lower)}, got {len(upper)}")
             return
-        count = max(len(lower), len(upper))
+        # A side that is left out or faulty has no numbers, and nothing to cross.
         pairs = zip(_spread(lower, count), _spread(upper, count), strict=False)
         if any(low > high for low, high in pairs):
             yield Fault(("upper",), "must not be below lower")
@@ -152,9 +157,10 @@ def bound_numbers(value: Any) -> list[float]:
     numbers = [value]
     if isinstance(value, list | tuple):
         numbers = list(value)
-    sound = all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers)
-    if not sound:
-        return []
+    # Truth values are integers in Python.
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            return []
     return numbers
 
 

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,9 @@ def _decoded(path: Path, content: bytes) -> str:
 
 
 def _too_large(where: str, size: int) -> Problem:
-    megabytes = math.ceil(size / 1e5) / 10
+    # Rounded up: a file of one byte too many is not shown as one of 1.0 MB.
+    tenths = math.ceil(size / 1e5)
+    megabytes = tenths / 10
     return Problem(where, f"is {megabytes:.1f} MB; a scene is at most 1 MB")
 
 
@@ -86,15 +89,23 @@ def parsed(text: str) -> dict[str, Any]:
 
 def keys_are_too_deep(text: str) -> bool:
     """Whether a dotted key is so deep that parsing it would take all memory; keys cannot span lines."""
-    # Bare keys end at these signs; quoted keys may hold them, so that quotes before dots are counted by line.
-    bare = max(len(re.findall(r"[^.\s]\s*\.", part)) for part in re.split(r"[=,{}\[\]#\n]", text))
-    quoted = max(len(re.findall(r"[\"']\s*\.", line)) for line in text.split("\n"))
-    return bare > DEEPEST or quoted > DEEPEST
+    # A bare key ends at one of these signs; a quoted key may hold them, but its dots follow quotes.
+    bare = re.split(r"[=,{}\[\]#\n]", text)
+    lines = text.split("\n")
+    return _most(r"[^.\s]\s*\.", bare) > DEEPEST or _most(r"[\"']\s*\.", lines) > DEEPEST
+
+
+def _most(pattern: str, parts: Iterable[str]) -> int:
+    """How often a pattern is in the part of a text that has it most often."""
+    counts = [len(re.findall(pattern, part)) for part in parts]
+    return max(counts)
 
 
 def _syntax_problem(message: str) -> Problem:
     """A problem from the message of the parser, which ends in the line and column where there is one."""
     parts = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
+    # Without one it comes from Python's own reading of a number of thousands of digits.
     if parts is None:
         return Problem("", "is not TOML: a number in it is beyond all range")
-    return Problem(parts[2], f"is not TOML: {parts[1]}")
+    problem, position = parts.groups()
+    return Problem(position, f"is not TOML: {problem}")

@@ -38,10 +38,11 @@ def listed(count: int, what: str) -> BeforeValidator:
     """Refuse lists of any other length in one sentence, instead of one for each missing entry."""
 
     def check(value: Any) -> Any:
-        if not isinstance(value, list | tuple):
-            raise refusal([Fault((), f"must be a list of {what}, got {shown(value)}")])
-        if len(value) != count:
-            raise refusal([Fault((), f"must be a list of {what}, got {len(value)}")])
+        got: object = shown(value)
+        if isinstance(value, list | tuple):
+            got = len(value)
+        if got != count:
+            raise refusal([Fault((), f"must be a list of {what}, got {got}")])
         return value
 
     return BeforeValidator(check)
@@ -58,7 +59,8 @@ class NotEmpty:
 
     def _check(self, value: Any) -> Any:
         if isinstance(value, list | tuple) and not value:
-            raise refusal([Fault((), "must have at least one entry")])
+            fault = Fault((), "must have at least one entry")
+            raise refusal([fault])
         return value
 
 
@@ -82,6 +84,7 @@ BY_LENGTH = Discriminator(_single_or_several)
 
 def _unit_quaternion(value: Quadruple) -> Quadruple:
     norm = math.hypot(*value)
+    # Far from 1 it is a mistake, such as another order of the four numbers; near 1 it is rounding, and is mended.
     if abs(norm - 1.0) > NORM_SLACK:
         problem = f"must have norm 1, got norm {norm:.9g}"
         raise refusal([Fault((), problem, "divide it by its norm; order w, x, y, z")])
@@ -115,7 +118,8 @@ def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
     seen: set[str] = set()
     for i, name in enumerate(names):
         if name in seen:
-            yield Fault((i,), f"{shown(name)} is listed twice")
+            problem = f"{shown(name)} is listed twice"
+            yield Fault((i,), problem)
         seen.add(name)
 
 
@@ -129,10 +133,10 @@ def above_base(remedy_at_base: str) -> AfterValidator:
     def check(value: float) -> float:
         if 0.0 < value <= 1.0:
             return value
-        remedy = ""
+        problem = f"must be > 0 and <= 1, got {shown(value)}"
         if value == 0.0:
-            remedy = remedy_at_base
-        raise refusal([Fault((), f"must be > 0 and <= 1, got {shown(value)}", remedy)])
+            raise refusal([Fault((), problem, remedy_at_base)])
+        raise refusal([Fault((), problem)])
 
     return AfterValidator(check)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from cosserat_casadi.scene.scene import Scene
@@ -16,30 +17,49 @@ def scene_tables(scene: Scene) -> dict[str, Any]:
 def scene_text(scene: Scene) -> str:
     """A scene as TOML; reading it gives the same scene."""
     given = scene_tables(scene)
-    plain = {key: value for key, value in given.items() if not _is_table(value)}
-    blocks = [_lines(plain)]
+    # TOML wants plain keys before the first table: after its heading they would belong to it.
+    values = {key: value for key, value in given.items() if not _holds_tables(value)}
+    blocks = [_lines(values)]
     for key, value in given.items():
         if isinstance(value, dict):
             blocks.append(f"[{key}]\n{_lines(value)}")
-        elif _is_table(value):
+        elif _holds_tables(value):
             blocks.extend(f"[[{key}]]\n{_lines(entry)}" for entry in value)
     return "\n".join(blocks)
 
 
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict) or (isinstance(value, list) and any(isinstance(entry, dict) for entry in value))
+def _holds_tables(value: Any) -> bool:
+    """Whether a value is a table, or a list with tables in it."""
+    if isinstance(value, list):
+        return any(isinstance(entry, dict) for entry in value)
+    return isinstance(value, dict)
 
 
-def _lines(table: dict[str, Any]) -> str:
-    return "".join(f"{key} = {_value(value)}\n" for key, value in table.items() if value is not None)
+def _lines(table: Mapping[str, Any]) -> str:
+    """A line for each key; tables in this table stand in their line, so that entries of lists stay whole."""
+    lines = [f"{entry}\n" for entry in _assignments(table)]
+    return "".join(lines)
+
+
+def _assignments(table: Mapping[str, Any]) -> list[str]:
+    assignments = []
+    for key, value in table.items():
+        # TOML has no null: a key that is given as None from Python is left out.
+        if value is not None:
+            assignments.append(f"{key} = {_value(value)}")
+    return assignments
 
 
 def _value(value: Any) -> str:
     """A TOML value; strings and numbers are written as in JSON, which TOML reads alike."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_value(entry)}" for key, entry in value.items() if entry is not None) + " }"
+        entries = ", ".join(_assignments(value))
+        return f"{{ {entries} }}"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
+        entries = ", ".join(_value(entry) for entry in value)
+        return f"[{entries}]"
     if isinstance(value, float):
         return repr(value)
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    text = json.dumps(value, ensure_ascii=False)
+    # JSON leaves DEL as it is, TOML refuses it.
+    return text.replace("\x7f", "\\u007f")

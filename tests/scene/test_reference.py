@@ -63,7 +63,7 @@ def completed(example: str) -> dict[str, Any]:
         if key == "helix":
             del tables["actuators"][0]["offset"]
             tables["actuators"][0][key] = value
-        elif key not in reference._inner(Scene):
+        elif key not in reference.contents_by_key(Scene):
             rod = tables["rods"][0]
             if key == "stiffness":
                 del rod["material"], rod["section"]
@@ -123,7 +123,9 @@ def test_a_key_that_is_not_read_is_not_in_an_example() -> None:
 
 
 def test_every_record_has_an_example_and_every_key_a_line() -> None:
-    expected = [key for record in records() for key in reference._inner(record) if not in_a_heading(record, key)]
+    expected = [
+        key for record in records() for key in reference.contents_by_key(record) if not in_a_heading(record, key)
+    ]
     assert sorted(row[0].strip("`") for row in lines()) == sorted(expected)
     assert [record.__name__ for record in records() if record.example not in EXAMPLES] == []
 
@@ -131,7 +133,7 @@ def test_every_record_has_an_example_and_every_key_a_line() -> None:
 def in_a_heading(record: type[Record], key: str) -> bool:
     """Whether a key heads a section: a table of the scene, or the word of a kind."""
     if record is Scene:
-        return reference._inner(Scene)[key] is not None
+        return reference.contents_by_key(Scene)[key] is not None
     return key == "kind" or (key == "shape" and issubclass(record, SectionRecord))
 
 
