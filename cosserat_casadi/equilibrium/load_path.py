@@ -1,4 +1,7 @@
-"""Paths that a model offers to a continuation: all loads growing from zero, or inputs changing to others."""
+"""Paths that a model offers to a continuation: all loads growing from zero, or inputs changing to others.
+
+See docs/theory.md, section 9; section 8 for how constraints yield on the way.
+"""
 
 from __future__ import annotations
 
@@ -10,67 +13,107 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import Path
 
-FORCE_SHARE = 0.1
-"""Bending by a joint's multiplier or a tension of one unit: about a radian at Euler's load, π² EI/ℓ²."""
+FORCE_WEIGHT = 0.1
+"""Weight of a joint's multiplier or a tension in the step length.
 
-SUPPORT_SHARE = 2.0
-"""The same for multipliers of supports: a rod that is drawn to a place has many equilibria there, near each other."""
+One unit of it, EI/ℓ², bends a rod by about 0.1 rad: Euler's load π² EI/ℓ² bends it by about a radian.
+"""
 
-FIRST = 0.25
-"""Longest first step where frames move: the springs have fallen to (3/4)³ then."""
+SUPPORT_WEIGHT = 2.0
+"""The same for multipliers of supports: a rod pulled in to its support has many equilibria there, near each other."""
+
+FIRST_STEP = 0.25
+"""Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
 def load_path(model: Model, inputs: FloatArray) -> Path:
-    """From the unloaded scene to the scene, all loads growing together."""
-    none = np.zeros(model.inputs.size)
+    """The path from the unloaded scene to the scene, all loads growing together.
+
+    Args:
+        model: what to solve.
+        inputs: stacked inputs at t = 1, shape (model.inputs.size,).
+    """
+    no_change = np.zeros(model.inputs.size)
+
+    def residual(x: FloatArray, t: float) -> FloatArray:
+        return column(model.path_residual(x, inputs, t))
+
+    def jacobian(x: FloatArray, t: float) -> Jacobian:
+        return _solvable(model, model.path_jacobian(x, inputs, t))
+
+    def rate(x: FloatArray, t: float) -> FloatArray:
+        load_factor_rate = 1.0
+        return column(model.path_rate(x, inputs, t, no_change, load_factor_rate))
+
     return Path(
-        residual=lambda x, t: column(model.path_residual(x, inputs, t)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, inputs, t)),
-        rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
+        residual,
+        jacobian,
+        rate,
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
-        shares=step_shares(model),
-        first=first_step(model),
+        step_weights=step_weights(model),
+        first_step=first_step(model),
     )
 
 
 def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
-    """From an equilibrium of the scene to other inputs, on the straight line between them."""
-    change = after - before
+    """The path from an equilibrium of the scene to other inputs, on the straight line between them.
 
-    def at(t: float) -> FloatArray:
+    Args:
+        model: what to solve.
+        start: unknowns at or near the equilibrium at t = 0, shape (model.size,).
+        before: stacked inputs at t = 0, shape (model.inputs.size,).
+        after: stacked inputs at t = 1, likewise.
+    """
+    change = after - before
+    load_factor = 1.0
+
+    def inputs_at(t: float) -> FloatArray:
         # Exact at both ends, however far apart they are.
         return (1.0 - t) * before + t * after
 
-    return Path(
-        residual=lambda x, t: column(model.path_residual(x, at(t), 1.0)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
-        rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
-        start=start,
-        shares=step_shares(model),
-    )
+    def residual(x: FloatArray, t: float) -> FloatArray:
+        return column(model.path_residual(x, inputs_at(t), load_factor))
+
+    def jacobian(x: FloatArray, t: float) -> Jacobian:
+        return _solvable(model, model.path_jacobian(x, inputs_at(t), load_factor))
+
+    def rate(x: FloatArray, t: float) -> FloatArray:
+        load_factor_rate = 0.0
+        return column(model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate))
+
+    return Path(residual, jacobian, rate, start, step_weights=step_weights(model))
 
 
 def first_step(model: Model) -> float:
-    """Longest first step of the load path: where rods need not fit, the springs (1 − t)³ are no straight line."""
-    return FIRST if model.discrete.couplings.moving else 1.0
+    """Longest first step of the load path: where rods need not fit, the compliance (1 − t)³ is no straight line."""
+    if model.discrete.couplings.moving:
+        return FIRST_STEP
+    return 1.0
 
 
-def step_shares(model: Model) -> FloatArray:
-    """How much each unknown counts in the length of a step, shape (size,); forces by a share."""
-    discrete, shares = model.discrete, np.ones(model.size)
-    forces = [*discrete.tie_slices.values(), *discrete.tension_slices]
-    for share, places in ((SUPPORT_SHARE, discrete.hold_slices), (FORCE_SHARE, forces)):
-        for place in places:
-            shares[place] = share
-    return shares
+def step_weights(model: Model) -> FloatArray:
+    """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces otherwise."""
+    discrete = model.discrete
+    weights = np.ones(model.size)
+    for support_slice in discrete.hold_slices:
+        weights[support_slice] = SUPPORT_WEIGHT
+    for joint_slice in discrete.tie_slices.values():
+        weights[joint_slice] = FORCE_WEIGHT
+    for tension_slice in discrete.tension_slices:
+        weights[tension_slice] = FORCE_WEIGHT
+    return weights
 
 
-def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
-    """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
-    return jacobian if model.discrete.couplings.ties else np.asarray(jacobian.full())
+def _solvable(model: Model, jacobian: ca.DM) -> Jacobian:
+    """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
+    if model.discrete.couplings.ties:
+        return jacobian
+    return np.asarray(jacobian.full())
 
 
 def column(vector: ca.DM) -> FloatArray:
-    """A CasADi vector as an array, shape (n,)."""
-    return np.asarray(vector.full()[:, 0]) if vector.shape[0] else np.zeros(0)
+    """Convert a CasADi vector to an array, shape (n,)."""
+    if not vector.shape[0]:
+        return np.zeros(0)
+    return np.asarray(vector.full()[:, 0])

@@ -1,8 +1,12 @@
-"""What a solve found, with everything one may ask of it."""
+"""The result of a solve: an equilibrium with the poses, strains and wrenches that follow from it.
+
+Fields between the nodes are interpolants through them: docs/theory.md, section 3; the internal wrench: section 6.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -89,10 +93,13 @@ class Solution:
             KeyError: there is no such body, or there are several to choose from.
         """
         names = list(self.model.body)
-        chosen = names[0] if name is None and len(names) == 1 else name
+        chosen = name
+        if name is None and len(names) == 1:
+            chosen = names[0]
         if chosen not in names:
             raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
-        position, quaternion, rotation = (m.full() for m in self.model.body[chosen](self.x, self.inputs))
+        outputs = self.model.body[chosen](self.x, self.inputs)
+        position, quaternion, rotation = (output.full() for output in outputs)
         return Pose(position.T, rotation[None], quaternion.T)
 
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
@@ -103,30 +110,33 @@ class Solution:
             rod: name of the rod; may be left out where there is one.
         """
         name = self.model.rod_name(rod)
-        matrix = self._interpolation(X, name)
-        nodal = self._fields(name)
-        position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
+        fields = self._nodal_fields(name)
+        interpolation = self._interpolation(X, name)
+        position = interpolation @ fields.position.T
+        quaternion = interpolation @ fields.quaternion.T
+        # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
         quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
         return Pose(position, rotations(quaternion), quaternion)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
         name = self.model.rod_name(rod)
-        discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.rod_slices[name]
+        discrete = self.model.discrete
+        q = self.x[discrete.rod_slices[name]]
         ratio = self.model.length_ratio(name, self.inputs)
-        strain: FloatArray = discrete_rod.at(self.x[columns], np.atleast_1d(np.asarray(X, dtype=float)), ratio).full().T
-        return strain
+        strain = discrete.rods[name].at(q, _abscissae(X), ratio)
+        return np.asarray(strain.full().T)
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
         name = self.model.rod_name(rod)
-        wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
-        return wrench
+        fields = self._nodal_fields(name)
+        return np.asarray(self._interpolation(X, name) @ fields.wrench.T)
 
     def base_wrench(self, rod: str | None = None) -> BaseWrench:
         """Force and moment of the clamp on a rod."""
-        nodal = self._fields(self.model.rod_name(rod))
-        return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
+        fields = self._nodal_fields(self.model.rod_name(rod))
+        return BaseWrench(fields.base_force[:, 0], fields.base_moment[:, 0])
 
     def actuator(self, name: str) -> dict[str, float]:
         """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
@@ -134,16 +144,48 @@ class Solution:
         values = function(self.x, self.inputs)
         return {function.name_out(i): float(values[i]) for i in (0, 1)}
 
-    def _fields(self, rod: str) -> list[FloatArray]:
-        return [field.full() for field in self.model.fields[rod](self.x, self.inputs)]
+    def _nodal_fields(self, rod: str) -> _NodalFields:
+        """Fields of a rod at its nodes."""
+        outputs = self.model.fields[rod](self.x, self.inputs)
+        return _NodalFields(*(output.full() for output in outputs))
 
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
-        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-        return self.model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
+        """Matrix that takes values at the nodes of a rod to abscissae, shape (k, nodes)."""
+        grid = self.model.discrete.rods[rod].grid
+        return grid.interpolation_matrix(_abscissae(X))
+
+
+class _NodalFields(NamedTuple):
+    """Outputs of ``model.fields``, one column a node, world frame but for the wrench.
+
+    Attributes:
+        position: shape (3, nodes), m.
+        quaternion: world_Q_section, shape (4, nodes).
+        wrench: internal wrench in the sections' frames, shape (6, nodes), N m and N.
+        base_force: of the clamp on the rod, shape (3, 1), N.
+        base_moment: likewise, N m.
+    """
+
+    position: FloatArray
+    quaternion: FloatArray
+    wrench: FloatArray
+    base_force: FloatArray
+    base_moment: FloatArray
+
+
+def _abscissae(X: npt.ArrayLike) -> FloatArray:
+    return np.atleast_1d(np.asarray(X, dtype=float))
 
 
 def rotations(q: FloatArray) -> FloatArray:
-    """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
+    """Rotation matrices of unit quaternions.
+
+    Args:
+        q: w x y z, shape (k, 4).
+
+    Returns:
+        shape (k, 3, 3).
+    """
     w, x, y, z = q.T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

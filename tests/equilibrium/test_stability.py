@@ -12,7 +12,7 @@ from scipy.special import ellipe, ellipk
 
 from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow_path, solve, solve_scene
 from cosserat_casadi.equilibrium.relax import energy_at
-from cosserat_casadi.equilibrium.stability import judged
+from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
@@ -140,11 +140,11 @@ def test_critical_equilibrium_is_neither_called_stable_nor_neutral() -> None:
 
 
 def test_verdict_of_eigenvalues() -> None:
-    assert judged(np.zeros(0)).stable
-    assert judged(np.array([0.1, 2.0])).stable
-    neutral = judged(np.array([-1e-12, 0.1, 5.0]))
+    assert stability_of(np.zeros(0)).stable
+    assert stability_of(np.array([0.1, 2.0])).stable
+    neutral = stability_of(np.array([-1e-12, 0.1, 5.0]))
     assert (neutral.stable, neutral.neutral, neutral.zero) == (True, True, 1)
-    unstable = judged(np.array([-0.1, 1e-13, 1.0]))
+    unstable = stability_of(np.array([-0.1, 1e-13, 1.0]))
     assert (unstable.stable, unstable.neutral, unstable.negative) == (False, False, 1)
 
 

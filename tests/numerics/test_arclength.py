@@ -78,7 +78,7 @@ def hat(monitor: Monitor) -> Curve:
 
 
 def events(found: Trace) -> list[tuple[str, float]]:
-    return [(event.kind, event.point.factor) for event in found.events]
+    return [(event.kind, event.point.load_factor) for event in found.events]
 
 
 @MONITORS
@@ -110,7 +110,7 @@ def test_pitchfork_branch_is_switched_to(monitor: Monitor) -> None:
     assert found.outcome is PathOutcome.CONVERGED
     assert found.branch is not None
     c, s = np.cos(0.4), np.sin(0.4)
-    u = np.array([[c * p.x[0] + s * p.x[1], p.factor] for p in found.points[found.branch :]])
+    u = np.array([[c * p.x[0] + s * p.x[1], p.load_factor] for p in found.points[found.branch :]])
     assert_allclose(u[:, 0] ** 2, u[:, 1] - 0.3, rtol=0, atol=1e-11)
     assert np.all(u[:, 0] > 0)
     assert u[-1, 1] == 1.0
@@ -121,7 +121,7 @@ def test_circle_of_branches_is_neutral_and_followed_without_drift() -> None:
     assert found.outcome is PathOutcome.CONVERGED
     (event,) = found.events
     assert event.multiplicity == 2
-    assert_allclose(event.point.factor, 0.3, rtol=1e-10, atol=0)
+    assert_allclose(event.point.load_factor, 0.3, rtol=1e-10, atol=0)
     x = np.array([point.x for point in found.points[found.branch :]])
     assert_allclose(np.linalg.norm(x[-1]), np.sqrt(0.7), rtol=1e-11, atol=0)
     assert_allclose(x[:, 1] * x[-1, 0], x[:, 0] * x[-1, 1], rtol=0, atol=1e-11)
@@ -164,8 +164,8 @@ def test_two_bifurcations_within_one_step_are_told_apart(apart: float, multiplic
     )
     found = trace(both).events
     assert [event.multiplicity for event in found] == multiplicities
-    assert_allclose(found[0].point.factor, 0.3, rtol=1e-9, atol=0)
-    assert_allclose(found[-1].point.factor, later, rtol=1e-9, atol=0)
+    assert_allclose(found[0].point.load_factor, 0.3, rtol=1e-9, atol=0)
+    assert_allclose(found[-1].point.load_factor, later, rtol=1e-9, atol=0)
 
 
 def test_events_beyond_factor_one_are_not_told() -> None:
@@ -206,7 +206,7 @@ def test_steps_run_out_and_stalls_are_said() -> None:
     wall = curve(lambda x, t: [x[0] - t], lambda x, t: [[1.0 if t < 0.5 else np.nan]], lambda x, t: [-1.0], [0.0])
     stalled = trace(wall)
     assert stalled.outcome is PathOutcome.LOAD_STALLED
-    assert 0.4 < stalled.points[-1].factor < 0.5
+    assert 0.4 < stalled.points[-1].load_factor < 0.5
     assert np.all(np.isfinite([point.y for point in stalled.points]))
 
 
@@ -232,27 +232,29 @@ def test_correction_of_least_norm_where_a_direction_is_neutral() -> None:
     )
     found = neutral.correct(np.array([1.2, 0.7, 0.3]), Plane(np.array([0.0, 0.0, 1.0]), 0.3))
     assert found is not None
-    assert_allclose(found[0], [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
+    assert_allclose(found.y, [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
 
 
 def test_a_step_goes_its_length_along_the_tangent_and_not_around_a_corner() -> None:
     """On the unit circle a step of 0.5 turns the tangent by 30°: refused, though Newton would converge."""
     circle = curve(
-        lambda x, t: [x[0] ** 2 + t**2 - 1.0], lambda x, t: [[2 * x[0]]], lambda x, t: [2 * t], [1.0], stray=0.5
+        lambda x, t: [x[0] ** 2 + t**2 - 1.0], lambda x, t: [[2 * x[0]]], lambda x, t: [2 * t], [1.0], max_distance=0.5
     )
     start = circle.point(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
     assert start is not None
     assert circle.advance(start, 0.5) is None
     advanced = circle.advance(start, 0.2)
     assert advanced is not None
-    assert_allclose(advanced[0].y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
-    assert_allclose(advanced[0].tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
-    assert advanced[0].length == 0.2
+    assert_allclose(advanced.point.y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
+    assert_allclose(advanced.point.tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
+    assert advanced.point.length == 0.2
 
 
 def test_a_correction_that_strays_is_refused() -> None:
     """A parabola that leaves its tangent by 0.3 where the step is 0.2."""
-    parabola = curve(lambda x, t: [x[0] - 7.5 * t**2], lambda x, t: [[1.0]], lambda x, t: [-15.0 * t], [0.0], bend=-1.0)
+    parabola = curve(
+        lambda x, t: [x[0] - 7.5 * t**2], lambda x, t: [[1.0]], lambda x, t: [-15.0 * t], [0.0], min_cosine=-1.0
+    )
     start = parabola.point(np.zeros(2), np.array([0.0, 1.0]), 0.0)
     assert start is not None
     assert parabola.advance(start, 0.2) is None

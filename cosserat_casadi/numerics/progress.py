@@ -1,0 +1,20 @@
+"""How a long task reports what share of it is done."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+
+class Progress(Protocol):
+    """A callback that a task calls after every step.
+
+    It takes one number, so that ``progress=shares.append`` is enough to record a solve. Errors that it raises end the
+    task and reach the caller.
+    """
+
+    def __call__(self, done: float, /) -> None:
+        """Take note of the share that is done.
+
+        Args:
+            done: 0 at the start of the task, 1 at its end.
+        """
