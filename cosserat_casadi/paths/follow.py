@@ -5,7 +5,7 @@ See docs/theory.md, section 11.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -102,11 +102,13 @@ class EquilibriumPath:
 
     def tip(self, rod: str | None = None) -> Pose:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
-        return _tips(self.model, self.x, self.model.rod_name(rod))
+        name = self.model.rod_name(rod)
+        return self._tips(name, self.factor, self.x)
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
         """Pose of a rod's tip at an event, shapes (1, …)."""
-        return _tips(self.model, event.x[None, :], self.model.rod_name(rod))
+        name = self.model.rod_name(rod)
+        return self._tips(name, [event.factor], [event.x])
 
     def section(self, rod: str | None = None) -> float:
         """Abscissa of the section whose way tells most of the path.
@@ -126,11 +128,14 @@ class EquilibriumPath:
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
-        return _positions(self.model, self.x, self.model.rod_name(rod), X)
+        name = self.model.rod_name(rod)
+        return self._positions(name, X, self.factor, self.x)
 
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
-        return np.asarray(_positions(self.model, event.x[None, :], self.model.rod_name(rod), X)[0])
+        name = self.model.rod_name(rod)
+        positions = self._positions(name, X, [event.factor], [event.x])
+        return np.asarray(positions[0])
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
@@ -149,8 +154,46 @@ class EquilibriumPath:
         stable = self.stable
         if stable is None or self.smallest_eigenvalue is None:
             return solution
-        smallest_eigenvalue = float(self.smallest_eigenvalue[index])
-        return replace(solution, smallest_eigenvalue=smallest_eigenvalue, stable=bool(stable[index]))
+        return replace(
+            solution,
+            smallest_eigenvalue=float(self.smallest_eigenvalue[index]),
+            stable=bool(stable[index]),
+        )
+
+    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> Pose:
+        """Poses of a rod's tip at k equilibria.
+
+        Args:
+            rod: name of the rod.
+            factors: factor of each equilibrium.
+            unknowns: unknowns of each, shape (model.size,).
+        """
+        tip = self.model.tip[rod]
+        positions = []
+        quaternions = []
+        rotations = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            # The length and the base of a rod may be inputs.
+            inputs = self.inputs(factor)
+            position, quaternion, rotation = tip(x, inputs)
+            positions.append(position.full()[:, 0])
+            quaternions.append(quaternion.full()[:, 0])
+            rotations.append(rotation.full())
+        return Pose(
+            position=np.array(positions).reshape(-1, 3),
+            rotation=np.array(rotations).reshape(-1, 3, 3),
+            quaternion=np.array(quaternions).reshape(-1, 4),
+        )
+
+    def _positions(self, rod: str, X: float, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> FloatArray:
+        """Positions of a section at k equilibria, shape (k, 3), m; arguments as in :meth:`_tips`."""
+        section_pose = self.model.shape[rod]
+        positions = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            inputs = self.inputs(factor)
+            position, _ = section_pose(x, inputs, X)
+            positions.append(position.full()[:, 0])
+        return np.array(positions).reshape(-1, 3)
 
 
 @dataclass(frozen=True)
@@ -324,32 +367,3 @@ def _sentence(outcome: PathOutcome, load_factors: FloatArray) -> str:
     if outcome is PathOutcome.CONVERGED or not len(load_factors):
         return outcome.value
     return f"{outcome.value} Largest factor reached: {load_factors.max():.6g}; last: {load_factors[-1]:.6g}."
-
-
-def _tips(model: Model, x: FloatArray, rod: str) -> Pose:
-    """Poses of a tip for unknowns of shape (k, n)."""
-    # Where the base of a rod is an input, which no path follows, its default stands in.
-    inputs = np.zeros(model.inputs.size)
-    positions = []
-    quaternions = []
-    rotations = []
-    for unknowns in x:
-        position, quaternion, rotation = model.tip[rod](unknowns, inputs)
-        positions.append(position.full()[:, 0])
-        quaternions.append(quaternion.full()[:, 0])
-        rotations.append(rotation.full())
-    return Pose(
-        position=np.array(positions).reshape(-1, 3),
-        rotation=np.array(rotations).reshape(-1, 3, 3),
-        quaternion=np.array(quaternions).reshape(-1, 4),
-    )
-
-
-def _positions(model: Model, x: FloatArray, rod: str, X: float) -> FloatArray:
-    """Positions of a section for unknowns of shape (k, n), shape (k, 3)."""
-    inputs = np.zeros(model.inputs.size)
-    positions = []
-    for unknowns in x:
-        position, _ = model.shape[rod](unknowns, inputs, X)
-        positions.append(position.full()[:, 0])
-    return np.array(positions).reshape(-1, 3)
