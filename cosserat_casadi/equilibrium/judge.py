@@ -55,6 +55,7 @@ def judge(
     """
     residual = column(model.path_residual(x, inputs, 1.0))
     norm = relative_norm(residual, x)
+    # Short of the full load there is no equilibrium of the scene to judge.
     if load_factor == 1.0:
         outcome = _verdict(model, x, inputs, outcome, norm, tolerance)
     message = outcome.value
@@ -80,6 +81,7 @@ def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
         tie_residual = residual[discrete.tie_slices[tie.where]]
         position_gap = tie_residual[: len(tie.joint.position_axes)]
         gaps.append(length_of(position_gap))
+    # Gaps are relative to the length of the rod; the widest tells where to look.
     worst = int(np.argmax(gaps))
     share = gaps[worst]
     tie = ties[worst]
@@ -99,6 +101,7 @@ def _verdict(
         if resolution_index <= 1.0:
             return Outcome.CONVERGED
         return Outcome.UNRESOLVED
+    # The method took for an equilibrium what is none.
     if outcome is Outcome.CONVERGED:
         return Outcome.MAX_ITERATIONS
     return outcome
@@ -150,8 +153,9 @@ def _is_alike_beside(solution: Solution, variation: FloatArray) -> bool:
     allowed = variations(model)
     start = solution.x.copy()
     start[allowed.free] += ASIDE * variation
-    equations = input_path(model, start, inputs, inputs).at(1.0)
-    beside = newton(equations, start, NewtonSettings(iterations=ASIDE_STEPS))
+    full_load = input_path(model, start, inputs, inputs)
+    few_steps = NewtonSettings(iterations=ASIDE_STEPS)
+    beside = newton(full_load.at(1.0), start, few_steps)
     if beside.outcome is not Outcome.CONVERGED:
         return False
     # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation.
@@ -174,10 +178,12 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
     Returns:
         the solve; None where it does not stay near, so that it may have met another branch.
     """
-    equations = input_path(model, start, inputs, inputs).at(1.0)
-    corrected = newton(equations, start, settings)
+    full_load = input_path(model, start, inputs, inputs)
+    corrected = newton(full_load.at(1.0), start, settings)
     if corrected.outcome is not Outcome.CONVERGED or corrected.damped:
         return None
-    if length_of(corrected.x - start) > MAX_DISTANCE:
+    # Newton converges from afar too, but then to any equilibrium.
+    distance = length_of(corrected.x - start)
+    if distance > MAX_DISTANCE:
         return None
     return corrected

@@ -35,15 +35,19 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
     """
     no_change = np.zeros(model.inputs.size)
 
-    def residual(x: FloatArray, t: float) -> FloatArray:
-        return column(model.path_residual(x, inputs, t))
+    # The load factor is t itself.
+    def residual(x: FloatArray, load_factor: float) -> FloatArray:
+        g = model.path_residual(x, inputs, load_factor)
+        return column(g)
 
-    def jacobian(x: FloatArray, t: float) -> Jacobian:
-        return _solvable(model, model.path_jacobian(x, inputs, t))
+    def jacobian(x: FloatArray, load_factor: float) -> Jacobian:
+        sparse = model.path_jacobian(x, inputs, load_factor)
+        return _solvable(model, sparse)
 
-    def rate(x: FloatArray, t: float) -> FloatArray:
+    def rate(x: FloatArray, load_factor: float) -> FloatArray:
         load_factor_rate = 1.0
-        return column(model.path_rate(x, inputs, t, no_change, load_factor_rate))
+        dg_dt = model.path_rate(x, inputs, load_factor, no_change, load_factor_rate)
+        return column(dg_dt)
 
     return Path(
         residual,
@@ -70,24 +74,29 @@ def input_path(model: Model, start: FloatArray, before: FloatArray, after: Float
 
     def inputs_at(t: float) -> FloatArray:
         # Exact at both ends, however far apart they are.
-        return (1.0 - t) * before + t * after
+        left = (1.0 - t) * before
+        return left + t * after
 
     def residual(x: FloatArray, t: float) -> FloatArray:
-        return column(model.path_residual(x, inputs_at(t), load_factor))
+        g = model.path_residual(x, inputs_at(t), load_factor)
+        return column(g)
 
     def jacobian(x: FloatArray, t: float) -> Jacobian:
-        return _solvable(model, model.path_jacobian(x, inputs_at(t), load_factor))
+        sparse = model.path_jacobian(x, inputs_at(t), load_factor)
+        return _solvable(model, sparse)
 
     def rate(x: FloatArray, t: float) -> FloatArray:
         load_factor_rate = 0.0
-        return column(model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate))
+        dg_dt = model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate)
+        return column(dg_dt)
 
     return Path(residual, jacobian, rate, start, step_weights=step_weights(model))
 
 
 def first_step(model: Model) -> float:
     """Longest first step of the load path: where rods need not fit, the compliance (1 − t)³ is no straight line."""
-    if model.discrete.couplings.moving:
+    couplings = model.discrete.couplings
+    if couplings.moving:
         return FIRST_STEP
     return 1.0
 
@@ -107,7 +116,8 @@ def step_weights(model: Model) -> FloatArray:
 
 def _solvable(model: Model, jacobian: ca.DM) -> Jacobian:
     """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
-    if model.discrete.couplings.ties:
+    couplings = model.discrete.couplings
+    if couplings.ties:
         return jacobian
     return np.asarray(jacobian.full())
 
@@ -115,5 +125,7 @@ def _solvable(model: Model, jacobian: ca.DM) -> Jacobian:
 def column(vector: ca.DM) -> FloatArray:
     """Convert a CasADi vector to an array, shape (n,)."""
     if not vector.shape[0]:
+        # CasADi may give an empty vector no column either.
         return np.zeros(0)
-    return np.asarray(vector.full()[:, 0])
+    array = vector.full()
+    return np.asarray(array[:, 0])

@@ -78,7 +78,8 @@ def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | N
 def can_relax(model: Model) -> bool:
     """Whether a model's energy is a function of strains alone: no frames move, no cable has a length to keep."""
     discrete = model.discrete
-    return not discrete.couplings.ties and not discrete.cables
+    couplings = discrete.couplings
+    return not couplings.ties and not discrete.cables
 
 
 def _tries(solution: Solution) -> Iterator[_Try]:
@@ -96,14 +97,17 @@ def _tries(solution: Solution) -> Iterator[_Try]:
     eigenvalues, admissible = admissible_spectrum(jacobian, variations(model))
     if not admissible.size:
         return
+    # Where the path stalled before an instability the lowest variation leads off it.
     count = max(1, int(np.sum(eigenvalues < 0.0)))
     unstable = admissible[:, :count]
     # Seeded, so that a scene relaxes to the same equilibrium every time.
     random = np.random.default_rng(0)
     for k in range(RANDOM_TRIES):
-        direction = unstable @ random.standard_normal(unstable.shape[1])
+        shares = random.standard_normal(unstable.shape[1])
+        direction = unstable @ shares
         beside = start + OFF * direction / np.linalg.norm(direction)
-        yield _Try(beside, SIDES[k % 2])
+        side = SIDES[k % 2]
+        yield _Try(beside, side)
 
 
 def _descended(solution: Solution, attempt: _Try) -> FloatArray | None:
@@ -116,7 +120,8 @@ def _descended(solution: Solution, attempt: _Try) -> FloatArray | None:
 def _released(solution: Solution, attempt: _Try) -> FloatArray | None:
     """Unknowns of a free rod that has relaxed at the full load."""
     energy = energy_at(solution.model, solution.inputs, 1.0)
-    return descend(energy, attempt.start, attempt.side, DescentSettings())
+    limits = DescentSettings()
+    return descend(energy, attempt.start, attempt.side, limits)
 
 
 def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
@@ -131,6 +136,7 @@ def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
         minimum = descend(energy, q, attempt.side, DescentSettings())
         if minimum is None:
             return None
+        # The next stage begins where this one has ended: the springs pull the rod in without a jump.
         q = minimum
     return _with_multipliers(model, solution.inputs, load_factor, q)
 
@@ -146,21 +152,25 @@ def energy_at(model: Model, inputs: FloatArray, load_factor: float) -> Energy:
         load_factor: share of the loads, below 1 where the rod is held.
     """
     n = model.discrete.strain_size
+    strains = slice(0, n)
+    multipliers = slice(n, model.size)
 
     def gradient(q: FloatArray) -> FloatArray:
         x = _with_multipliers(model, inputs, load_factor, q)
-        residual = column(model.path_residual(x, inputs, load_factor))
-        return residual[:n]
+        residual = model.path_residual(x, inputs, load_factor)
+        return column(residual)[strains]
 
     def hessian(q: FloatArray) -> FloatArray:
         x = _with_multipliers(model, inputs, load_factor, q)
-        jacobian = np.asarray(model.path_jacobian(x, inputs, load_factor).full())
-        strains = jacobian[:n, :n]
+        jacobian = model.path_jacobian(x, inputs, load_factor).full()
+        hessian_of_rods = np.asarray(jacobian[strains, strains])
         if model.size == n:
-            return strains
-        # Schur complement: the multipliers' block is (1 − λ) times the identity.
-        coupling = jacobian[:n, n:] @ jacobian[n:, :n]
-        return np.asarray(strains - coupling / (1.0 - load_factor))
+            return hessian_of_rods
+        # Schur complement: the multipliers' own block is (1 − λ) times the identity.
+        force_rates = jacobian[strains, multipliers]
+        gap_rates = jacobian[multipliers, strains]
+        hessian_of_springs = force_rates @ gap_rates / (1.0 - load_factor)
+        return np.asarray(hessian_of_rods - hessian_of_springs)
 
     return Energy(gradient, hessian)
 
@@ -170,9 +180,11 @@ def _with_multipliers(model: Model, inputs: FloatArray, load_factor: float, q: F
     n = model.discrete.strain_size
     if model.size == n:
         return q
-    x = np.append(q, np.zeros(model.size - n))
+    no_multipliers = np.zeros(model.size - n)
+    x = np.append(q, no_multipliers)
+    residual = column(model.path_residual(x, inputs, load_factor))
     # Without multipliers the equations of the supports read λ gap.
-    scaled_gaps = column(model.path_residual(x, inputs, load_factor))[n:]
+    scaled_gaps = residual[n:]
     x[n:] = scaled_gaps / (load_factor - 1.0)
     return x
 
@@ -181,7 +193,7 @@ def _corrected(solution: Solution, x: FloatArray, settings: NewtonSettings) -> S
     """Newton at the full load from what the rod has relaxed to, judged."""
     model = solution.model
     inputs = solution.inputs
-    equations = input_path(model, x, inputs, inputs).at(1.0)
-    end = newton(equations, x, settings)
+    full_load = input_path(model, x, inputs, inputs)
+    end = newton(full_load.at(1.0), x, settings)
     iterations = solution.iterations + end.iterations
     return judge(model, inputs, end.x, end.outcome, iterations, 1.0, settings.tolerance)

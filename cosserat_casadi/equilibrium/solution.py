@@ -84,7 +84,8 @@ class Solution:
 
     def tip(self, rod: str | None = None) -> Pose:
         """Pose of a rod's tip."""
-        return self.pose(np.array([1.0]), rod)
+        tip = np.array([1.0])
+        return self.pose(tip, rod)
 
     def body(self, name: str | None = None) -> Pose:
         """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
@@ -98,9 +99,13 @@ class Solution:
             chosen = names[0]
         if chosen not in names:
             raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
-        outputs = self.model.body[chosen](self.x, self.inputs)
-        position, quaternion, rotation = (output.full() for output in outputs)
-        return Pose(position.T, rotation[None], quaternion.T)
+        pose = self.model.body[chosen]
+        position, quaternion, rotation = pose(self.x, self.inputs)
+        return Pose(
+            position=position.full().T,
+            rotation=rotation.full()[None],
+            quaternion=quaternion.full().T,
+        )
 
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
@@ -122,37 +127,52 @@ class Solution:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
         name = self.model.rod_name(rod)
         discrete = self.model.discrete
-        q = self.x[discrete.rod_slices[name]]
+        discrete_rod = discrete.rods[name]
+        rod_slice = discrete.rod_slices[name]
+        # Strains are written per reference length: a rod that is drawn out takes the ratio.
         ratio = self.model.length_ratio(name, self.inputs)
-        strain = discrete.rods[name].at(q, _abscissae(X), ratio)
-        return np.asarray(strain.full().T)
+        abscissae = _abscissae(X)
+        q = self.x[rod_slice]
+        strain = discrete_rod.at(q, abscissae, ratio).full()
+        return np.asarray(strain.T)
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
         name = self.model.rod_name(rod)
         fields = self._nodal_fields(name)
-        return np.asarray(self._interpolation(X, name) @ fields.wrench.T)
+        interpolation = self._interpolation(X, name)
+        wrench = interpolation @ fields.wrench.T
+        return np.asarray(wrench)
 
     def base_wrench(self, rod: str | None = None) -> BaseWrench:
         """Force and moment of the clamp on a rod."""
-        fields = self._nodal_fields(self.model.rod_name(rod))
-        return BaseWrench(fields.base_force[:, 0], fields.base_moment[:, 0])
+        name = self.model.rod_name(rod)
+        fields = self._nodal_fields(name)
+        force = fields.base_force[:, 0]
+        moment = fields.base_moment[:, 0]
+        return BaseWrench(force, moment)
 
     def actuator(self, name: str) -> dict[str, float]:
         """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
         function = self.model.actuator[name]
         values = function(self.x, self.inputs)
-        return {function.name_out(i): float(values[i]) for i in (0, 1)}
+        # The third output, the rate of the conjugate with the unknowns, is for control.
+        effort = float(values[0])
+        conjugate = float(values[1])
+        return {function.name_out(0): effort, function.name_out(1): conjugate}
 
     def _nodal_fields(self, rod: str) -> _NodalFields:
         """Fields of a rod at its nodes."""
-        outputs = self.model.fields[rod](self.x, self.inputs)
-        return _NodalFields(*(output.full() for output in outputs))
+        function = self.model.fields[rod]
+        outputs = function(self.x, self.inputs)
+        arrays = (output.full() for output in outputs)
+        return _NodalFields(*arrays)
 
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
         """Matrix that takes values at the nodes of a rod to abscissae, shape (k, nodes)."""
-        grid = self.model.discrete.rods[rod].grid
-        return grid.interpolation_matrix(_abscissae(X))
+        discrete_rod = self.model.discrete.rods[rod]
+        abscissae = _abscissae(X)
+        return discrete_rod.grid.interpolation_matrix(abscissae)
 
 
 class _NodalFields(NamedTuple):
@@ -174,7 +194,8 @@ class _NodalFields(NamedTuple):
 
 
 def _abscissae(X: npt.ArrayLike) -> FloatArray:
-    return np.atleast_1d(np.asarray(X, dtype=float))
+    abscissae = np.asarray(X, dtype=float)
+    return np.atleast_1d(abscissae)
 
 
 def rotations(q: FloatArray) -> FloatArray:
@@ -187,9 +208,19 @@ def rotations(q: FloatArray) -> FloatArray:
         shape (k, 3, 3).
     """
     w, x, y, z = q.T
+    xx = x * x
+    yy = y * y
+    zz = z * z
+    xy = x * y
+    xz = x * z
+    yz = y * z
+    wx = w * x
+    wy = w * y
+    wz = w * z
+    # Report (A.15), row by row.
     rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        [1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)],
+        [2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)],
+        [2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)],
     ]
     return np.moveaxis(np.array(rows), -1, 0)

@@ -20,6 +20,7 @@ from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.continuation import ContinuationSettings, follow
+from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
 
@@ -168,15 +169,22 @@ def _continuation(task: _Task) -> _End:
     if isinstance(task.start, Solution):
         path = input_path(task.model, task.start.x, task.start.inputs, task.inputs)
     else:
-        # Zero unknowns are the unloaded rod: no guess to be tried.
-        guessed = task.start is not None and bool(np.any(task.start))
-        if guessed:
-            corrected = correct(task.model, task.inputs, task.first_iterate, task.limits.newton)
-            if corrected is not None:
-                return _End(corrected.x, corrected.outcome, corrected.iterations)
+        corrected = _corrected_guess(task)
+        if corrected is not None:
+            return _End(corrected.x, corrected.outcome, corrected.iterations)
         path = load_path(task.model, task.inputs)
     result = follow(path, task.limits, task.progress)
     return _End(result.x, result.outcome, result.iterations, result.reached)
+
+
+def _corrected_guess(task: _Task) -> NewtonResult | None:
+    """Newton from unknowns that were given; None where none were, or where it strays."""
+    if task.start is None or isinstance(task.start, Solution):
+        return None
+    # Zero unknowns are the unloaded rod: no guess to be tried.
+    if not np.any(task.start):
+        return None
+    return correct(task.model, task.inputs, task.start, task.limits.newton)
 
 
 def _rootfinder(task: _Task) -> _End:
@@ -191,6 +199,7 @@ def _rootfinder(task: _Task) -> _End:
     finder = ca.rootfinder("finder", "newton", task.model.residual, options)
     root = finder(task.first_iterate, task.inputs)
     iterations = int(finder.stats()["iter_count"])
+    # Where the residual is small all the same, the judge says so.
     return _End(root.full()[:, 0], Outcome.MAX_ITERATIONS, iterations)
 
 
@@ -199,14 +208,26 @@ def _nlpsol(task: _Task) -> _End:
     model = task.model
     x = ca.MX.sym("x", model.size)
     inputs = ca.MX.sym("inputs", model.inputs.size)
-    problem = {"x": x, "p": inputs, "f": ca.MX(0), "g": model.residual(x, inputs)}
+    problem = {
+        "x": x,
+        "p": inputs,
+        "f": ca.MX(0),
+        "g": model.residual(x, inputs),
+    }
     tolerance = task.limits.newton.tolerance
-    ipopt = {"print_level": 0, "sb": "yes", "tol": tolerance, "constr_viol_tol": tolerance}
+    ipopt = {
+        "print_level": 0,
+        "sb": "yes",
+        "tol": tolerance,
+        "constr_viol_tol": tolerance,
+    }
     options = {"print_time": False, "error_on_fail": False, "ipopt": ipopt}
     solver = ca.nlpsol("solver", "ipopt", problem, options)
     optimum = solver(x0=task.first_iterate, p=task.inputs, lbg=0, ubg=0)
+    solution = optimum["x"].full()[:, 0]
     iterations = int(solver.stats()["iter_count"])
-    return _End(optimum["x"].full()[:, 0], Outcome.MAX_ITERATIONS, iterations)
+    # Where the residual is small all the same, the judge says so.
+    return _End(solution, Outcome.MAX_ITERATIONS, iterations)
 
 
 _METHODS: dict[str, Callable[[_Task], _End]] = {

@@ -45,6 +45,7 @@ def variations(model: Model) -> Variations:
     moving = discrete.couplings.moving
     for frame, frame_slice in discrete.moving_slices.items():
         units[frame_slice] = moving[frame].unit
+    # Multipliers have no energy of their own.
     free = np.flatnonzero(units)
     held = np.flatnonzero(units == 0.0)
     return Variations(free, held, units[free])
@@ -70,7 +71,8 @@ class Stability:
     @property
     def neutral(self) -> bool:
         """Whether some variation costs no energy while none releases any."""
-        return self.zero > 0 and not self.negative
+        some_cost_none = self.zero > 0
+        return some_cost_none and not self.negative
 
     @property
     def stable(self) -> bool:
@@ -108,9 +110,11 @@ def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[Floa
         jacobian: as in :func:`second_variation`.
         allowed: as there.
     """
-    hessian = jacobian[np.ix_(allowed.free, allowed.free)]
+    block = np.ix_(allowed.free, allowed.free)
+    hessian = jacobian[block]
     constraints = _active_constraints(jacobian, allowed)
-    roots = np.sqrt(allowed.units / allowed.units.max(initial=0.0))
+    largest_unit = allowed.units.max(initial=0.0)
+    roots = np.sqrt(allowed.units / largest_unit)
     # Rods of one energy unit need no scaling, and keep their digits.
     if len(set(allowed.units)) > 1:
         hessian = roots[:, None] * hessian / roots
@@ -120,18 +124,23 @@ def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[Floa
         basis = _null_space(constraints)
         hessian = basis.T @ hessian @ basis
     if not hessian.size:
+        # Constraints leave nothing to vary.
         return np.zeros(0), np.zeros((len(allowed.free), 0))
-    eigenvalues, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
+    # Loads without a potential are not asked for; rounding alone makes this one unsymmetric.
+    symmetric = (hessian + hessian.T) / 2
+    eigenvalues, vectors = np.linalg.eigh(symmetric)
     admissible = basis @ vectors / roots[:, None]
     return np.asarray(eigenvalues), np.asarray(admissible)
 
 
 def _active_constraints(jacobian: FloatArray, allowed: Variations) -> FloatArray:
     """Linearised constraints that restrict the variations, one a row."""
-    constraints = jacobian[np.ix_(allowed.held, allowed.free)]
+    block = np.ix_(allowed.held, allowed.free)
+    constraints = jacobian[block]
     largest = np.abs(constraints).max(axis=1, initial=0.0)
     # A slack cable asks nothing of the rod: its equation is about its tension alone.
-    own = np.abs(np.diagonal(jacobian)[allowed.held])
+    diagonal = np.diagonal(jacobian)
+    own = np.abs(diagonal[allowed.held])
     active: FloatArray = constraints[largest > own]
     return active
 
@@ -139,7 +148,8 @@ def _active_constraints(jacobian: FloatArray, allowed: Variations) -> FloatArray
 def _null_space(constraints: FloatArray) -> FloatArray:
     """Orthonormal basis of the variations that keep constraints, one a column."""
     _, singular, rows = np.linalg.svd(constraints)
-    rank = int(np.sum(singular > DEPENDENT * singular[0]))
+    independent = singular > DEPENDENT * singular[0]
+    rank = int(np.sum(independent))
     return np.asarray(rows[rank:].T)
 
 
@@ -149,6 +159,10 @@ def stability_of(eigenvalues: FloatArray) -> Stability:
         return Stability(np.inf)
     sizes = np.abs(eigenvalues)
     rounding = ZERO * max(1.0, float(sizes.max()))
-    negative = int(np.sum(eigenvalues < -rounding))
-    zero = int(np.sum(sizes <= rounding))
-    return Stability(float(eigenvalues[0]), negative, zero)
+    negative = eigenvalues < -rounding
+    zero = sizes <= rounding
+    return Stability(
+        smallest_eigenvalue=float(eigenvalues[0]),
+        negative=int(np.sum(negative)),
+        zero=int(np.sum(zero)),
+    )

@@ -154,8 +154,9 @@ class Curve:
 
     def residual(self, y: FloatArray) -> FloatArray:
         """Residual g(y), shape (n,)."""
+        x = y[:-1]
         load_factor = float(y[-1])
-        return self.path.residual(y[:-1], load_factor)
+        return self.path.residual(x, load_factor)
 
     def derivative(self, y: FloatArray) -> FloatArray:
         """Derivative ∂g/∂y, shape (n, n + 1)."""
@@ -218,7 +219,8 @@ class Curve:
         limits = self.settings
         # Near a limit point λ stands still and bounds nothing.
         rate = max(abs(current.load_factor_rate), 1e-3)
-        return min(step, limits.longest, limits.load_factor_change / rate)
+        within_load = limits.load_factor_change / rate
+        return min(step, limits.longest, within_load)
 
     def advance(self, current: ArcPoint, step: float) -> Advance | None:
         """Take one step; None where it may lead to another branch."""
@@ -227,12 +229,14 @@ class Curve:
         if corrected is None:
             return None
         distance = np.linalg.norm(corrected.y - predicted)
+        # So far from the prediction the corrected point may lie on another branch.
         if distance > self.settings.max_distance * step:
             return None
         point = self.point(corrected.y, current.tangent, current.length + step)
         if point is None:
             return None
         cosine = point.tangent @ current.tangent
+        # Round a corner events would be passed unseen.
         if cosine < self.settings.min_cosine:
             return None
         return Advance(point, corrected.steps)
@@ -240,7 +244,8 @@ class Curve:
 
 def plane_through(y: FloatArray, normal: FloatArray) -> Plane:
     """The hyperplane through a point across a vector, both of shape (n + 1,)."""
-    return Plane(normal, float(normal @ y))
+    level = normal @ y
+    return Plane(normal, float(level))
 
 
 def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray | None:

@@ -61,10 +61,13 @@ def crossing_direction(derivative: FloatArray, tangent: FloatArray, multiplicity
     Returns:
         unit vector, shape (n + 1,), in which that unknown grows.
     """
-    _, _, rows = np.linalg.svd(np.vstack([derivative, tangent]))
+    bordered = np.vstack([derivative, tangent])
+    _, _, rows = np.linalg.svd(bordered)
     basis = rows[-multiplicity:].T
     sizes = np.linalg.norm(basis[:-1], axis=1)
     # The first of equals: which of two alike entries is larger by rounding must not decide.
-    largest = int(np.argmax(sizes >= (1 - TIE) * sizes.max()))
+    among_largest = sizes >= (1 - TIE) * sizes.max()
+    largest = int(np.argmax(among_largest))
     direction = basis @ basis[largest]
-    return np.asarray(direction / np.linalg.norm(direction))
+    length = np.linalg.norm(direction)
+    return np.asarray(direction / length)

@@ -141,15 +141,18 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
     The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
     """
     # cos k² has no regularity, so that no singular vector of a regular structure is orthogonal to it.
-    probe = np.cos(np.arange(1.0, len(residual) + 1.0) ** 2)
-    right_sides = np.column_stack([-residual, probe / np.linalg.norm(probe)])
+    numbers = np.arange(1.0, len(residual) + 1.0)
+    probe = np.cos(numbers**2)
+    probe = probe / np.linalg.norm(probe)
+    right_sides = np.column_stack([-residual, probe])
     try:
         solutions = np.linalg.solve(jacobian, right_sides)
     except np.linalg.LinAlgError:
         return None
     with np.errstate(all="ignore"):
-        largest_entry = np.abs(jacobian).max()
-        condition = float(np.linalg.norm(solutions[:, 1]) * largest_entry)
+        inverse_size = np.linalg.norm(solutions[:, 1])
+        size = np.abs(jacobian).max()
+        condition = float(inverse_size * size)
     # Not "condition > bound": a condition that is not a number must count as singular too.
     if not condition <= 1.0 / SINGULAR:
         return None
@@ -158,7 +161,7 @@ def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | No
 
 def _shortest_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     """The step of least norm among those that solve the equations best."""
-    solution = np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)[0]
+    solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)
     return np.asarray(solution, dtype=np.float64)
 
 
@@ -170,8 +173,10 @@ def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:
         return None
     factors = ca.qr_sparse(jacobian)
     triangular = factors[1]
-    diagonal = np.abs(np.array(ca.diag(triangular).full()[:, 0]))
-    if diagonal.min() <= THIN * diagonal.max():
+    diagonal = ca.diag(triangular).full()[:, 0]
+    sizes = np.abs(np.array(diagonal))
+    # No estimate of the condition, but free, and enough to hand doubtful ones to the dense method.
+    if sizes.min() <= THIN * sizes.max():
         return None
     solution = ca.qr_solve(ca.DM(-residual), *factors)
     return _finite_or_none(np.asarray(solution.full()[:, 0]))

@@ -173,6 +173,7 @@ def follow(
         target = _target(current, step)
         predicted = _predicted_change(path, current, previous, step)
         if not _predictor_plausible(path, current, predicted, target):
+            # It has cost a residual, which counts like a Newton step.
             iterations += 1
             step /= 2
             continue
@@ -190,6 +191,7 @@ def follow(
         previous = current
         current = _point(path, trial, target)
         if trial.jacobians <= limits.grow_below:
+            # One or two Jacobians: the prediction was good, and a longer step costs no more.
             step *= 2.0
     return _stalled(path, current, limits, iterations)
 
@@ -251,8 +253,8 @@ def _predicted_change(path: Path, current: _Point, previous: _Point | None, step
     if previous is None:
         return linear
     interval = current.t - previous.t
-    moved = current.x - previous.x
     share = step / interval
+    moved = current.x - previous.x
     cubic = interval * (current.tangent + previous.tangent) - 2 * moved
     quadratic = cubic + interval * current.tangent - moved
     bent = share**2 * quadratic + share**3 * cubic
@@ -272,24 +274,37 @@ def _predictor_plausible(path: Path, current: _Point, predicted: FloatArray, tar
         return True
     residual = path.residual(current.x + predicted, target)
     foreseen = jacobian.response(residual, current.correction.residual)
-    return foreseen is None or _is_small(path, foreseen, predicted)
+    if foreseen is None:
+        # Without a forecast Newton has to try.
+        return True
+    return _is_small(path, foreseen, predicted)
 
 
 def _corrector_accepted(path: Path, trial: NewtonResult, x: FloatArray, predicted: FloatArray) -> bool:
     """Whether a corrected point lies on the path and not on some other."""
-    if trial.outcome is not Outcome.CONVERGED or trial.damped:
+    if trial.outcome is not Outcome.CONVERGED:
+        return False
+    if trial.damped:
         return False
     correction = trial.x - x - predicted
     return _is_small(path, correction, predicted)
 
 
 def _is_small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool:
+    # The floor lets short steps converge to a path that bends; the share keeps long ones off other branches.
     longest = CORRECTION_FLOOR + CORRECTION_SHARE * path.length(predicted)
-    return path.length(correction) <= longest
+    length = path.length(correction)
+    return length <= longest
 
 
 def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
     """The last point, which was corrected inexactly, as near to equilibrium as Newton brings it."""
-    end = newton(path.at(last.t), last.x, limits.newton)
-    iterations += end.iterations
-    return ContinuationResult(end.x, Outcome.LOAD_STALLED, end.residual_norm, iterations, last.t)
+    equations = path.at(last.t)
+    end = newton(equations, last.x, limits.newton)
+    return ContinuationResult(
+        x=end.x,
+        outcome=Outcome.LOAD_STALLED,
+        residual_norm=end.residual_norm,
+        iterations=iterations + end.iterations,
+        reached=last.t,
+    )

@@ -58,7 +58,10 @@ class Energy:
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Energy at x + step less that at x."""
-        rates = [self.gradient(x + s * step) @ step for s in WORK_NODES]
+        rates = []
+        for share in WORK_NODES:
+            gradient = self.gradient(x + share * step)
+            rates.append(gradient @ step)
         return float(WORK_WEIGHTS @ rates)
 
 
@@ -97,18 +100,23 @@ class _QuadraticModel:
 
     def is_saddle(self, flat: float) -> bool:
         """Whether a curvature is negative beyond a share of the largest, which is taken for one at least."""
-        scale = max(1.0, float(np.abs(self.curvatures).max()))
-        return float(self.curvatures[0]) < -flat * scale
+        sizes = np.abs(self.curvatures)
+        scale = max(1.0, float(sizes.max()))
+        lowest = float(self.curvatures[0])
+        return lowest < -flat * scale
 
     def step(self, radius: float, side: float) -> FloatArray:
         """The step to the minimum in the ball of a radius, shape (n,)."""
         slopes = self.axes.T @ self.gradient
-        return np.asarray(self.axes @ ball_minimum(self.curvatures, slopes, radius, side))
+        minimum = ball_minimum(self.curvatures, slopes, radius, side)
+        return np.asarray(self.axes @ minimum)
 
     def change(self, step: FloatArray) -> float:
         """Change of the energy that the model foresees over a step."""
         components = self.axes.T @ step
-        return float(self.gradient @ step + components**2 @ self.curvatures / 2)
+        linear = self.gradient @ step
+        quadratic = components**2 @ self.curvatures / 2
+        return float(linear + quadratic)
 
 
 def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSettings) -> FloatArray | None:
@@ -139,6 +147,7 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
         agreement = _agreement(model.change(step), energy.change(x, step))
         if agreement > ACCEPT_ABOVE:
             x = x + step
+            # A refused step leaves the model as it is: only the ball shrinks.
             model = None
         length = length_of(step)
         if agreement < SHRINK_BELOW:
@@ -192,6 +201,7 @@ def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side
         if length_of(inside) <= radius:
             return np.asarray(inside)
 
+    # Any smaller μ would leave curvature + μ negative along the lowest curvature.
     smallest = max(0.0, -lowest) + rounding
     at_smallest = -slopes / (curvatures + smallest)
     if length_of(at_smallest) < radius:

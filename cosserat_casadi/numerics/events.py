@@ -146,6 +146,7 @@ def events_between(arc: Arc) -> list[Event] | None:
         return None
     if limits and arc.curve.monitor.feels_limits:
         if not zeros:
+            # The sign change of the limit point is undone by another in the same step.
             return None
         # One number of the monitor vanishes because of the limit point: the nearest.
         limit_length = limits[0].point.length
@@ -201,7 +202,8 @@ def _monitored(k: int, neutral: int) -> Callable[[ArcPoint], float]:
     """Number k of the monitor, neutral ones left out, as a function of the point."""
 
     def value(point: ArcPoint) -> float:
-        return float(_without_neutral(point.spectrum, neutral)[k])
+        spectrum = _without_neutral(point.spectrum, neutral)
+        return float(spectrum[k])
 
     return value
 
@@ -209,28 +211,34 @@ def _monitored(k: int, neutral: int) -> Callable[[ArcPoint], float]:
 def _bifurcations(zeros: list[ArcPoint]) -> list[Event]:
     """Zeros as events; those at one point are one event of a higher multiplicity."""
     events: list[Event] = []
+    latest = -np.inf
     for point in sorted(zeros, key=lambda p: p.length):
-        if events and point.length - events[-1].point.length <= SAME:
+        if point.length - latest <= SAME:
             same = events[-1]
             events[-1] = Event("bifurcation", same.point, same.multiplicity + 1)
         else:
             events.append(Event("bifurcation", point))
+            latest = point.length
     return events
 
 
 def _count_neutral(spectrum: FloatArray) -> int:
     """How many numbers are zero to rounding."""
     sizes = np.abs(spectrum)
-    scale = max(1.0, float(sizes.max(initial=0.0)))
-    return int(np.sum(sizes <= SINGULAR * scale))
+    largest = float(sizes.max(initial=0.0))
+    rounding = SINGULAR * max(1.0, largest)
+    zero = sizes <= rounding
+    return int(np.sum(zero))
 
 
 def _without_neutral(spectrum: FloatArray, neutral: int) -> FloatArray:
     """The spectrum without the numbers that a symmetry keeps at zero all along the piece, still ascending."""
-    by_size = np.argsort(np.abs(spectrum), kind="stable")
+    sizes = np.abs(spectrum)
+    by_size = np.argsort(sizes, kind="stable")
     kept = by_size[neutral:]
     return spectrum[np.sort(kept)]
 
 
 def _count_negative(spectrum: FloatArray) -> int:
-    return int(np.sum(spectrum < 0.0))
+    negative = spectrum < 0.0
+    return int(np.sum(negative))

@@ -138,7 +138,8 @@ class _Iterate:
 
     def within(self, bound: float) -> bool:
         """Whether the relative norm of the residual is at most a bound."""
-        return self.norm <= bound * _scale(self.x)
+        largest = bound * _scale(self.x)
+        return self.norm <= largest
 
     def linearise(self, equations: Equations) -> BroydenJacobian:
         """Form a Jacobian at x, without updates yet."""
@@ -226,13 +227,19 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
 def _outcome_before_step(iterate: _Iterate, settings: NewtonSettings) -> Outcome | None:
     """How the solve ends at an iterate; None where another step is due."""
     # Beside unknowns without a finite norm every residual would be small.
-    if not np.isfinite(iterate.norm) or not np.isfinite(_scale(iterate.x)):
+    scale = _scale(iterate.x)
+    if not np.isfinite(iterate.norm) or not np.isfinite(scale):
         return Outcome.NOT_FINITE
-    jacobians_spent = iterate.jacobians == settings.jacobians and not iterate.reuse_jacobian
-    budget_spent = jacobians_spent or iterate.iterations == settings.iterations
-    goal_reached = iterate.inexact_enough or iterate.within(settings.aim)
-    if not goal_reached and not budget_spent:
+
+    # The last Jacobian of the budget may go on serving.
+    no_jacobian_left = iterate.jacobians == settings.jacobians
+    no_step_left = iterate.iterations == settings.iterations
+    budget_spent = no_step_left or (no_jacobian_left and not iterate.reuse_jacobian)
+    aim_reached = iterate.inexact_enough or iterate.within(settings.aim)
+    if not aim_reached and not budget_spent:
         return None
+
+    # Between tolerance and aim the budget may run out: that is a success all the same.
     if iterate.inexact_enough or iterate.within(settings.tolerance):
         return Outcome.CONVERGED
     return Outcome.MAX_ITERATIONS
@@ -247,6 +254,7 @@ def _line_search(
     shortest = SHORTEST_STEP
     if full_step_only:
         shortest = 1.0
+    # Halving, not interpolating: a residual that overflows gives nothing to interpolate.
     length = 1.0
     while length >= shortest:
         x = iterate.x + length * step
@@ -261,7 +269,8 @@ def _line_search(
 
 def relative_norm(residual: FloatArray, x: FloatArray) -> float:
     """2-norm of the dimensionless residual over one plus that of the unknowns: what rounding scales with."""
-    return length_of(residual) / _scale(x)
+    scale = _scale(x)
+    return length_of(residual) / scale
 
 
 def _scale(x: FloatArray) -> float:
@@ -271,4 +280,5 @@ def _scale(x: FloatArray) -> float:
 def length_of(vector: FloatArray) -> float:
     """2-norm; infinite where the squares overflow, which the line search takes for a step too long."""
     with np.errstate(over="ignore", invalid="ignore"):
-        return float(np.sqrt(vector @ vector))
+        squares = vector @ vector
+        return float(np.sqrt(squares))

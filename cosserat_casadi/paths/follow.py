@@ -94,11 +94,13 @@ class EquilibriumPath:
         """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
         if self.smallest_eigenvalue is None or self.neutral is None:
             return None
-        return (self.smallest_eigenvalue > 0.0) | self.neutral
+        every_variation_costs = self.smallest_eigenvalue > 0.0
+        return every_variation_costs | self.neutral
 
     def inputs(self, factor: float) -> FloatArray:
         """Stacked inputs at a factor."""
-        return self.base + factor * self.change
+        change = factor * self.change
+        return self.base + change
 
     def tip(self, rod: str | None = None) -> Pose:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
@@ -120,6 +122,7 @@ class EquilibriumPath:
         tip_is_free = all(holder.rod != name for holder in (*scene.supports, *scene.joints))
         if tip_is_free:
             return 1.0
+        # The tip of a held rod does not move, so that its way tells nothing.
         load_name = self.name.split(".")[0]
         load = next(load for load in scene.causes if load.name == load_name)
         if getattr(load, "rod", name) != name:
@@ -215,8 +218,9 @@ class _Followed:
     @cached_property
     def potential(self) -> bool:
         """Whether all loads have a potential along the path."""
+        has_potential = self.model.has_potential
         end = self.base + self.change
-        return self.model.has_potential(self.base) and self.model.has_potential(end)
+        return has_potential(self.base) and has_potential(end)
 
     @property
     def monitor(self) -> Monitor:
@@ -236,11 +240,15 @@ class _Followed:
 
         Otherwise a strong load on a held rod would make a long way of small steps.
         """
-        unloaded = np.zeros(self.model.size)
+        model = self.model
+        unloaded = np.zeros(model.size)
+        load_factor = 1.0
         load_factor_rate = 0.0
-        rate = self.model.path_rate(unloaded, self.base, 1.0, self.change, load_factor_rate).full()
-        scale = np.ones(self.model.size)
-        scale[variations(self.model).held] = max(1.0, float(np.linalg.norm(rate)))
+        rate = model.path_rate(unloaded, self.base, load_factor, self.change, load_factor_rate)
+        load = float(np.linalg.norm(rate.full()))
+        multipliers = variations(model).held
+        scale = np.ones(model.size)
+        scale[multipliers] = max(1.0, load)
         return scale
 
     def curve(self, start: FloatArray, settings: ArcSettings) -> Curve:
@@ -249,7 +257,9 @@ class _Followed:
         unscaled = input_path(self.model, start, self.base, self.base + self.change)
 
         def jacobian(x: FloatArray, t: float) -> FloatArray:
-            return dense(unscaled.jacobian(scale * x, t)) * scale
+            # The chain rule: one column an unknown.
+            unscaled_jacobian = dense(unscaled.jacobian(scale * x, t))
+            return unscaled_jacobian * scale
 
         scaled = Path(
             residual=lambda x, t: unscaled.residual(scale * x, t),
@@ -267,6 +277,7 @@ class _Followed:
             message: a sentence for the user; by default that of the outcome.
         """
         outcome = traced.outcome or PathOutcome.MAX_STEPS
+        # Without a point there are no rows, but columns all the same.
         y = np.array([point.y for point in traced.points]).reshape(-1, self.model.size + 1)
         load_factors = y[:, -1]
         smallest_eigenvalue = None
@@ -294,12 +305,16 @@ class _Followed:
     def _value(self) -> FloatArray:
         """The followed input at the load factor 1, shaped as the input."""
         layout = self.model.inputs
-        shape = layout.defaults[layout.names.index(self.name)].shape
-        return self.change[layout.slices[self.name]].reshape(shape, order="F")
+        index = layout.names.index(self.name)
+        shape = layout.defaults[index].shape
+        stacked = self.change[layout.slices[self.name]]
+        return stacked.reshape(shape, order="F")
 
     def _events(self, traced: Trace) -> tuple[PathEvent, ...]:
+        """The events of a trace as those of the path."""
         lengths = np.array([point.length for point in traced.points])
-        return tuple(self._event(event, lengths) for event in traced.events)
+        events = [self._event(event, lengths) for event in traced.events]
+        return tuple(events)
 
     def _event(self, event: Event, lengths: FloatArray) -> PathEvent:
         """An event of the curve as one of the path.
@@ -309,8 +324,15 @@ class _Followed:
             lengths: arclengths of the points of the path, ascending.
         """
         point = event.point
-        position = int(np.searchsorted(lengths, point.length, side="right"))
-        return PathEvent(event.kind, point.load_factor, point.x * self.scale, event.multiplicity, position)
+        # An event that is a point of the path, where a branch leaves, lies before what follows it.
+        position = np.searchsorted(lengths, point.length, side="right")
+        return PathEvent(
+            kind=event.kind,
+            factor=point.load_factor,
+            x=point.x * self.scale,
+            multiplicity=event.multiplicity,
+            position=int(position),
+        )
 
 
 def follow_path(
@@ -342,10 +364,12 @@ def follow_path(
         SceneError: the input is unknown, or a value is refused.
     """
     followed = _followed(model, name, value, values)
-    start = solve(model, model.inputs.unpack(followed.base))
+    values_at_zero = model.inputs.unpack(followed.base)
+    start = solve(model, values_at_zero)
     if not start.converged:
-        no_start = PathOutcome.NO_START
-        return followed.record(Trace([], outcome=no_start), f"{no_start.value} {start.message}")
+        outcome = PathOutcome.NO_START
+        empty = Trace([], outcome=outcome)
+        return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress)
     return followed.record(traced)
@@ -357,13 +381,18 @@ def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str
     Raises:
         SceneError: the input is unknown, or a value is refused.
     """
-    full = model.pack({**(values or {}), name: value})
+    given = dict(values or {})
+    given[name] = value
+    full = model.pack(given)
     base = full.copy()
     base[model.inputs.slices[name]] = 0.0
-    return _Followed(model, name, base, full - base)
+    change = full - base
+    return _Followed(model, name, base, change)
 
 
 def _sentence(outcome: PathOutcome, load_factors: FloatArray) -> str:
     if outcome is PathOutcome.CONVERGED or not len(load_factors):
         return outcome.value
-    return f"{outcome.value} Largest factor reached: {load_factors.max():.6g}; last: {load_factors[-1]:.6g}."
+    largest = load_factors.max()
+    last = load_factors[-1]
+    return f"{outcome.value} Largest factor reached: {largest:.6g}; last: {last:.6g}."

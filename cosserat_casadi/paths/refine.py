@@ -67,12 +67,14 @@ def follow_scene_path(
 
     def follow(model: Model) -> EquilibriumPath:
         if report is not None:
-            intervals = max(discretisation.nodes for discretisation in model.discretisation.values())
+            discretisations = model.discretisation.values()
+            intervals = max(discretisation.nodes for discretisation in discretisations)
             report(f"{model.size} unknowns, {intervals} intervals")
         return follow_path(model, name, value, values, branch=branch, settings=settings, progress=progress)
 
     accuracy = scene.accuracy
-    if accuracy.modes is not None or accuracy.nodes is not None:
+    fixed = accuracy.modes is not None or accuracy.nodes is not None
+    if fixed:
         return follow(build(scene))
     coarse: EquilibriumPath | None = None
     for modes in MODES:
@@ -102,22 +104,34 @@ def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
     fine_kinds = [event.kind for event in fine.events]
     if coarse.outcome is not fine.outcome or coarse_kinds != fine_kinds:
         return float("inf")
-    pairs = list(zip(coarse.events, fine.events, strict=True))
     differences = [0.0]
-    for coarse_event, fine_event in pairs:
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        difference = abs(coarse_event.factor - fine_event.factor)
         scale = max(abs(fine_event.factor), SMALLEST_FACTOR)
-        differences.append(abs(coarse_event.factor - fine_event.factor) / scale)
-    for rod, discrete_rod in coarse.model.discrete.rods.items():
-        moved = []
-        for coarse_event, fine_event in pairs:
-            coarse_tip = coarse.event_tip(coarse_event, rod)
-            fine_tip = fine.event_tip(fine_event, rod)
-            moved.append(coarse_tip.position - fine_tip.position)
-        if coarse.converged:
-            moved.append(coarse.tip(rod).position[-1:] - fine.tip(rod).position[-1:])
-        length = discrete_rod.properties.length
-        differences += [float(np.abs(change).max()) / length for change in moved]
+        differences.append(difference / scale)
+    for rod in coarse.model.discrete.rods:
+        differences += _tip_differences(coarse, fine, rod)
     return max(differences)
+
+
+def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -> list[float]:
+    """Distances of a rod's tips at events and at factor 1, the largest component over the length."""
+    pairs = []
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        coarse_tip = coarse.event_tip(coarse_event, rod)
+        fine_tip = fine.event_tip(fine_event, rod)
+        pairs.append((coarse_tip.position, fine_tip.position))
+    # A path that ends short of factor 1 has no end to compare.
+    if coarse.converged:
+        coarse_tip = coarse.tip(rod)
+        fine_tip = fine.tip(rod)
+        pairs.append((coarse_tip.position[-1], fine_tip.position[-1]))
+    length = coarse.model.discrete.rods[rod].properties.length
+    differences = []
+    for coarse_position, fine_position in pairs:
+        change = np.abs(coarse_position - fine_position)
+        differences.append(float(change.max()) / length)
+    return differences
 
 
 def _largest_turn(path: EquilibriumPath) -> float:
@@ -125,5 +139,11 @@ def _largest_turn(path: EquilibriumPath) -> float:
     count = len(path.factor)
     if not count:
         return 0.0
-    indices = np.unique(np.linspace(0, count - 1, SAMPLES).astype(int))
-    return max(largest_turn(path.solution(int(i))) for i in indices)
+    samples = np.linspace(0, count - 1, SAMPLES)
+    # Short paths have fewer points than samples.
+    indices = np.unique(samples.astype(int))
+    turns = []
+    for index in indices:
+        solution = path.solution(int(index))
+        turns.append(largest_turn(solution))
+    return max(turns)

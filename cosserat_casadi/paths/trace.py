@@ -128,6 +128,7 @@ def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
     passed = [event for event in events or [] if event.point.length <= end.length]
     departure = _departure(traced, passed, abs(leave_at))
     if departure is not None:
+        # What lies beyond the bifurcation on this curve is none of the branch's.
         side = 1
         if leave_at < 0:
             side = -1
@@ -158,11 +159,14 @@ def _end(arc: Arc) -> ArcPoint:
         return arc.end
     # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
     across_loads = np.append(np.zeros_like(near.x), 1.0)
-    corrected = arc.curve.correct(np.append(near.x, 1.0), Plane(across_loads, 1.0))
+    guess = np.append(near.x, 1.0)
+    corrected = arc.curve.correct(guess, Plane(across_loads, 1.0))
     if corrected is None:
         return near
-    exact = np.append(corrected.y[:-1], 1.0)
-    return arc.curve.point(exact, near.tangent, near.length) or near
+    x = corrected.y[:-1]
+    exact = np.append(x, 1.0)
+    point = arc.curve.point(exact, near.tangent, near.length)
+    return point or near
 
 
 def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:
@@ -209,6 +213,7 @@ def _outcome(traced: Trace, step: float, *, bifurcation_missing: bool) -> PathOu
         return PathOutcome.CONVERGED
     if last.load_factor < FARTHEST:
         return PathOutcome.TURNED_BACK
+    # A step may jump over the start itself, and a curve may cross itself there in another direction.
     near_start = float(np.linalg.norm(last.y - first.y)) < step
     same_direction = last.tangent @ first.tangent > 0.0
     if near_start and same_direction and last.length > AWAY * step:
