@@ -28,7 +28,7 @@ SINGULAR = 1e-12
 
 
 @dataclass
-class BroydenJacobian:
+class UpdatedJacobian:
     """The Jacobian B of an earlier iterate and the full steps taken since then.
 
     Attributes:
@@ -56,7 +56,7 @@ class BroydenJacobian:
         Returns:
             the step, shape (n,); None where it is not finite.
         """
-        step = self._updated_solve(residual, self.steps)
+        step = self._apply_inverse(residual, self.steps)
         if step is None or not self.steps:
             return step
         last = self.steps[-1]
@@ -83,10 +83,10 @@ class BroydenJacobian:
             following_step = self.step(residual)
         if following_step is not None:
             steps = [*steps, following_step]
-        change = self._updated_solve(rate, steps)
+        change = self._apply_inverse(rate, steps)
         return _finite_or_none(change)
 
-    def _updated_solve(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
+    def _apply_inverse(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
         """Apply −B⁻¹ and then one update for each pair of neighbouring steps; None where B gives no solution."""
         solution = newton_step(self.jacobian, vector)
         if solution is None:

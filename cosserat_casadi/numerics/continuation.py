@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import BroydenJacobian, Jacobian
+from cosserat_casadi.numerics.broyden import Jacobian, UpdatedJacobian
 from cosserat_casadi.numerics.newton import Equations, NewtonResult, NewtonSettings, length_of, newton
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress
@@ -224,8 +224,8 @@ def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
     """A corrected point with its tangent dx/dt = −(∂g/∂x)⁻¹ ∂g/∂t, by the Jacobian that the correction has left."""
     jacobian = correction.last_jacobian
     if jacobian is None:
-        # The prediction was within the tolerance already: nothing has been linearised.
-        jacobian = BroydenJacobian(path.jacobian(correction.x, t))
+        # The prediction was good enough already: nothing has been linearised.
+        jacobian = UpdatedJacobian(path.jacobian(correction.x, t))
         correction = replace(correction, last_jacobian=jacobian)
     rate = path.rate(correction.x, t)
     tangent = jacobian.response(rate, correction.residual)
@@ -254,9 +254,9 @@ def _predicted_change(path: Path, current: _Point, previous: _Point | None, step
         return linear
     interval = current.t - previous.t
     share = step / interval
-    moved = current.x - previous.x
-    cubic = interval * (current.tangent + previous.tangent) - 2 * moved
-    quadratic = cubic + interval * current.tangent - moved
+    change = current.x - previous.x
+    cubic = interval * (current.tangent + previous.tangent) - 2 * change
+    quadratic = cubic + interval * current.tangent - change
     bent = share**2 * quadratic + share**3 * cubic
     if path.length(bent) <= MOST_BENT * path.length(linear):
         return linear + bent

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import BroydenJacobian, Jacobian
+from cosserat_casadi.numerics.broyden import Jacobian, UpdatedJacobian
 from cosserat_casadi.numerics.outcome import Outcome
 
 SUFFICIENT_DECREASE = 1e-4
@@ -88,7 +88,7 @@ class NewtonResult:
     jacobians: int
     damped: bool
     residual: FloatArray
-    last_jacobian: BroydenJacobian | None
+    last_jacobian: UpdatedJacobian | None
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ class _Iterate:
     x: FloatArray
     residual: FloatArray
     norm: float
-    jacobian: BroydenJacobian | None = None
+    jacobian: UpdatedJacobian | None = None
     reuse_jacobian: bool = False
     inexact_enough: bool = False
     iterations: int = 0
@@ -141,13 +141,13 @@ class _Iterate:
         largest = bound * _scale(self.x)
         return self.norm <= largest
 
-    def linearise(self, equations: Equations) -> BroydenJacobian:
+    def linearise(self, equations: Equations) -> UpdatedJacobian:
         """Form a Jacobian at x, without updates yet."""
-        self.jacobian = BroydenJacobian(equations.jacobian(self.x))
+        self.jacobian = UpdatedJacobian(equations.jacobian(self.x))
         self.jacobians += 1
         return self.jacobian
 
-    def accept(self, trial: _Trial, jacobian: BroydenJacobian, inexact: float) -> None:
+    def accept(self, trial: _Trial, jacobian: UpdatedJacobian, inexact: float) -> None:
         """Move on, and decide whether the Jacobian that gave the step serves for the next one.
 
         Args:

@@ -282,7 +282,7 @@ def test_bad_inputs_are_refused(name: str, value: object, words: str) -> None:
 
 
 def test_progress_grows_to_one() -> None:
-    told: list[float] = []
-    follow_path(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=told.append)
-    assert told[-1] == 1.0
-    assert told == sorted(told)
+    shares: list[float] = []
+    follow_path(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=shares.append)
+    assert shares[-1] == 1.0
+    assert shares == sorted(shares)
