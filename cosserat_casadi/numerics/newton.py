@@ -165,7 +165,7 @@ class _Iterate:
             self.reuse_jacobian = False
             return
         jacobian.steps.append(trial.step)
-        # The next step is foretold to be to this one as the residuals after and before it are to each other.
+        # The next step will be shorter than this one by about as much as the residual has fallen.
         self.inexact_enough = length_of(trial.step) * trial.norm < inexact * norm_before
         decreased = trial.norm <= KEPT_DECREASE * norm_before
         self.reuse_jacobian = decreased and len(jacobian.steps) < KEPT_STEPS

@@ -1,4 +1,4 @@
-"""How a long task reports what share of it is done."""
+"""How a long task tells its caller where it is: the share that is done, and the stage in words."""
 
 from __future__ import annotations
 
@@ -17,4 +17,15 @@ class Progress(Protocol):
 
         Args:
             done: 0 at the start of the task, 1 at its end.
+        """
+
+
+class Report(Protocol):
+    """A callback that a task of several stages calls at the start of each."""
+
+    def __call__(self, stage: str, /) -> None:
+        """Take note of the stage.
+
+        Args:
+            stage: what is being done, a phrase for the user.
         """

@@ -227,6 +227,7 @@ class _Followed:
         """Eigenvalues of the second variation where that has a meaning, else the determinant."""
         if not self.potential:
             return DETERMINANT
+        # Eigenvalues see a double bifurcation too, where the determinant keeps its sign.
         allowed = variations(self.model)
 
         def eigenvalues(jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:
@@ -385,6 +386,7 @@ def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str
     given[name] = value
     full = model.pack(given)
     base = full.copy()
+    # The followed input grows from zero, whatever the scene gives it; all others keep their values.
     base[model.inputs.slices[name]] = 0.0
     change = full - base
     return _Followed(model, name, base, change)

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import ROUNDING, Report, largest_turn
+from cosserat_casadi.accuracy.refine import ROUNDING, largest_turn
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings
-from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.paths.follow import EquilibriumPath, follow_path
 from cosserat_casadi.paths.trace import PathOutcome
 
@@ -75,6 +75,7 @@ def follow_scene_path(
     accuracy = scene.accuracy
     fixed = accuracy.modes is not None or accuracy.nodes is not None
     if fixed:
+        # There is nothing to refine, and so nothing to estimate an error by.
         return follow(build(scene))
     coarse: EquilibriumPath | None = None
     for modes in MODES:
@@ -83,6 +84,7 @@ def follow_scene_path(
             turn = _largest_turn(coarse)
         # Chebyshev interpolation resolves 2 rad in an interval.
         nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
+        # The rotation of highest order: what changes from level to level is the modes' error alone.
         discretisation = discretise(scene, modes, nodes, "magnus8")
         fine = follow(build(scene, discretisation))
         if coarse is not None:

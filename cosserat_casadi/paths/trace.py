@@ -76,6 +76,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) ->
             for the other half of that branch, 0 goes straight on.
         progress: receives the largest load factor reached, in [0, 1].
     """
+    # The start has no point before it: that the load grows decides which way is forward.
     unloaded = np.append(curve.path.start, 0.0)
     growing_load = np.append(np.zeros_like(curve.path.start), 1.0)
     first = curve.point(unloaded, growing_load, 0.0)
@@ -123,6 +124,7 @@ def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
     if events is None and step > SEPARATE:
         return _halved(traced, step, limits.shortest)
 
+    # A step may pass the load factor 1; what lies beyond is not asked for.
     end = _end(arc)
     # In a very short step events that stay together are left out: the path is worth more than they.
     passed = [event for event in events or [] if event.point.length <= end.length]
@@ -194,6 +196,7 @@ def _leave(curve: Curve, traced: Trace, passed: list[Event], side: int) -> None:
     """From the last of these events onto one half of the branch that crosses there."""
     bifurcation = passed[-1]
     traced.events += passed
+    # The branch begins at the bifurcation itself, which belongs to both curves.
     traced.points.append(bifurcation.point)
     first = switch(curve, bifurcation.point, bifurcation.multiplicity, side)
     if first is None:
