@@ -63,7 +63,16 @@ def judge(
         message += f" Load factor reached: {load_factor:.6g}."
     if outcome is not Outcome.CONVERGED:
         message += gap_left(model, inputs, x)
-    solution = Solution(model, inputs, x, outcome, message, norm, iterations, load_factor)
+    solution = Solution(
+        model,
+        inputs,
+        x,
+        outcome,
+        message,
+        residual_norm=norm,
+        iterations=iterations,
+        load_factor=load_factor,
+    )
     if not solution.converged:
         return solution
     return _with_stability(solution)

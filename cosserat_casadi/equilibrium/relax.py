@@ -196,4 +196,12 @@ def _corrected(solution: Solution, x: FloatArray, settings: NewtonSettings) -> S
     full_load = input_path(model, x, inputs, inputs)
     end = newton(full_load.at(1.0), x, settings)
     iterations = solution.iterations + end.iterations
-    return judge(model, inputs, end.x, end.outcome, iterations, 1.0, settings.tolerance)
+    return judge(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        iterations=iterations,
+        load_factor=1.0,
+        tolerance=settings.tolerance,
+    )

@@ -123,8 +123,15 @@ def solve(
         check_potential(model, inputs)
 
     end = _METHODS[method](task)
-    tolerance = limits.newton.tolerance
-    solution = judge(model, inputs, end.x, end.outcome, end.iterations, end.load_factor, tolerance)
+    solution = judge(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        iterations=end.iterations,
+        load_factor=end.load_factor,
+        tolerance=limits.newton.tolerance,
+    )
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if raise_on_failure and not solution.converged:

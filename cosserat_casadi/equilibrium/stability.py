@@ -126,7 +126,7 @@ def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[Floa
     if not hessian.size:
         # Constraints leave nothing to vary.
         return np.zeros(0), np.zeros((len(allowed.free), 0))
-    # Loads without a potential are not asked for; rounding alone makes this one unsymmetric.
+    # The symmetric part decides; at an equilibrium under loads with a potential only rounding is left out.
     symmetric = (hessian + hessian.T) / 2
     eigenvalues, vectors = np.linalg.eigh(symmetric)
     admissible = basis @ vectors / roots[:, None]

@@ -158,13 +158,20 @@ def follow(
     current = _first_point(path, limits)
     start = current.correction
     if start.outcome is not Outcome.CONVERGED:
-        return ContinuationResult(start.x, start.outcome, start.residual_norm, start.iterations, 0.0)
+        return ContinuationResult(
+            x=start.x,
+            outcome=start.outcome,
+            residual_norm=start.residual_norm,
+            iterations=start.iterations,
+            reached=0.0,
+        )
 
     previous: _Point | None = None
     iterations = start.iterations
     step = path.first_step
     for _ in range(limits.steps):
         remaining = 1.0 - current.t
+        # A tangent of zero bounds no step.
         longest = limits.longest / max(path.length(current.tangent), 1e-12)
         step = min(step, remaining, longest)
         if step < min(limits.shortest, remaining):
@@ -187,7 +194,13 @@ def follow(
         if progress is not None:
             progress(target)
         if target == 1.0:
-            return ContinuationResult(trial.x, Outcome.CONVERGED, trial.residual_norm, iterations, 1.0)
+            return ContinuationResult(
+                x=trial.x,
+                outcome=Outcome.CONVERGED,
+                residual_norm=trial.residual_norm,
+                iterations=iterations,
+                reached=1.0,
+            )
         previous = current
         current = _point(path, trial, target)
         if trial.jacobians <= limits.grow_below:

@@ -70,7 +70,15 @@ def follow_scene_path(
             discretisations = model.discretisation.values()
             intervals = max(discretisation.nodes for discretisation in discretisations)
             report(f"{model.size} unknowns, {intervals} intervals")
-        return follow_path(model, name, value, values, branch=branch, settings=settings, progress=progress)
+        return follow_path(
+            model,
+            name,
+            value,
+            values,
+            branch=branch,
+            settings=settings,
+            progress=progress,
+        )
 
     accuracy = scene.accuracy
     fixed = accuracy.modes is not None or accuracy.nodes is not None
