@@ -32,8 +32,9 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.model.unknowns import BlockKind
-from cosserat_casadi.numerics.continuation import ContinuationSettings, Progress
+from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.strain import DiscreteRod
 

@@ -48,7 +48,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.load_cases import read_load_cases, spread
-from cosserat_casadi.numerics.continuation import Progress as Told
+from cosserat_casadi.numerics.progress import Progress as Told
 from cosserat_casadi.paths.follow import EquilibriumPath
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.results.inverse_file import inverse_text

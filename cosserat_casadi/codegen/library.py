@@ -16,8 +16,8 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import OUTCOMES
-from cosserat_casadi.equilibrium.judge import NEAR
-from cosserat_casadi.equilibrium.load_path import first_step, step_shares
+from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
+from cosserat_casadi.equilibrium.load_path import first_step, step_weights
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics import newton
@@ -68,7 +68,7 @@ def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: 
     return {
         **_sizes(model, names),
         **_solver_constants(),
-        "step_share": _step_share(step_shares(model)),
+        "step_share": _step_share(step_weights(model)),
         "first": first_step(model),
         **_texts(),
         **_input_words(model, names),
@@ -114,12 +114,12 @@ def _solver_constants() -> dict[str, Any]:
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "longest": limits.longest,
-        "rough": limits.rough,
+        "rough": limits.inexact,
         "most_bent": MOST_BENT,
         "steps": limits.steps,
-        "quick": limits.quick,
-        "slow": limits.slow,
-        "near": NEAR,
+        "quick": limits.grow_below,
+        "slow": limits.reject_above,
+        "near": MAX_DISTANCE,
         "kept_steps": newton.KEPT_STEPS,
         "kept_decrease": newton.KEPT_DECREASE,
         "singular": SINGULAR,

@@ -1,4 +1,7 @@
-"""From where a method stopped to a solution: one test of residual, resolution and stability for all methods."""
+"""From where a method stopped to a solution: one test of residual, resolution and stability for all methods.
+
+See docs/theory.md, section 9 for residual and stability, section 10 for resolution.
+"""
 
 from __future__ import annotations
 
@@ -8,18 +11,26 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.stability import Stability, admissible_spectrum, judged, second_variation, variations
+from cosserat_casadi.equilibrium.stability import (
+    Stability,
+    admissible_spectrum,
+    second_variation,
+    stability_of,
+    variations,
+)
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length_of, newton, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 
-NEAR = 0.5
+MAX_DISTANCE = 0.5
 """Longest way of the unknowns (2-norm) that a correction may go and still count as the same branch."""
 
+ASIDE = 0.05
+"""Way along a neutral variation on which an equilibrium alike is looked for (2-norm of the unknowns)."""
 
-ASIDE, ASIDE_STEPS = 0.05, 8
-"""Way along a neutral variation on which an equilibrium alike is looked for, and the Newton steps it may take."""
+ASIDE_STEPS = 8
+"""Newton steps that this may take."""
 
 
 def judge(
@@ -31,95 +42,157 @@ def judge(
     load_factor: float,
     tolerance: float,
 ) -> Solution:
-    """The solution that a method's end amounts to: the residual is computed again, the method's word is not taken."""
+    """The solution that a method's end amounts to: its residual is computed again, the method is not believed.
+
+    Args:
+        model: what was solved.
+        inputs: stacked inputs, shape (model.inputs.size,).
+        x: where the method stopped, shape (model.size,).
+        outcome: how the method says that it ended.
+        iterations: Newton steps that it took.
+        load_factor: share of the loads that it reached.
+        tolerance: bound on the relative norm of the residual.
+    """
     residual = column(model.path_residual(x, inputs, 1.0))
     norm = relative_norm(residual, x)
+    # Short of the full load there is no equilibrium of the scene to judge.
     if load_factor == 1.0:
-        outcome = _verdict(model, (x, inputs), outcome, norm, tolerance)
-    message = outcome.value if load_factor == 1.0 else f"{outcome.value} Load factor reached: {load_factor:.6g}."
-    message += "" if outcome is Outcome.CONVERGED else gap_left(model, inputs, x)
-    bare = Solution(model, inputs, x, outcome, message, norm, iterations, load_factor)
-    return _with_stability(bare) if bare.converged else bare
+        outcome = _verdict(model, x, inputs, outcome, norm, tolerance)
+    message = outcome.value
+    if load_factor != 1.0:
+        message += f" Load factor reached: {load_factor:.6g}."
+    if outcome is not Outcome.CONVERGED:
+        message += gap_left(model, inputs, x)
+    solution = Solution(
+        model,
+        inputs,
+        x,
+        outcome,
+        message,
+        residual_norm=norm,
+        iterations=iterations,
+        load_factor=load_factor,
+    )
+    if not solution.converged:
+        return solution
+    return _with_stability(solution)
 
 
 def gap_left(model: Model, inputs: FloatArray, x: FloatArray) -> str:
-    """The widest gap between rods and what they are tied to, as a sentence; empty where nothing is tied."""
-    closing = [placed for placed in model.discrete.constraints if placed.closes_assembly]
+    """The widest gap between rods and what joints tie them to, as a sentence; empty where nothing is tied."""
+    discrete = model.discrete
+    closing = [placed for placed in discrete.constraints if placed.closes_assembly]
     if not closing or not np.all(np.isfinite(x)):
         return ""
-    gaps = column(model.path_residual(x, inputs, 1.0))
-    own = [gaps[model.discrete.multipliers(placed)][: placed.constraint.held.positions.shape[1]] for placed in closing]
-    worst = int(np.argmax([length_of(gap) for gap in own]))
-    share, placed = length_of(own[worst]), closing[worst]
+    residual = column(model.path_residual(x, inputs, 1.0))
+    gaps = []
+    for placed in closing:
+        constraint_residual = residual[discrete.multipliers(placed)]
+        displacements = placed.constraint.held.positions.shape[1]
+        gaps.append(length_of(constraint_residual[:displacements]))
+    # Gaps are relative to the length of the rod; the widest tells where to look.
+    worst = int(np.argmax(gaps))
+    share = gaps[worst]
+    placed = closing[worst]
     metres = share * placed.constraint.rod.length
     return f" The assembly is not closed: {placed.what} is {share:.2g} of its length, {metres:.3g} m, from its place."
 
 
 def _verdict(
-    model: Model, at: tuple[FloatArray, FloatArray], outcome: Outcome, norm: float, tolerance: float
+    model: Model, x: FloatArray, inputs: FloatArray, outcome: Outcome, norm: float, tolerance: float
 ) -> Outcome:
+    """How a solve at the full load has ended."""
     if not np.isfinite(norm):
         return Outcome.NOT_FINITE
     if norm <= tolerance:
-        return Outcome.CONVERGED if float(model.coarseness(*at)) <= 1.0 else Outcome.UNRESOLVED
-    return Outcome.MAX_ITERATIONS if outcome is Outcome.CONVERGED else outcome
+        # Beyond 1 the nodes are too few for the solution to be one of the rod.
+        resolution_index = float(model.coarseness(x, inputs))
+        if resolution_index <= 1.0:
+            return Outcome.CONVERGED
+        return Outcome.UNRESOLVED
+    # The method took for an equilibrium what is none.
+    if outcome is Outcome.CONVERGED:
+        return Outcome.MAX_ITERATIONS
+    return outcome
 
 
 def _with_stability(solution: Solution) -> Solution:
+    """An equilibrium with the verdict on its stability, where its loads have a potential."""
     model = solution.model
     if not model.has_potential(solution.inputs):
         return solution
     jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
-    values, ways = admissible_spectrum(jacobian, variations(model))
-    test = judged(values)
-    critical = test.neutral and not _moves_on(solution, ways[:, np.argsort(np.abs(values))[: test.zero]])
+    eigenvalues, admissible = admissible_spectrum(jacobian, variations(model))
+    stability = stability_of(eigenvalues)
+    critical = False
+    if stability.neutral:
+        smallest_first = np.argsort(np.abs(eigenvalues))
+        neutral = admissible[:, smallest_first[: stability.zero]]
+        critical = not _leads_to_equilibria_alike(solution, neutral)
     return replace(
         solution,
-        smallest_eigenvalue=test.smallest_eigenvalue,
-        stable=test.stable and not critical,
-        message=solution.message + _note(test, critical),
+        smallest_eigenvalue=stability.smallest_eigenvalue,
+        stable=stability.stable and not critical,
+        message=solution.message + _stability_note(stability, critical),
     )
 
 
-def _note(test: Stability, critical: bool) -> str:
+def _stability_note(stability: Stability, critical: bool) -> str:
     """What a user must know of an equilibrium that not every variation costs energy."""
     if critical:
         return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."
-    if test.neutral:
+    if stability.neutral:
         return " It is neutral: the rod can be turned on through equilibria alike without energy."
-    return "" if test.stable else f" It is unstable: {_counted(test.negative)} energy."
+    if stability.stable:
+        return ""
+    if stability.negative == 1:
+        return " It is unstable: a variation releases energy."
+    return f" It is unstable: {stability.negative} independent variations release energy."
 
 
-def _counted(negative: int) -> str:
-    return "a variation releases" if negative == 1 else f"{negative} independent variations release"
-
-
-def _moves_on(solution: Solution, ways: FloatArray) -> bool:
+def _leads_to_equilibria_alike(solution: Solution, neutral: FloatArray) -> bool:
     """Whether each variation that costs no energy, n×k, leads to equilibria alike and not just away from this one."""
-    return all(_alike_beside(solution, way) for way in ways.T)
+    return all(_is_alike_beside(solution, variation) for variation in neutral.T)
 
 
-def _alike_beside(solution: Solution, way: FloatArray) -> bool:
-    model, inputs, x = solution.model, solution.inputs, solution.x
-    start = x.copy()
+def _is_alike_beside(solution: Solution, variation: FloatArray) -> bool:
+    """Whether an equilibrium alike lies a little way along a variation, shape (n,)."""
+    model = solution.model
+    inputs = solution.inputs
     allowed = variations(model)
-    start[allowed.free] += ASIDE * way
-    found = newton(input_path(model, start, inputs, inputs).at(1.0), start, NewtonSettings(iterations=ASIDE_STEPS))
-    if found.outcome is not Outcome.CONVERGED or not ASIDE / 2 <= length_of(found.x - x) <= 2 * ASIDE:
+    start = solution.x.copy()
+    start[allowed.free] += ASIDE * variation
+    full_load = input_path(model, start, inputs, inputs)
+    few_steps = NewtonSettings(iterations=ASIDE_STEPS)
+    beside = newton(full_load.at(1.0), start, few_steps)
+    if beside.outcome is not Outcome.CONVERGED:
         return False
-    jacobian = model.path_jacobian(found.x, inputs, 1.0).full()
+    # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation.
+    distance = length_of(beside.x - solution.x)
+    if not ASIDE / 2 <= distance <= 2 * ASIDE:
+        return False
+    jacobian = model.path_jacobian(beside.x, inputs, 1.0).full()
     return second_variation(jacobian, allowed).neutral
 
 
 def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: NewtonSettings) -> NewtonResult | None:
-    """Newton from unknowns near an equilibrium; None where it does not stay near, so that it may be another branch.
+    """Correct unknowns near an equilibrium by Newton's method.
 
     Args:
         model: what to solve.
         inputs: stacked inputs.
         start: first iterate, shape (size,).
         settings: limits.
+
+    Returns:
+        the solve; None where it does not stay near, so that it may have met another branch.
     """
-    found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
-    strayed = found.damped or length_of(found.x - start) > NEAR
-    return None if found.outcome is not Outcome.CONVERGED or strayed else found
+    full_load = input_path(model, start, inputs, inputs)
+    corrected = newton(full_load.at(1.0), start, settings)
+    if corrected.outcome is not Outcome.CONVERGED or corrected.damped:
+        return None
+    # Newton converges from afar too, but then to any equilibrium.
+    distance = length_of(corrected.x - start)
+    if distance > MAX_DISTANCE:
+        return None
+    return corrected

@@ -1,4 +1,7 @@
-"""Paths that a model offers to a continuation: all loads growing from zero, or inputs changing to others."""
+"""Paths that a model offers to a continuation: all loads growing from zero, or inputs changing to others.
+
+See docs/theory.md, section 9; section 8 for how constraints yield on the way.
+"""
 
 from __future__ import annotations
 
@@ -10,56 +13,100 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.broyden import Jacobian
 from cosserat_casadi.numerics.continuation import Path
 
-FIRST = 0.25
-"""Longest first step where frames move: the springs have fallen to (3/4)³ then."""
+FIRST_STEP = 0.25
+"""Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
 def load_path(model: Model, inputs: FloatArray) -> Path:
-    """From the unloaded scene to the scene, all loads growing together."""
-    none = np.zeros(model.inputs.size)
+    """The path from the unloaded scene to the scene, all loads growing together.
+
+    Args:
+        model: what to solve.
+        inputs: stacked inputs at t = 1, shape (model.inputs.size,).
+    """
+    no_change = np.zeros(model.inputs.size)
+
+    # The load factor is t itself.
+    def residual(x: FloatArray, load_factor: float) -> FloatArray:
+        g = model.path_residual(x, inputs, load_factor)
+        return column(g)
+
+    def jacobian(x: FloatArray, load_factor: float) -> Jacobian:
+        sparse = model.path_jacobian(x, inputs, load_factor)
+        return _solvable(model, sparse)
+
+    def rate(x: FloatArray, load_factor: float) -> FloatArray:
+        load_factor_rate = 1.0
+        dg_dt = model.path_rate(x, inputs, load_factor, no_change, load_factor_rate)
+        return column(dg_dt)
+
     return Path(
-        residual=lambda x, t: column(model.path_residual(x, inputs, t)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, inputs, t)),
-        rate=lambda x, t: column(model.path_rate(x, inputs, t, none, 1.0)),
+        residual,
+        jacobian,
+        rate,
         start=model.unloaded(),
         tangent=column(model.path_tangent(inputs)),
-        shares=step_shares(model),
-        first=first_step(model),
+        step_weights=step_weights(model),
+        first_step=first_step(model),
     )
 
 
 def input_path(model: Model, start: FloatArray, before: FloatArray, after: FloatArray) -> Path:
-    """From an equilibrium of the scene to other inputs, on the straight line between them."""
+    """The path from an equilibrium of the scene to other inputs, on the straight line between them.
+
+    Args:
+        model: what to solve.
+        start: unknowns at or near the equilibrium at t = 0, shape (model.size,).
+        before: stacked inputs at t = 0, shape (model.inputs.size,).
+        after: stacked inputs at t = 1, likewise.
+    """
     change = after - before
+    load_factor = 1.0
 
-    def at(t: float) -> FloatArray:
+    def inputs_at(t: float) -> FloatArray:
         # Exact at both ends, however far apart they are.
-        return (1.0 - t) * before + t * after
+        left = (1.0 - t) * before
+        return left + t * after
 
-    return Path(
-        residual=lambda x, t: column(model.path_residual(x, at(t), 1.0)),
-        jacobian=lambda x, t: _matrix(model, model.path_jacobian(x, at(t), 1.0)),
-        rate=lambda x, t: column(model.path_rate(x, at(t), 1.0, change, 0.0)),
-        start=start,
-        shares=step_shares(model),
-    )
+    def residual(x: FloatArray, t: float) -> FloatArray:
+        g = model.path_residual(x, inputs_at(t), load_factor)
+        return column(g)
+
+    def jacobian(x: FloatArray, t: float) -> Jacobian:
+        sparse = model.path_jacobian(x, inputs_at(t), load_factor)
+        return _solvable(model, sparse)
+
+    def rate(x: FloatArray, t: float) -> FloatArray:
+        load_factor_rate = 0.0
+        dg_dt = model.path_rate(x, inputs_at(t), load_factor, change, load_factor_rate)
+        return column(dg_dt)
+
+    return Path(residual, jacobian, rate, start, step_weights=step_weights(model))
 
 
 def first_step(model: Model) -> float:
-    """Longest first step of the load path: where rods need not fit, the springs (1 − t)³ are no straight line."""
-    return FIRST if model.discrete.frames else 1.0
+    """Longest first step of the load path: where rods need not fit, the compliance (1 − t)³ is no straight line."""
+    if model.discrete.frames:
+        return FIRST_STEP
+    return 1.0
 
 
-def step_shares(model: Model) -> FloatArray:
-    """How much each unknown counts in the length of a step, shape (size,); forces by a share."""
+def step_weights(model: Model) -> FloatArray:
+    """How much each unknown counts in the length of a step, shape (size,): strains and poses by 1, forces otherwise."""
     return model.discrete.unknowns.step_weights
 
 
-def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:
-    """A Jacobian as it is solved with: sparse where ties make an assembly, dense where rods are alone."""
-    return jacobian if model.discrete.is_assembly else np.asarray(jacobian.full())
+def _solvable(model: Model, jacobian: ca.DM) -> Jacobian:
+    """A Jacobian as it is solved with: sparse where joints make an assembly, dense where rods are alone."""
+    if model.discrete.is_assembly:
+        return jacobian
+    return np.asarray(jacobian.full())
 
 
 def column(vector: ca.DM) -> FloatArray:
-    """A CasADi vector as an array, shape (n,)."""
-    return np.asarray(vector.full()[:, 0]) if vector.shape[0] else np.zeros(0)
+    """Convert a CasADi vector to an array, shape (n,)."""
+    if not vector.shape[0]:
+        # CasADi may give an empty vector no column either.
+        return np.zeros(0)
+    array = vector.full()
+    return np.asarray(array[:, 0])

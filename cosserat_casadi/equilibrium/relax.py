@@ -1,14 +1,15 @@
-"""A stable equilibrium where growing the load leads to none: the rod is let go and settles in a minimum of energy.
+"""A stable equilibrium where growing the load leads to none: the rod descends in energy to a minimum.
 
-A free rod is let go where the load path ended, off its saddle. A held rod is drawn to its supports by springs that
-grow from limp to rigid, the loads growing along, and settles anew at every stage: at a bifurcation it leaves for the
-branch of less energy. What it settles in is corrected by Newton's method and judged like any other solution.
+A free rod is released where the load path ended, off its saddle. A held rod is pulled in to its supports by springs
+that grow from limp to rigid, the loads growing along, and relaxes anew at every stage: at a bifurcation it leaves for
+the branch of less energy. What it relaxes to is corrected by Newton's method and judged like any other solution. See
+docs/theory.md, section 9, "Settling".
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,9 +20,9 @@ from cosserat_casadi.equilibrium.stability import admissible_spectrum, variation
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
-from cosserat_casadi.numerics.continuation import Progress
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, descend
 from cosserat_casadi.numerics.newton import NewtonSettings, newton
+from cosserat_casadi.numerics.progress import Progress
 
 SPRINGS = tuple(float(k) for k in 4.0 ** np.arange(-1, 10))
 """Stiffnesses of the springs for supports, stage by stage: EI/ℓ³ for a force, EI/ℓ for a moment."""
@@ -33,99 +34,174 @@ RANDOM_TRIES = 4
 """Further tries, each from a start off the saddle in a random combination of its unstable variations."""
 
 OFF = 0.3
-"""Length of such a perturbation."""
+"""Length of such a perturbation (2-norm of the strain coordinates)."""
 
 PATH_OF_ENERGY = " It was reached by letting the rod settle to less energy, not by growing the load."
+"""What the message of a relaxed solution adds."""
 
 
-def settled(solution: Solution, settings: NewtonSettings, progress: Progress | None = None) -> Solution | None:
-    """A stable equilibrium of the same model and inputs; None if none was found.
+@dataclass(frozen=True)
+class _Try:
+    """One descent.
+
+    Attributes:
+        start: strain coordinates, shape (n,).
+        side: +1 or −1, the side on which a saddle is left.
+    """
+
+    start: FloatArray
+    side: float
+
+
+def relaxed(solution: Solution, settings: NewtonSettings, progress: Progress | None = None) -> Solution | None:
+    """Find a stable equilibrium of the same model and inputs.
 
     Args:
         solution: where the load path ended: an unstable equilibrium, or the last one on the way.
         settings: limits of the final correction.
-        progress: told the share of the tries that is done.
+        progress: receives the share of the tries that is done.
+
+    Returns:
+        the equilibrium; None where no try leads to one.
     """
-    model = solution.model
-    for k, (start, side) in enumerate(_tries(solution)):
-        q = _drawn(solution, start, side) if model.discrete.constraints else _let_go(solution, start, side)
-        found = None if q is None else _corrected(solution, q, settings)
-        if found is not None and found.stable:
-            return replace(found, message=found.message + PATH_OF_ENERGY)
+    tries = len(SIDES) + RANDOM_TRIES
+    for k, attempt in enumerate(_tries(solution)):
+        x = _descended(solution, attempt)
+        if x is not None:
+            corrected = _corrected(solution, x, settings)
+            if corrected.stable:
+                return replace(corrected, message=corrected.message + PATH_OF_ENERGY)
         if progress is not None:
-            progress((k + 1) / (len(SIDES) + RANDOM_TRIES))
+            progress((k + 1) / tries)
     return None
 
 
-def can_settle(model: Model) -> bool:
+def can_relax(model: Model) -> bool:
     """Whether a model's energy is a function of strains alone: no frames move, no cable has a length to keep."""
-    return not model.discrete.is_assembly and not model.discrete.cables
+    discrete = model.discrete
+    return not discrete.is_assembly and not discrete.cables
 
 
-def _tries(solution: Solution) -> Iterator[tuple[FloatArray, float]]:
-    """Starts and sides: from where the path ended to both sides, then from beside it."""
-    n, model = solution.model.discrete.unknowns.count(BlockKind.STRAIN), solution.model
-    q = model.unloaded()[:n] if model.discrete.constraints else solution.x[:n]
+def _tries(solution: Solution) -> Iterator[_Try]:
+    """Both sides from where the path ended, then from beside it."""
+    model = solution.model
+    # A held rod begins without its springs, where only its intrinsic shape is known.
+    unknowns = solution.x
+    if model.discrete.constraints:
+        unknowns = model.unloaded()
+    start = unknowns[: model.discrete.unknowns.count(BlockKind.STRAIN)]
     for side in SIDES:
-        yield q, side
+        yield _Try(start, side)
+
     jacobian = model.path_jacobian(solution.x, solution.inputs, 1.0).full()
-    values, ways = admissible_spectrum(jacobian, variations(model))
-    unstable = ways[:, : max(1, int(np.sum(values < 0.0)))]
+    eigenvalues, admissible = admissible_spectrum(jacobian, variations(model))
+    if not admissible.size:
+        return
+    # Where the path stalled before an instability the lowest variation leads off it.
+    count = max(1, int(np.sum(eigenvalues < 0.0)))
+    unstable = admissible[:, :count]
+    # Seeded, so that a scene relaxes to the same equilibrium every time.
     random = np.random.default_rng(0)
-    for k in range(RANDOM_TRIES if unstable.size else 0):
-        direction = unstable @ random.standard_normal(unstable.shape[1])
-        yield q + OFF * direction / np.linalg.norm(direction), SIDES[k % 2]
+    for k in range(RANDOM_TRIES):
+        shares = random.standard_normal(unstable.shape[1])
+        direction = unstable @ shares
+        beside = start + OFF * direction / np.linalg.norm(direction)
+        side = SIDES[k % 2]
+        yield _Try(beside, side)
 
 
-def _let_go(solution: Solution, start: FloatArray, side: float) -> FloatArray | None:
-    """Unknowns of a free rod that has settled at the full load."""
-    return descend(energy_at(solution.model, solution.inputs, 1.0), start, side, DescentSettings())
+def _descended(solution: Solution, attempt: _Try) -> FloatArray | None:
+    """Unknowns at the minimum that a try leads to; None where it leads to none."""
+    if solution.model.discrete.constraints:
+        return _pulled_in(solution, attempt)
+    return _released(solution, attempt)
 
 
-def _drawn(solution: Solution, start: FloatArray, side: float) -> FloatArray | None:
-    """Unknowns of a held rod, multipliers included, that has settled at every stage of its springs."""
-    model, q = solution.model, start
+def _released(solution: Solution, attempt: _Try) -> FloatArray | None:
+    """Unknowns of a free rod that has relaxed at the full load."""
+    energy = energy_at(solution.model, solution.inputs, 1.0)
+    limits = DescentSettings()
+    return descend(energy, attempt.start, attempt.side, limits)
+
+
+def _pulled_in(solution: Solution, attempt: _Try) -> FloatArray | None:
+    """Unknowns of a held rod, multipliers included, that has relaxed at every stage of its springs."""
+    model = solution.model
+    q = attempt.start
+    load_factor = 0.0
     for spring in SPRINGS:
-        factor = spring / (1.0 + spring)
-        found = descend(energy_at(model, solution.inputs, factor), q, side, DescentSettings())
-        if found is None:
+        # λ gap + (1 − λ) multiplier = 0 is a spring of stiffness λ / (1 − λ).
+        load_factor = spring / (1.0 + spring)
+        energy = energy_at(model, solution.inputs, load_factor)
+        minimum = descend(energy, q, attempt.side, DescentSettings())
+        if minimum is None:
             return None
-        q = found
-    return _with_multipliers(model, solution.inputs, factor, q)
+        # The next stage begins where this one has ended: the springs pull the rod in without a jump.
+        q = minimum
+    return _with_multipliers(model, solution.inputs, load_factor, q)
 
 
-def energy_at(model: Model, inputs: FloatArray, factor: float) -> Energy:
+def energy_at(model: Model, inputs: FloatArray, load_factor: float) -> Energy:
     """Energy of a scene at a load factor, in units of EI/ℓ, as a function of the strain coordinates alone.
 
-    Below factor 1 supports are springs, and their multipliers follow from the gaps.
+    Below the load factor 1 supports are springs, and their multipliers follow from the gaps.
+
+    Args:
+        model: the model.
+        inputs: stacked inputs, shape (model.inputs.size,).
+        load_factor: share of the loads, below 1 where the rod is held.
     """
     n = model.discrete.unknowns.count(BlockKind.STRAIN)
+    strains = slice(0, n)
+    multipliers = slice(n, model.size)
 
     def gradient(q: FloatArray) -> FloatArray:
-        return column(model.path_residual(_with_multipliers(model, inputs, factor, q), inputs, factor))[:n]
+        x = _with_multipliers(model, inputs, load_factor, q)
+        residual = model.path_residual(x, inputs, load_factor)
+        return column(residual)[strains]
 
     def hessian(q: FloatArray) -> FloatArray:
-        x = _with_multipliers(model, inputs, factor, q)
-        jacobian = np.asarray(model.path_jacobian(x, inputs, factor).full())
-        eliminated = jacobian[:n, n:] @ jacobian[n:, :n] / (1.0 - factor) if model.size > n else 0.0
-        return np.asarray(jacobian[:n, :n] - eliminated)
+        x = _with_multipliers(model, inputs, load_factor, q)
+        jacobian = model.path_jacobian(x, inputs, load_factor).full()
+        hessian_of_rods = np.asarray(jacobian[strains, strains])
+        if model.size == n:
+            return hessian_of_rods
+        # Schur complement: the multipliers' own block is (1 − λ) times the identity.
+        force_rates = jacobian[strains, multipliers]
+        gap_rates = jacobian[multipliers, strains]
+        hessian_of_springs = force_rates @ gap_rates / (1.0 - load_factor)
+        return np.asarray(hessian_of_rods - hessian_of_springs)
 
     return Energy(gradient, hessian)
 
 
-def _with_multipliers(model: Model, inputs: FloatArray, factor: float, q: FloatArray) -> FloatArray:
-    """Unknowns with the multipliers that springs exert: (1 − factor) multiplier = −factor gap."""
+def _with_multipliers(model: Model, inputs: FloatArray, load_factor: float, q: FloatArray) -> FloatArray:
+    """Unknowns with the multipliers that springs exert: (1 − λ) multiplier = −λ gap."""
     n = model.discrete.unknowns.count(BlockKind.STRAIN)
     if model.size == n:
         return q
-    x = np.append(q, np.zeros(model.size - n))
-    x[n:] = column(model.path_residual(x, inputs, factor))[n:] / (factor - 1.0)
+    no_multipliers = np.zeros(model.size - n)
+    x = np.append(q, no_multipliers)
+    residual = column(model.path_residual(x, inputs, load_factor))
+    # Without multipliers the equations of the supports read λ gap.
+    scaled_gaps = residual[n:]
+    x[n:] = scaled_gaps / (load_factor - 1.0)
     return x
 
 
 def _corrected(solution: Solution, x: FloatArray, settings: NewtonSettings) -> Solution:
-    """Newton at the full load from what the rod has settled in, judged."""
-    model, inputs = solution.model, solution.inputs
-    found = newton(input_path(model, x, inputs, inputs).at(1.0), x, settings)
-    iterations = solution.iterations + found.iterations
-    return judge(model, inputs, found.x, found.outcome, iterations, 1.0, settings.tolerance)
+    """Newton at the full load from what the rod has relaxed to, judged."""
+    model = solution.model
+    inputs = solution.inputs
+    full_load = input_path(model, x, inputs, inputs)
+    end = newton(full_load.at(1.0), x, settings)
+    iterations = solution.iterations + end.iterations
+    return judge(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        iterations=iterations,
+        load_factor=1.0,
+        tolerance=settings.tolerance,
+    )

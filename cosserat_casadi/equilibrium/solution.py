@@ -1,8 +1,12 @@
-"""What a solve found, with everything one may ask of it."""
+"""The result of a solve: an equilibrium with the poses, strains and wrenches that follow from it.
+
+Fields between the nodes are interpolants through them: docs/theory.md, section 3; the internal wrench: section 6.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -81,7 +85,8 @@ class Solution:
 
     def tip(self, rod: str | None = None) -> Pose:
         """Pose of a rod's tip."""
-        return self.pose(np.array([1.0]), rod)
+        tip = np.array([1.0])
+        return self.pose(tip, rod)
 
     def body(self, name: str | None = None) -> Pose:
         """Pose of a rigid body, as that of one section; the name may be left out where there is one body.
@@ -90,11 +95,18 @@ class Solution:
             KeyError: there is no such body, or there are several to choose from.
         """
         names = list(self.model.body)
-        chosen = names[0] if name is None and len(names) == 1 else name
+        chosen = name
+        if name is None and len(names) == 1:
+            chosen = names[0]
         if chosen not in names:
             raise KeyError(f"{name!r} is not a body of this scene; its bodies are {', '.join(names) or 'none'}")
-        position, quaternion, rotation = (m.full() for m in self.model.body[chosen](self.x, self.inputs))
-        return Pose(position.T, rotation[None], quaternion.T)
+        pose = self.model.body[chosen]
+        position, quaternion, rotation = pose(self.x, self.inputs)
+        return Pose(
+            position=position.full().T,
+            rotation=rotation.full()[None],
+            quaternion=quaternion.full().T,
+        )
 
     def pose(self, X: npt.ArrayLike, rod: str | None = None) -> Pose:
         """Poses at abscissae X in [0, 1]: the interpolant through the nodes.
@@ -104,52 +116,112 @@ class Solution:
             rod: name of the rod; may be left out where there is one.
         """
         name = self.model.rod_name(rod)
-        matrix = self._interpolation(X, name)
-        nodal = self._fields(name)
-        position, quaternion = matrix @ nodal[0].T, matrix @ nodal[1].T
+        fields = self._nodal_fields(name)
+        interpolation = self._interpolation(X, name)
+        position = interpolation @ fields.position.T
+        quaternion = interpolation @ fields.quaternion.T
+        # Between nodes an interpolated quaternion is a unit quaternion to the accuracy of the grid only.
         quaternion /= np.linalg.norm(quaternion, axis=1, keepdims=True)
         return Pose(position, rotations(quaternion), quaternion)
 
     def strain(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Strain ξ = [K; Γ] at abscissae X, shape (k, 6)."""
         name = self.model.rod_name(rod)
-        discrete_rod, columns = self.model.discrete.rods[name], self.model.discrete.unknowns.strain(name)
+        discrete = self.model.discrete
+        discrete_rod = discrete.rods[name]
+        rod_slice = discrete.unknowns.strain(name)
+        # Strains are written per reference length: a rod that is drawn out takes the ratio.
         ratio = self.model.length_ratio(name, self.inputs)
-        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-        strain = discrete_rod.at(ca.DM(self.x[columns]), abscissae, ratio)
-        return ca.DM(strain).full().T
+        abscissae = _abscissae(X)
+        q = ca.DM(self.x[rod_slice])
+        strain = ca.DM(discrete_rod.at(q, abscissae, ratio))
+        return np.asarray(strain.full().T)
 
     def internal_wrench(self, X: npt.ArrayLike, rod: str | None = None) -> FloatArray:
         """Internal wrench Λ = [M; N] of rod and actuators in the sections' frames at abscissae X, (k, 6), N m and N."""
         name = self.model.rod_name(rod)
-        wrench: FloatArray = self._interpolation(X, name) @ self._fields(name)[2].T
-        return wrench
+        fields = self._nodal_fields(name)
+        interpolation = self._interpolation(X, name)
+        wrench = interpolation @ fields.wrench.T
+        return np.asarray(wrench)
 
     def base_wrench(self, rod: str | None = None) -> BaseWrench:
         """Force and moment of the clamp on a rod."""
-        nodal = self._fields(self.model.rod_name(rod))
-        return BaseWrench(nodal[3][:, 0], nodal[4][:, 0])
+        name = self.model.rod_name(rod)
+        fields = self._nodal_fields(name)
+        force = fields.base_force[:, 0]
+        moment = fields.base_moment[:, 0]
+        return BaseWrench(force, moment)
 
     def actuator(self, name: str) -> dict[str, float]:
         """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber."""
         function = self.model.actuator[name]
         values = function(self.x, self.inputs)
-        return {function.name_out(i): float(values[i]) for i in (0, 1)}
+        # The third output, the rate of the conjugate with the unknowns, is for control.
+        effort = float(values[0])
+        conjugate = float(values[1])
+        return {function.name_out(0): effort, function.name_out(1): conjugate}
 
-    def _fields(self, rod: str) -> list[FloatArray]:
-        return [field.full() for field in self.model.fields[rod](self.x, self.inputs)]
+    def _nodal_fields(self, rod: str) -> _NodalFields:
+        """Fields of a rod at its nodes."""
+        function = self.model.fields[rod]
+        outputs = function(self.x, self.inputs)
+        arrays = (output.full() for output in outputs)
+        return _NodalFields(*arrays)
 
     def _interpolation(self, X: npt.ArrayLike, rod: str) -> FloatArray:
-        abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-        return self.model.discrete.rods[rod].grid.interpolation_matrix(abscissae)
+        """Matrix that takes values at the nodes of a rod to abscissae, shape (k, nodes)."""
+        discrete_rod = self.model.discrete.rods[rod]
+        abscissae = _abscissae(X)
+        return discrete_rod.grid.interpolation_matrix(abscissae)
+
+
+class _NodalFields(NamedTuple):
+    """Outputs of ``model.fields``, one column a node, world frame but for the wrench.
+
+    Attributes:
+        position: shape (3, nodes), m.
+        quaternion: world_Q_section, shape (4, nodes).
+        wrench: internal wrench in the sections' frames, shape (6, nodes), N m and N.
+        base_force: of the clamp on the rod, shape (3, 1), N.
+        base_moment: likewise, N m.
+    """
+
+    position: FloatArray
+    quaternion: FloatArray
+    wrench: FloatArray
+    base_force: FloatArray
+    base_moment: FloatArray
+
+
+def _abscissae(X: npt.ArrayLike) -> FloatArray:
+    abscissae = np.asarray(X, dtype=float)
+    return np.atleast_1d(abscissae)
 
 
 def rotations(q: FloatArray) -> FloatArray:
-    """Rotation matrices of unit quaternions, shape (k, 3, 3)."""
+    """Rotation matrices of unit quaternions.
+
+    Args:
+        q: w x y z, shape (k, 4).
+
+    Returns:
+        shape (k, 3, 3).
+    """
     w, x, y, z = q.T
+    xx = x * x
+    yy = y * y
+    zz = z * z
+    xy = x * y
+    xz = x * z
+    yz = y * z
+    wx = w * x
+    wy = w * y
+    wz = w * z
+    # Report (A.15), row by row.
     rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        [1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (xz + wy)],
+        [2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)],
+        [2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)],
     ]
     return np.moveaxis(np.array(rows), -1, 0)

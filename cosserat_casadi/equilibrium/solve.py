@@ -1,4 +1,7 @@
-"""Solve a model: by load continuation, or by CasADi's own solvers, judged by one test of our own."""
+"""Solve a model: by load continuation, or by CasADi's own solvers, judged by one test of our own.
+
+See docs/theory.md, section 9.
+"""
 
 from __future__ import annotations
 
@@ -11,24 +14,64 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
-from cosserat_casadi.equilibrium.relax import can_settle, settled
+from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.continuation import ContinuationSettings, Progress, follow
+from cosserat_casadi.numerics.continuation import ContinuationSettings, follow
+from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
 
-CANNOT_SETTLE = " Assemblies and cables of given length cannot be let settle to less energy."
+CANNOT_RELAX = " Assemblies and cables of given length cannot be let settle to less energy."
+"""What the message of a solution adds where relaxing is not offered."""
+
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
+"""What the message of a solution adds where no try led to a stable equilibrium."""
 
 Start = Solution | FloatArray | None
 """Where a solve starts: a solution, unknowns, or the unloaded rod."""
 
 
 @dataclass(frozen=True)
+class _Task:
+    """What a method is given.
+
+    Attributes:
+        model: what to solve.
+        inputs: stacked inputs, shape (model.inputs.size,).
+        start: where to start.
+        limits: limits of the continuation.
+        progress: receives the share of the path that is done.
+    """
+
+    model: Model
+    inputs: FloatArray
+    start: Start
+    limits: ContinuationSettings
+    progress: Progress | None
+
+    @property
+    def first_iterate(self) -> FloatArray:
+        """Unknowns that the start stands for, shape (n,)."""
+        if self.start is None:
+            return self.model.unloaded()
+        if isinstance(self.start, Solution):
+            return self.start.x
+        return self.start
+
+
+@dataclass(frozen=True)
 class _End:
-    """Where a method stopped, before it is judged."""
+    """Where a method stopped, before it is judged.
+
+    Attributes:
+        x: unknowns, shape (model.size,).
+        outcome: how the method says that it ended.
+        iterations: Newton steps that it took.
+        load_factor: share of the loads that it reached.
+    """
 
     x: FloatArray
     outcome: Outcome
@@ -58,9 +101,9 @@ def solve(
         method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
             at the full load and may find another branch, or none.
         stable: whether a stable equilibrium is wanted: where the method ends at an unstable one, or at none, the rod
-            is let go and settles in a minimum of its energy. For loads that have one.
+            relaxes to a minimum of its energy. For loads that have one.
         settings: limits of the continuation.
-        progress: told the share of the path that is done.
+        progress: receives the share of the path that is done.
         raise_on_failure: raise instead of returning what did not converge.
 
     Raises:
@@ -69,15 +112,26 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     inputs = model.pack(values)
-    if start is not None and len(_unknowns(model, start)) != model.size:
-        raise ValueError(f"the start has {len(_unknowns(model, start))} unknowns, the model {model.size}")
+    limits = settings or ContinuationSettings()
+    task = _Task(model, inputs, start, limits, progress)
+    unknowns = len(task.first_iterate)
+    if unknowns != model.size:
+        raise ValueError(f"the start has {unknowns} unknowns, the model {model.size}")
     if method not in _METHODS:
         raise ValueError(f"method is one of {', '.join(_METHODS)}, got {method!r}")
     if stable:
         check_potential(model, inputs)
-    limits = settings or ContinuationSettings()
-    end = _METHODS[method](model, inputs, start, limits, progress)
-    solution = judge(model, inputs, end.x, end.outcome, end.iterations, end.load_factor, limits.newton.tolerance)
+
+    end = _METHODS[method](task)
+    solution = judge(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        iterations=end.iterations,
+        load_factor=end.load_factor,
+        tolerance=limits.newton.tolerance,
+    )
     if stable and not solution.stable:
         solution = stabilised(solution, limits, progress)
     if raise_on_failure and not solution.converged:
@@ -97,82 +151,93 @@ def check_potential(model: Model, inputs: FloatArray) -> None:
 
 
 def stabilised(solution: Solution, limits: ContinuationSettings, progress: Progress | None = None) -> Solution:
-    """A stable equilibrium in place of a solution that is none; without one the solution, and its message says so."""
+    """Replace a solution that is not stable by a stable one.
+
+    Args:
+        solution: where a method ended.
+        limits: limits of the continuation, whose Newton settings bound the final correction.
+        progress: receives the share of the tries that is done.
+
+    Returns:
+        a stable equilibrium; where none can be reached the solution, and its message says so.
+    """
     if solution.outcome in (Outcome.NOT_FINITE, Outcome.UNRESOLVED):
         return solution
-    if not can_settle(solution.model):
-        return replace(solution, message=solution.message + CANNOT_SETTLE)
-    found = settled(solution, limits.newton, progress)
-    return replace(solution, message=solution.message + NONE_STABLE) if found is None else found
+    if not can_relax(solution.model):
+        return replace(solution, message=solution.message + CANNOT_RELAX)
+    stable = relaxed(solution, limits.newton, progress)
+    if stable is None:
+        return replace(solution, message=solution.message + NONE_STABLE)
+    return stable
 
 
-def _continuation(
-    model: Model,
-    inputs: FloatArray,
-    start: Start,
-    limits: ContinuationSettings,
-    progress: Progress | None,
-) -> _End:
-    if isinstance(start, Solution):
-        path = input_path(model, start.x, start.inputs, inputs)
+def _continuation(task: _Task) -> _End:
+    """From a solution along its inputs, from unknowns by Newton, else along the load path."""
+    if isinstance(task.start, Solution):
+        path = input_path(task.model, task.start.x, task.start.inputs, task.inputs)
     else:
-        near = None if start is None or not np.any(start) else correct(model, inputs, start, limits.newton)
-        if near is not None:
-            return _End(near.x, near.outcome, near.iterations)
-        path = load_path(model, inputs)
-    result = follow(path, limits, progress)
+        corrected = _corrected_guess(task)
+        if corrected is not None:
+            return _End(corrected.x, corrected.outcome, corrected.iterations)
+        path = load_path(task.model, task.inputs)
+    result = follow(path, task.limits, task.progress)
     return _End(result.x, result.outcome, result.iterations, result.reached)
 
 
-def _unknowns(model: Model, start: Start) -> FloatArray:
-    if start is None:
-        return model.unloaded()
-    return start.x if isinstance(start, Solution) else start
+def _corrected_guess(task: _Task) -> NewtonResult | None:
+    """Newton from unknowns that were given; None where none were, or where it strays."""
+    if task.start is None or isinstance(task.start, Solution):
+        return None
+    # Zero unknowns are the unloaded rod: no guess to be tried.
+    if not np.any(task.start):
+        return None
+    return correct(task.model, task.inputs, task.start, task.limits.newton)
 
 
-def _rootfinder(
-    model: Model,
-    inputs: FloatArray,
-    start: Start,
-    limits: ContinuationSettings,
-    progress: Progress | None,
-) -> _End:
+def _rootfinder(task: _Task) -> _End:
+    """CasADi's Newton at the full load; what it says of its success is not asked for."""
+    newton = task.limits.newton
     options = {
-        "abstol": limits.newton.tolerance,
-        "max_iter": limits.newton.iterations,
+        "abstol": newton.tolerance,
+        "max_iter": newton.iterations,
         "error_on_fail": False,
-        "jacobian_function": model.jacobian,
+        "jacobian_function": task.model.jacobian,
     }
-    finder = ca.rootfinder("finder", "newton", model.residual, options)
-    x = finder(_unknowns(model, start), inputs).full()[:, 0]
-    return _End(x, Outcome.MAX_ITERATIONS, int(finder.stats()["iter_count"]))
+    finder = ca.rootfinder("finder", "newton", task.model.residual, options)
+    root = finder(task.first_iterate, task.inputs)
+    iterations = int(finder.stats()["iter_count"])
+    # Where the residual is small all the same, the judge says so.
+    return _End(root.full()[:, 0], Outcome.MAX_ITERATIONS, iterations)
 
 
-def _nlpsol(
-    model: Model,
-    inputs: FloatArray,
-    start: Start,
-    limits: ContinuationSettings,
-    progress: Progress | None,
-) -> _End:
-    x, p = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
-    problem = {"x": x, "p": p, "f": ca.MX(0), "g": model.residual(x, p)}
-    options = {
-        "print_time": False,
-        "error_on_fail": False,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": limits.newton.tolerance,
-            "constr_viol_tol": limits.newton.tolerance,
-        },
+def _nlpsol(task: _Task) -> _End:
+    """Ipopt at the full load on a problem without an objective, the residual as its constraints."""
+    model = task.model
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    problem = {
+        "x": x,
+        "p": inputs,
+        "f": ca.MX(0),
+        "g": model.residual(x, inputs),
     }
+    tolerance = task.limits.newton.tolerance
+    ipopt = {
+        "print_level": 0,
+        "sb": "yes",
+        "tol": tolerance,
+        "constr_viol_tol": tolerance,
+    }
+    options = {"print_time": False, "error_on_fail": False, "ipopt": ipopt}
     solver = ca.nlpsol("solver", "ipopt", problem, options)
-    found = solver(x0=_unknowns(model, start), p=inputs, lbg=0, ubg=0)
-    return _End(found["x"].full()[:, 0], Outcome.MAX_ITERATIONS, int(solver.stats()["iter_count"]))
+    optimum = solver(x0=task.first_iterate, p=task.inputs, lbg=0, ubg=0)
+    solution = optimum["x"].full()[:, 0]
+    iterations = int(solver.stats()["iter_count"])
+    # Where the residual is small all the same, the judge says so.
+    return _End(solution, Outcome.MAX_ITERATIONS, iterations)
 
 
-_METHODS: dict[str, Callable[[Model, FloatArray, Start, ContinuationSettings, Progress | None], _End]] = {
+_METHODS: dict[str, Callable[[_Task], _End]] = {
     "continuation": _continuation,
     "rootfinder": _rootfinder,
     "nlpsol": _nlpsol,

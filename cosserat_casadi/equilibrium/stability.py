@@ -1,4 +1,8 @@
-"""Stability of an equilibrium under loads that derive from a potential: the sign of the second variation."""
+"""Stability of an equilibrium under loads that derive from a potential: the sign of the second variation.
+
+See docs/theory.md, section 9. The reduction to admissible variations is the null-space method: J. Nocedal, S. J.
+Wright, *Numerical Optimization*, 2nd ed., Springer 2006, section 16.2.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +14,20 @@ import numpy.typing as npt
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
+ZERO = 1e-10
+"""An eigenvalue below this share of the largest, or of EI/ℓ where that is more, is zero to rounding."""
+
+DEPENDENT = 1e-12
+"""A singular value of the constraints below this share of the largest says that one of them repeats others."""
+
 
 @dataclass(frozen=True)
 class Variations:
     """Which unknowns vary freely, and which equations restrict them.
 
     Attributes:
-        free: places of strain coordinates and of moving frames, shape (n,).
-        held: places of multipliers, whose equations are the gaps of supports and ties, shape (m,).
+        free: indices of the unknowns that may vary, strain coordinates and poses of floating frames, shape (n,).
+        held: indices of the multipliers, whose equations are the constraints, shape (m,).
         units: energy that the equation of each free unknown is divided by, shape (n,), J.
     """
 
@@ -27,15 +37,11 @@ class Variations:
 
 
 def variations(model: Model) -> Variations:
-    """Variations of a model."""
-    discrete = model.discrete
-    differential = discrete.unknowns.differential
-    free = np.flatnonzero(differential)
-    return Variations(free, np.flatnonzero(~differential), discrete.unknowns.units[free])
-
-
-ZERO = 1e-10
-"""An eigenvalue below this share of the largest, or of EI/ℓ where that is more, is zero to rounding."""
+    """Sort a model's unknowns into those that vary and those that restrict."""
+    unknowns = model.discrete.unknowns
+    free = np.flatnonzero(unknowns.differential)
+    held = np.flatnonzero(~unknowns.differential)
+    return Variations(free, held, unknowns.units[free])
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,8 @@ class Stability:
     @property
     def neutral(self) -> bool:
         """Whether some variation costs no energy while none releases any."""
-        return self.zero > 0 and not self.negative
+        some_cost_none = self.zero > 0
+        return some_cost_none and not self.negative
 
     @property
     def stable(self) -> bool:
@@ -67,13 +74,13 @@ class Stability:
 
 
 def second_variation(jacobian: FloatArray, allowed: Variations) -> Stability:
-    """Eigenvalue test of an equilibrium.
+    """Test an equilibrium by the eigenvalues of its second variation.
 
     Args:
         jacobian: of the whole system at the equilibrium, (n + m)×(n + m).
-        allowed: what varies; only variations in the null space of the linearised gaps are admissible.
+        allowed: what varies; only variations in the null space of the linearised constraints are admissible.
     """
-    return judged(admissible_eigenvalues(jacobian, allowed))
+    return stability_of(admissible_eigenvalues(jacobian, allowed))
 
 
 def admissible_eigenvalues(jacobian: FloatArray, allowed: Variations) -> FloatArray:
@@ -96,31 +103,59 @@ def admissible_spectrum(jacobian: FloatArray, allowed: Variations) -> tuple[Floa
         jacobian: as in :func:`second_variation`.
         allowed: as there.
     """
-    hessian = jacobian[np.ix_(allowed.free, allowed.free)]
-    constraints = jacobian[np.ix_(allowed.held, allowed.free)]
-    # A slack cable asks nothing of the rod: its equation is about its tension alone.
-    constraints = constraints[
-        np.abs(constraints).max(axis=1, initial=0.0) > np.abs(np.diagonal(jacobian)[allowed.held])
-    ]
-    roots = np.sqrt(allowed.units / allowed.units.max(initial=0.0))
+    block = np.ix_(allowed.free, allowed.free)
+    hessian = jacobian[block]
+    constraints = _active_constraints(jacobian, allowed)
+    largest_unit = allowed.units.max(initial=0.0)
+    roots = np.sqrt(allowed.units / largest_unit)
+    # Rods of one energy unit need no scaling, and keep their digits.
     if len(set(allowed.units)) > 1:
-        hessian, constraints = roots[:, None] * hessian / roots, constraints / roots
-    free = np.eye(len(allowed.free))
+        hessian = roots[:, None] * hessian / roots
+        constraints = constraints / roots
+    basis = np.eye(len(allowed.free))
     if len(constraints):
-        _, singular, basis = np.linalg.svd(constraints)
-        rank = int(np.sum(singular > 1e-12 * singular[0]))
-        free = basis[rank:].T
-        hessian = free.T @ hessian @ free
+        basis = _null_space(constraints)
+        hessian = basis.T @ hessian @ basis
     if not hessian.size:
+        # Constraints leave nothing to vary.
         return np.zeros(0), np.zeros((len(allowed.free), 0))
-    values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
-    return np.asarray(values), np.asarray(free @ vectors / roots[:, None])
+    # The symmetric part decides; at an equilibrium under loads with a potential only rounding is left out.
+    symmetric = (hessian + hessian.T) / 2
+    eigenvalues, vectors = np.linalg.eigh(symmetric)
+    admissible = basis @ vectors / roots[:, None]
+    return np.asarray(eigenvalues), np.asarray(admissible)
 
 
-def judged(eigenvalues: FloatArray) -> Stability:
-    """What eigenvalues of the second variation, ascending, say."""
+def _active_constraints(jacobian: FloatArray, allowed: Variations) -> FloatArray:
+    """Linearised constraints that restrict the variations, one a row."""
+    block = np.ix_(allowed.held, allowed.free)
+    constraints = jacobian[block]
+    largest = np.abs(constraints).max(axis=1, initial=0.0)
+    # A slack cable asks nothing of the rod: its equation is about its tension alone.
+    diagonal = np.diagonal(jacobian)
+    own = np.abs(diagonal[allowed.held])
+    active: FloatArray = constraints[largest > own]
+    return active
+
+
+def _null_space(constraints: FloatArray) -> FloatArray:
+    """Orthonormal basis of the variations that keep constraints, one a column."""
+    _, singular, rows = np.linalg.svd(constraints)
+    independent = singular > DEPENDENT * singular[0]
+    rank = int(np.sum(independent))
+    return np.asarray(rows[rank:].T)
+
+
+def stability_of(eigenvalues: FloatArray) -> Stability:
+    """What eigenvalues of the second variation, ascending, mean."""
     if not eigenvalues.size:
         return Stability(np.inf)
-    rounding = ZERO * max(1.0, float(np.abs(eigenvalues).max()))
-    zero = int(np.sum(np.abs(eigenvalues) <= rounding))
-    return Stability(float(eigenvalues[0]), int(np.sum(eigenvalues < -rounding)), zero)
+    sizes = np.abs(eigenvalues)
+    rounding = ZERO * max(1.0, float(sizes.max()))
+    negative = eigenvalues < -rounding
+    zero = sizes <= rounding
+    return Stability(
+        smallest_eigenvalue=float(eigenvalues[0]),
+        negative=int(np.sum(negative)),
+        zero=int(np.sum(zero)),
+    )

@@ -1,8 +1,8 @@
 """One step along a curve of equilibria: tangent predictor, bordered Newton corrector, pseudo-arclength.
 
-The unknowns x and the load factor are one vector y = (x, factor); g(y) = 0 is a curve in n + 1 dimensions, and a fold
-in the factor is a point like any other: H. B. Keller, *Numerical solution of bifurcation and nonlinear eigenvalue
-problems*, in P. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press 1977.
+The unknowns x and the load factor λ are one vector y = (x, λ); g(y) = 0 is a curve in n + 1 dimensions, and a fold in
+λ is a point like any other: H. B. Keller, *Numerical solution of bifurcation and nonlinear eigenvalue problems*, in
+P. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press 1977. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -20,36 +20,39 @@ from cosserat_casadi.numerics.newton import relative_norm
 SINGULAR = 1e-9
 """A singular value below this share of the largest is zero to rounding."""
 
+STILL_HELPS = 0.5
+"""Share of the residual that a step below the tolerance may leave and count as a help."""
+
 
 @dataclass(frozen=True)
 class ArcSettings:
-    """Limits of a path in arclength; x counts in its 2-norm, about one radian of bending a unit, the factor as it is.
+    """Limits of a path in arclength; x counts in its 2-norm, about one radian of bending a unit, λ as it is.
 
     Attributes:
         first: first step.
         longest: longest step.
-        share: largest change of the factor in a step.
+        load_factor_change: largest change of λ in a step.
         shortest: step below which the path counts as stalled.
         steps: most steps, taken or refused.
         tolerance: bound on the relative norm of the residual.
         aim: norm at which a correction stops; between it and the tolerance steps go on while they help.
-        quick: corrections after which the next step grows.
-        slow: corrections beyond which a step is refused.
-        bend: smallest cosine between the tangents at the ends of a step.
-        stray: largest correction relative to the step.
+        grow_below: corrections up to which the next step grows.
+        reject_above: corrections beyond which a step is refused.
+        min_cosine: smallest cosine between the tangents at the ends of a step.
+        max_distance: longest way from prediction to correction, relative to the step.
     """
 
     first: float = 0.02
     longest: float = 0.25
-    share: float = 0.1
+    load_factor_change: float = 0.1
     shortest: float = 1e-7
     steps: int = 2000
     tolerance: float = 1e-11
     aim: float = 1e-13
-    quick: int = 4
-    slow: int = 8
-    bend: float = 0.95
-    stray: float = 0.3
+    grow_below: int = 4
+    reject_above: int = 8
+    min_cosine: float = 0.95
+    max_distance: float = 0.3
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class ArcPoint:
     """A point of the curve.
 
     Attributes:
-        y: unknowns and factor, shape (n + 1,).
+        y: unknowns and load factor, shape (n + 1,).
         tangent: of length one, in the direction of travel, shape (n + 1,).
         length: arclength from the start of the curve, steps added up.
         spectrum: the monitor's values, ascending.
@@ -87,13 +90,13 @@ class ArcPoint:
         return self.y[:-1]
 
     @property
-    def factor(self) -> float:
-        """Load factor."""
+    def load_factor(self) -> float:
+        """Load factor λ."""
         return float(self.y[-1])
 
     @property
-    def factor_rate(self) -> float:
-        """The d(factor)/d(arclength); zero at a limit point."""
+    def load_factor_rate(self) -> float:
+        """Rate dλ/ds with the arclength; zero at a limit point."""
         return float(self.tangent[-1])
 
 
@@ -111,11 +114,37 @@ class Plane:
 
 
 @dataclass(frozen=True)
+class Correction:
+    """A point of the curve that Newton's method has led to.
+
+    Attributes:
+        y: unknowns and load factor, shape (n + 1,).
+        steps: steps that it took.
+    """
+
+    y: FloatArray
+    steps: int
+
+
+@dataclass(frozen=True)
+class Advance:
+    """A step along the curve that was taken.
+
+    Attributes:
+        point: where it leads.
+        corrections: steps of its correction.
+    """
+
+    point: ArcPoint
+    corrections: int
+
+
+@dataclass(frozen=True)
 class Curve:
     """A path with what is watched along it.
 
     Attributes:
-        path: equations that depend on a factor.
+        path: equations that depend on a load factor.
         monitor: what is watched.
         settings: limits.
     """
@@ -125,13 +154,18 @@ class Curve:
     settings: ArcSettings
 
     def residual(self, y: FloatArray) -> FloatArray:
-        """The g(y), shape (n,)."""
-        return self.path.residual(y[:-1], float(y[-1]))
+        """Residual g(y), shape (n,)."""
+        x = y[:-1]
+        load_factor = float(y[-1])
+        return self.path.residual(x, load_factor)
 
     def derivative(self, y: FloatArray) -> FloatArray:
-        """∂g/∂y, shape (n, n + 1)."""
-        x, factor = y[:-1], float(y[-1])
-        return np.column_stack([dense(self.path.jacobian(x, factor)), self.path.rate(x, factor)])
+        """Derivative ∂g/∂y, shape (n, n + 1)."""
+        x = y[:-1]
+        load_factor = float(y[-1])
+        jacobian = dense(self.path.jacobian(x, load_factor))
+        rate = self.path.rate(x, load_factor)
+        return np.column_stack([jacobian, rate])
 
     def point(self, y: FloatArray, direction: FloatArray, length: float) -> ArcPoint | None:
         """The point at y, its tangent on the side of a direction; None where a number is not finite."""
@@ -139,43 +173,80 @@ class Curve:
         tangent = tangent_along(derivative, direction)
         if tangent is None:
             return None
-        spectrum = self.monitor.values(derivative[:, :-1], np.vstack([derivative, tangent]))
+        jacobian = derivative[:, :-1]
+        bordered = np.vstack([derivative, tangent])
+        spectrum = self.monitor.values(jacobian, bordered)
         return ArcPoint(y, tangent, length, spectrum)
 
-    def correct(self, start: FloatArray, plane: Plane) -> tuple[FloatArray, int] | None:
-        """Where the curve meets a plane near a start, and the steps it took; None where Newton does not converge.
+    def correct(self, start: FloatArray, plane: Plane) -> Correction | None:
+        """Find where the curve meets a plane near a start.
 
         Steps of minimum norm: along a direction in which the equations are neutral nothing moves.
+
+        Args:
+            start: shape (n + 1,).
+            plane: where to meet it.
+
+        Returns:
+            the point; None where Newton's method does not converge.
         """
-        y, before, norm = start, np.inf, np.inf
-        for steps in range(self.settings.slow + 1):
-            residual = np.append(self.residual(y), plane.normal @ y - plane.level)
+        limits = self.settings
+        y = start
+        norm = np.inf
+        norm_before = np.inf
+        for steps in range(limits.reject_above + 1):
+            off_plane = plane.normal @ y - plane.level
+            residual = np.append(self.residual(y), off_plane)
             norm = relative_norm(residual, y)
-            done = norm <= self.settings.tolerance
             if not np.isfinite(norm):
                 return None
-            if norm <= self.settings.aim or (done and norm > 0.5 * before):
-                return y, steps
-            step = _shortest_step(np.vstack([self.derivative(y), plane.normal]), residual)
+            within_tolerance = norm <= limits.tolerance
+            # Below the tolerance a step that no longer halves the residual is at rounding.
+            helps_no_more = within_tolerance and norm > STILL_HELPS * norm_before
+            if norm <= limits.aim or helps_no_more:
+                return Correction(y, steps)
+            bordered = np.vstack([self.derivative(y), plane.normal])
+            step = _shortest_step(bordered, residual)
             if step is None:
                 return None
-            y, before = y + step, norm
-        return (y, self.settings.slow) if norm <= self.settings.tolerance else None
+            y = y + step
+            norm_before = norm
+        if norm > limits.tolerance:
+            return None
+        return Correction(y, limits.reject_above)
 
-    def bounded(self, here: ArcPoint, step: float) -> float:
+    def bounded(self, current: ArcPoint, step: float) -> float:
         """A step, cut to what the settings allow at a point."""
-        return min(step, self.settings.longest, self.settings.share / max(abs(here.factor_rate), 1e-3))
+        limits = self.settings
+        # Near a limit point λ stands still and bounds nothing.
+        rate = max(abs(current.load_factor_rate), 1e-3)
+        within_load = limits.load_factor_change / rate
+        return min(step, limits.longest, within_load)
 
-    def advance(self, here: ArcPoint, step: float) -> tuple[ArcPoint, int] | None:
-        """The next point, one step on, and the corrections it took; None where it may lie on another branch."""
-        predicted = here.y + step * here.tangent
-        found = self.correct(predicted, Plane(here.tangent, float(here.tangent @ predicted)))
-        if found is None or np.linalg.norm(found[0] - predicted) > self.settings.stray * step:
+    def advance(self, current: ArcPoint, step: float) -> Advance | None:
+        """Take one step; None where it may lead to another branch."""
+        predicted = current.y + step * current.tangent
+        corrected = self.correct(predicted, plane_through(predicted, current.tangent))
+        if corrected is None:
             return None
-        there = self.point(found[0], here.tangent, here.length + step)
-        if there is None or there.tangent @ here.tangent < self.settings.bend:
+        distance = np.linalg.norm(corrected.y - predicted)
+        # So far from the prediction the corrected point may lie on another branch.
+        if distance > self.settings.max_distance * step:
             return None
-        return there, found[1]
+        point = self.point(corrected.y, current.tangent, current.length + step)
+        if point is None:
+            return None
+        cosine = point.tangent @ current.tangent
+        # Round a corner events would be passed unseen.
+        if cosine < self.settings.min_cosine:
+            return None
+        return Advance(point, corrected.steps)
+
+
+def plane_through(y: FloatArray, normal: FloatArray) -> Plane:
+    """The hyperplane through a point across a vector, both of shape (n + 1,)."""
+    level = normal @ y
+    return Plane(normal, float(level))
 
 
 def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray | None:
@@ -187,13 +258,18 @@ def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray |
     Args:
         derivative: shape (n, n + 1).
         direction: shape (n + 1,).
+
+    Returns:
+        shape (n + 1,); None where a number is not finite, or the direction is across the null space.
     """
     basis = null_space(derivative)
     if basis is None:
         return None
     projected = basis @ (basis.T @ direction)
-    size = float(np.linalg.norm(projected))
-    return projected / size if size > 0.0 else None
+    length = float(np.linalg.norm(projected))
+    if not length > 0.0:
+        return None
+    return projected / length
 
 
 def null_space(derivative: FloatArray) -> FloatArray | None:
@@ -201,8 +277,9 @@ def null_space(derivative: FloatArray) -> FloatArray | None:
     if not np.all(np.isfinite(derivative)):
         return None
     _, singular, rows = np.linalg.svd(derivative)
-    largest = float(singular[0]) if len(singular) else 0.0
-    rank = int(np.sum(singular > SINGULAR * max(largest, 1e-300)))
+    largest = float(singular.max(initial=0.0))
+    rounding = SINGULAR * max(largest, 1e-300)
+    rank = int(np.sum(singular > rounding))
     return np.asarray(rows[rank:].T)
 
 
@@ -210,5 +287,8 @@ def _shortest_step(matrix: FloatArray, residual: FloatArray) -> FloatArray | Non
     """Newton's step; singular values at rounding are left out, so that a neutral direction is not moved along."""
     if not np.all(np.isfinite(matrix)):
         return None
-    step = np.asarray(np.linalg.lstsq(matrix, -residual, rcond=SINGULAR)[0])
-    return step if np.all(np.isfinite(step)) else None
+    solution = np.linalg.lstsq(matrix, -residual, rcond=SINGULAR)[0]
+    step = np.asarray(solution)
+    if not np.all(np.isfinite(step)):
+        return None
+    return step

@@ -1,4 +1,9 @@
-"""A Jacobian that is kept: Broyden's rank-one updates carry it from one iterate to the next."""
+"""Broyden's method: a factorised Jacobian that serves several steps, corrected by rank-one updates.
+
+C. G. Broyden, *A class of methods for solving nonlinear simultaneous equations*, Mathematics of Computation 19 (1965)
+577–593. The updates are never formed: their inverse is applied from the steps alone, after C. T. Kelley, *Iterative
+Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3. See docs/theory.md, section 9.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +28,12 @@ SINGULAR = 1e-12
 
 
 @dataclass
-class Secant:
-    """A Jacobian of an earlier iterate and the full steps taken since then.
-
-    The inverse of Broyden's update is applied from the steps alone: C. T. Kelley, *Iterative Methods for Linear and
-    Nonlinear Equations*, SIAM 1995, section 7.3.
+class UpdatedJacobian:
+    """The Jacobian B of an earlier iterate and the full steps taken since then.
 
     Attributes:
         jacobian: Jacobian where the first step began.
-        steps: the steps since, each the full one that :meth:`step` gave, shape (n,).
+        steps: the steps s₀, s₁, … since, each the full one that :meth:`step` gave, shape (n,).
     """
 
     jacobian: Jacobian
@@ -40,47 +42,73 @@ class Secant:
     @property
     def finite(self) -> bool:
         """Whether every entry of the Jacobian is a finite number."""
-        entries = self.jacobian.nonzeros() if isinstance(self.jacobian, ca.DM) else self.jacobian
+        entries = self.jacobian
+        if isinstance(entries, ca.DM):
+            entries = entries.nonzeros()
         return bool(np.all(np.isfinite(entries)))
 
     def step(self, residual: FloatArray) -> FloatArray | None:
-        """Minus the inverse of the updated Jacobian times a vector of shape (n,); None where it is not finite."""
-        z = self._through(residual, self.steps)
-        if z is None or not self.steps:
-            return z
+        """The quasi-Newton step −B⁻¹ g with all updates.
+
+        Args:
+            residual: g at the iterate that the last step led to, shape (n,).
+
+        Returns:
+            the step, shape (n,); None where it is not finite.
+        """
+        step = self._apply_inverse(residual, self.steps)
+        if step is None or not self.steps:
+            return step
         last = self.steps[-1]
         with np.errstate(all="ignore"):
-            z = z / (1.0 - (last @ z) / (last @ last))
-        return z if np.all(np.isfinite(z)) else None
+            # The update of the last step s contains the step s₊ asked for: s₊ = z + s₊ (s·z)/(s·s), solved for s₊.
+            step = step / (1.0 - (last @ step) / (last @ last))
+        return _finite_or_none(step)
 
     def response(self, rate: FloatArray, residual: FloatArray) -> FloatArray | None:
-        """Minus the inverse times any vector of shape (n,); None where it is not finite.
+        """Change of the unknowns −B⁻¹ v with all updates, for any right side v.
 
         The update that belongs to the last step takes the step that would follow it.
 
         Args:
-            rate: the vector.
-            residual: residual at the iterate.
-        """
-        following = self.step(residual) if self.steps else None
-        steps = self.steps if following is None else [*self.steps, following]
-        found = self._through(rate, steps)
-        return None if found is None or not np.all(np.isfinite(found)) else found
+            rate: v, shape (n,).
+            residual: residual at the iterate, shape (n,).
 
-    def _through(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
-        """Minus the inverse times a vector, updated by each step and its follower."""
-        z = newton_step(self.jacobian, vector)
-        if z is None:
+        Returns:
+            the change, shape (n,); None where it is not finite.
+        """
+        steps = self.steps
+        following_step = None
+        if steps:
+            following_step = self.step(residual)
+        if following_step is not None:
+            steps = [*steps, following_step]
+        change = self._apply_inverse(rate, steps)
+        return _finite_or_none(change)
+
+    def _apply_inverse(self, vector: FloatArray, steps: Sequence[FloatArray]) -> FloatArray | None:
+        """Apply −B⁻¹ and then one update for each pair of neighbouring steps; None where B gives no solution."""
+        solution = newton_step(self.jacobian, vector)
+        if solution is None:
             return None
-        for before, after in pairwise(steps):
-            z = z + after * ((before @ z) / (before @ before))
-        return z
+        # B₊⁻¹ = (I + s₊ sᵀ/(s·s)) B⁻¹ for a step s and the step s₊ that followed it.
+        for step, next_step in pairwise(steps):
+            share = (step @ solution) / (step @ step)
+            solution = solution + next_step * share
+        return solution
 
 
 def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
-    """The Newton step; the shortest one where the Jacobian is singular to rounding; None where there is none.
+    """Solve for the Newton step; the shortest one where the Jacobian is singular to rounding.
 
     A rod that symmetry lets turn without energy has a singular Jacobian: along that direction nothing moves.
+
+    Args:
+        jacobian: n×n, dense or sparse.
+        residual: shape (n,).
+
+    Returns:
+        the step, shape (n,); None where it is not finite.
     """
     if not len(residual):
         return np.zeros(0)
@@ -88,42 +116,73 @@ def newton_step(jacobian: Jacobian, residual: FloatArray) -> FloatArray | None:
         sparse_step = _sparse_step(jacobian, residual)
         if sparse_step is not None:
             return sparse_step
+        # A sparse QR factorisation gives no shortest step.
         jacobian = dense(jacobian)
-    if not (np.all(np.isfinite(jacobian)) and np.all(np.isfinite(residual))):
+    if not np.all(np.isfinite(jacobian)):
         return None
-    step: FloatArray | None = _regular_step(jacobian, residual)
+    if not np.all(np.isfinite(residual)):
+        return None
+    step = _regular_step(jacobian, residual)
     if step is None:
-        step = np.asarray(np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)[0], dtype=np.float64)
-    return step if np.all(np.isfinite(step)) else None
-
-
-def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
-    """The step of a Jacobian that is not singular to rounding, else None.
-
-    The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
-    """
-    probe = np.cos(np.arange(1.0, len(residual) + 1.0) ** 2)
-    try:
-        steps = np.linalg.solve(jacobian, np.column_stack([-residual, probe / np.linalg.norm(probe)]))
-    except np.linalg.LinAlgError:
-        return None
-    with np.errstate(all="ignore"):
-        stretch = float(np.linalg.norm(steps[:, 1]) * np.abs(jacobian).max())
-    return np.asarray(steps[:, 0], dtype=np.float64) if stretch <= 1.0 / SINGULAR else None
+        step = _shortest_step(jacobian, residual)
+    return _finite_or_none(step)
 
 
 def dense(jacobian: Jacobian) -> FloatArray:
-    """A Jacobian as an array, shape (n, n)."""
-    return np.asarray(jacobian.full() if isinstance(jacobian, ca.DM) else jacobian, dtype=np.float64)
+    """Convert a Jacobian to an array, shape (n, n)."""
+    if isinstance(jacobian, ca.DM):
+        jacobian = jacobian.full()
+    return np.asarray(jacobian, dtype=np.float64)
+
+
+def _regular_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray | None:
+    """Solve with a Jacobian that is not singular to rounding; None where it is.
+
+    The same factors solve for a probe: it meets every direction, so a small singular value lengthens its solution.
+    """
+    # cos k² has no regularity, so that no singular vector of a regular structure is orthogonal to it.
+    numbers = np.arange(1.0, len(residual) + 1.0)
+    probe = np.cos(numbers**2)
+    probe = probe / np.linalg.norm(probe)
+    right_sides = np.column_stack([-residual, probe])
+    try:
+        solutions = np.linalg.solve(jacobian, right_sides)
+    except np.linalg.LinAlgError:
+        return None
+    with np.errstate(all="ignore"):
+        inverse_size = np.linalg.norm(solutions[:, 1])
+        size = np.abs(jacobian).max()
+        condition = float(inverse_size * size)
+    # Not "condition > bound": a condition that is not a number must count as singular too.
+    if not condition <= 1.0 / SINGULAR:
+        return None
+    return np.asarray(solutions[:, 0], dtype=np.float64)
+
+
+def _shortest_step(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
+    """The step of least norm among those that solve the equations best."""
+    solution, _, _, _ = np.linalg.lstsq(jacobian, -residual, rcond=SINGULAR)
+    return np.asarray(solution, dtype=np.float64)
 
 
 def _sparse_step(jacobian: ca.DM, residual: FloatArray) -> FloatArray | None:
     """The Newton step by a sparse QR factorisation; None where that cannot tell the Jacobian from a singular one."""
-    if not (np.all(np.isfinite(jacobian.nonzeros())) and np.all(np.isfinite(residual))):
+    if not np.all(np.isfinite(jacobian.nonzeros())):
         return None
-    _, triangular, *_ = factors = ca.qr_sparse(jacobian)
-    diagonal = np.abs(np.array(ca.diag(triangular).full()[:, 0]))
-    if diagonal.min() <= THIN * diagonal.max():
+    if not np.all(np.isfinite(residual)):
         return None
-    step: FloatArray = np.asarray(ca.qr_solve(ca.DM(-residual), *factors).full()[:, 0])
-    return step if np.all(np.isfinite(step)) else None
+    factors = ca.qr_sparse(jacobian)
+    triangular = factors[1]
+    diagonal = ca.diag(triangular).full()[:, 0]
+    sizes = np.abs(np.array(diagonal))
+    # No estimate of the condition, but free, and enough to hand doubtful ones to the dense method.
+    if sizes.min() <= THIN * sizes.max():
+        return None
+    solution = ca.qr_solve(ca.DM(-residual), *factors)
+    return _finite_or_none(np.asarray(solution.full()[:, 0]))
+
+
+def _finite_or_none(vector: FloatArray | None) -> FloatArray | None:
+    if vector is None or not np.all(np.isfinite(vector)):
+        return None
+    return vector

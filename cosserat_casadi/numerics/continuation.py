@@ -1,9 +1,13 @@
 """Load continuation: from a known equilibrium to the wanted one along a path in the loads.
 
-Natural continuation in t ∈ [0, 1]. The cubic through the last two points and their tangents predicts, Newton corrects:
-roughly on the way, to the full tolerance at the end. A step is taken back and halved unless Newton needs few
-Jacobians, no damping, and little correction: far from the path it finds some equilibrium, not the one that the growing
-load leads to. The last Jacobian of a correction serves for the tangent. The exported C holds the same algorithm.
+Natural continuation in t ∈ [0, 1] (E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM
+2003, chapters 2 and 6). The cubic through the last two points and their tangents predicts, Newton corrects: inexactly
+on the way, to the full tolerance at the end. A step is taken back and halved unless Newton needs few Jacobians, no
+damping, and little correction: far from the path it meets some equilibrium, not the one that the growing load leads
+to. The last Jacobian of a correction serves for the tangent. See docs/theory.md, section 9.
+
+The exported C follows paths in the same way; its corrections stop at the tolerance, those here at
+:attr:`NewtonSettings.aim`.
 """
 
 from __future__ import annotations
@@ -14,15 +18,22 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import Jacobian, Secant
+from cosserat_casadi.numerics.broyden import Jacobian, UpdatedJacobian
 from cosserat_casadi.numerics.newton import Equations, NewtonResult, NewtonSettings, length_of, newton
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
 
 MOST_BENT = 0.5
 """Most that the cubic may differ from the tangent, relative to it."""
 
-Progress = Callable[[float], None]
-"""Told the t reached."""
+CORRECTION_FLOOR = 0.3
+"""Correction that is always plausible (2-norm; about a third of a radian of bending)."""
+
+CORRECTION_SHARE = 0.5
+"""Share of the prediction that a plausible correction may have on top of the floor."""
+
+ENDS_MEET = 1e-12
+"""Distance in t from the end of the path below which a step ends there."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +46,8 @@ class Path:
         rate: (x, t) ↦ ∂g/∂t, shape (n,).
         start: unknowns at or near the equilibrium at t = 0, shape (n,).
         tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
-        shares: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
-        first: longest first step in t.
+        step_weights: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
+        first_step: longest first step in t.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
@@ -44,16 +55,21 @@ class Path:
     rate: Callable[[FloatArray, float], FloatArray]
     start: FloatArray
     tangent: FloatArray | None = None
-    shares: FloatArray | None = None
-    first: float = 1.0
+    step_weights: FloatArray | None = None
+    first_step: float = 1.0
 
-    def length(self, step: FloatArray) -> float:
-        """How far a change of x, shape (n,), goes."""
-        return length_of(step if self.shares is None else self.shares * step)
+    def length(self, change: FloatArray) -> float:
+        """Weighted 2-norm of a change of x, shape (n,)."""
+        if self.step_weights is None:
+            return length_of(change)
+        return length_of(self.step_weights * change)
 
     def at(self, t: float) -> Equations:
         """The equations at one point of the path."""
-        return Equations(lambda x: self.residual(x, t), lambda x: self.jacobian(x, t))
+        return Equations(
+            residual=lambda x: self.residual(x, t),
+            jacobian=lambda x: self.jacobian(x, t),
+        )
 
 
 @dataclass(frozen=True)
@@ -62,26 +78,31 @@ class ContinuationSettings:
 
     Attributes:
         newton: limits of the correction at the end of the path.
-        rough: error of x that the corrections before it may leave (2-norm).
+        inexact: error of x that the corrections before it may leave (2-norm).
         longest: longest tangent of a step (2-norm; about one radian of bending a unit).
         shortest: smallest step in t before the path counts as stalled.
         steps: most steps, taken or refused.
-        quick: Jacobians up to which the next step grows.
-        slow: Jacobians beyond which a step is refused.
+        grow_below: Jacobians of a correction up to which the next step grows.
+        reject_above: Jacobians of a correction beyond which its step is refused.
     """
 
     newton: NewtonSettings = field(default_factory=NewtonSettings)
-    rough: float = 0.01
+    inexact: float = 0.01
     longest: float = 4.0
     shortest: float = 1e-7
     steps: int = 400
-    quick: int = 2
-    slow: int = 4
+    grow_below: int = 2
+    reject_above: int = 4
 
     def correction(self, target: float) -> NewtonSettings:
-        """Limits of the correction at a point of the path: whatever would not be trusted is given up at once."""
-        rough = 0.0 if target == 1.0 else self.rough
-        return replace(self.newton, rough=rough, jacobians=self.slow, damping=False)
+        """Limits of the correction at a point of the path.
+
+        What would not be accepted is given up at once: Newton may neither shorten a step nor take more Jacobians.
+        """
+        inexact = self.inexact
+        if target == 1.0:
+            inexact = 0.0
+        return replace(self.newton, inexact=inexact, jacobians=self.reject_above, damping=False)
 
 
 @dataclass(frozen=True)
@@ -92,7 +113,7 @@ class ContinuationResult:
         x: unknowns at the end of the path, or the last good ones.
         outcome: how it ended.
         residual_norm: relative norm of the residual at x and t.
-        iterations: Newton steps of all corrections.
+        iterations: Newton steps of all corrections, and predictions refused before one.
         reached: t that was reached; 1 unless the path stalled.
     """
 
@@ -108,16 +129,19 @@ class _Point:
     """A point of a path.
 
     Attributes:
-        x: unknowns, shape (n,).
         t: where on the path.
         tangent: dx/dt, shape (n,).
-        found: the correction that led there.
+        correction: the Newton solve that led there.
     """
 
-    x: FloatArray
     t: float
     tangent: FloatArray
-    found: NewtonResult
+    correction: NewtonResult
+
+    @property
+    def x(self) -> FloatArray:
+        """Unknowns, shape (n,)."""
+        return self.correction.x
 
 
 def follow(
@@ -128,91 +152,172 @@ def follow(
     Args:
         path: the equations and where they start.
         settings: limits.
-        progress: told the t reached after every step.
+        progress: receives the t reached after every step.
     """
     limits = settings or ContinuationSettings()
-    found, tangent = _depart(path, limits)
-    iterations, step = found.iterations, path.first
-    if found.outcome is Outcome.CONVERGED and not np.isfinite(length_of(tangent)):
-        found = replace(found, outcome=Outcome.NOT_FINITE)
-    if found.outcome is not Outcome.CONVERGED:
-        return ContinuationResult(found.x, found.outcome, found.residual_norm, iterations, 0.0)
-    here, before = _Point(found.x, 0.0, tangent, found), None
+    current = _first_point(path, limits)
+    start = current.correction
+    if start.outcome is not Outcome.CONVERGED:
+        return ContinuationResult(
+            x=start.x,
+            outcome=start.outcome,
+            residual_norm=start.residual_norm,
+            iterations=start.iterations,
+            reached=0.0,
+        )
+
+    previous: _Point | None = None
+    iterations = start.iterations
+    step = path.first_step
     for _ in range(limits.steps):
-        step = min(step, 1.0 - here.t, limits.longest / max(path.length(here.tangent), 1e-12))
-        if step < min(limits.shortest, 1.0 - here.t):
+        remaining = 1.0 - current.t
+        # A tangent of zero bounds no step.
+        longest = limits.longest / max(path.length(current.tangent), 1e-12)
+        step = min(step, remaining, longest)
+        if step < min(limits.shortest, remaining):
             break
-        target = 1.0 if here.t + step > 1.0 - 1e-12 else here.t + step
-        predicted = _predicted(path, here, before, step)
-        if not _promising(path, here, predicted, target):
-            iterations, step = iterations + 1, step / 2
-            continue
-        trial = newton(path.at(target), here.x + predicted, limits.correction(target))
-        iterations += trial.iterations
-        if not _trusted(path, trial, here.x, predicted):
+
+        target = _target(current, step)
+        predicted = _predicted_change(path, current, previous, step)
+        if not _predictor_plausible(path, current, predicted, target):
+            # It has cost a residual, which counts like a Newton step.
+            iterations += 1
             step /= 2
             continue
+
+        trial = newton(path.at(target), current.x + predicted, limits.correction(target))
+        iterations += trial.iterations
+        if not _corrector_accepted(path, trial, current.x, predicted):
+            step /= 2
+            continue
+
         if progress is not None:
             progress(target)
         if target == 1.0:
-            return ContinuationResult(trial.x, Outcome.CONVERGED, trial.residual_norm, iterations, 1.0)
-        trial = _linearised(path, trial, target)
-        here, before = _Point(trial.x, target, _tangent(path, trial, target), trial), here
-        step *= 2.0 if trial.jacobians <= limits.quick else 1.0
-    return _stalled(path, here, limits, iterations)
+            return ContinuationResult(
+                x=trial.x,
+                outcome=Outcome.CONVERGED,
+                residual_norm=trial.residual_norm,
+                iterations=iterations,
+                reached=1.0,
+            )
+        previous = current
+        current = _point(path, trial, target)
+        if trial.jacobians <= limits.grow_below:
+            # One or two Jacobians: the prediction was good, and a longer step costs no more.
+            step *= 2.0
+    return _stalled(path, current, limits, iterations)
 
 
-def _depart(path: Path, limits: ContinuationSettings) -> tuple[NewtonResult, FloatArray]:
-    if path.tangent is not None:
-        rest = NewtonResult(path.start, Outcome.CONVERGED, 0.0, 0, 0, False, np.zeros_like(path.start), None)
-        return rest, path.tangent
-    here = _linearised(path, newton(path.at(0.0), path.start, limits.newton), 0.0)
-    return here, _tangent(path, here, 0.0)
+def _first_point(path: Path, limits: ContinuationSettings) -> _Point:
+    """The equilibrium at t = 0 with its tangent; its outcome says whether there is one."""
+    if path.tangent is None:
+        correction = newton(path.at(0.0), path.start, limits.newton)
+        point = _point(path, correction, 0.0)
+    else:
+        at_rest = NewtonResult(
+            x=path.start,
+            outcome=Outcome.CONVERGED,
+            residual_norm=0.0,
+            iterations=0,
+            jacobians=0,
+            damped=False,
+            residual=np.zeros_like(path.start),
+            last_jacobian=None,
+        )
+        point = _Point(0.0, path.tangent, at_rest)
+    converged = point.correction.outcome is Outcome.CONVERGED
+    if converged and not np.isfinite(length_of(point.tangent)):
+        not_finite = replace(point.correction, outcome=Outcome.NOT_FINITE)
+        return replace(point, correction=not_finite)
+    return point
 
 
-def _linearised(path: Path, found: NewtonResult, t: float) -> NewtonResult:
-    """A corrected point with a Jacobian, where the correction needed none."""
-    return found if found.secant is not None else replace(found, secant=Secant(path.jacobian(found.x, t)))
+def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
+    """A corrected point with its tangent dx/dt = −(∂g/∂x)⁻¹ ∂g/∂t, by the Jacobian that the correction has left."""
+    jacobian = correction.last_jacobian
+    if jacobian is None:
+        # The prediction was good enough already: nothing has been linearised.
+        jacobian = UpdatedJacobian(path.jacobian(correction.x, t))
+        correction = replace(correction, last_jacobian=jacobian)
+    rate = path.rate(correction.x, t)
+    tangent = jacobian.response(rate, correction.residual)
+    if tangent is None:
+        # No direction is known: the next point is predicted where this one is.
+        tangent = np.zeros_like(correction.x)
+    return _Point(t, tangent, correction)
 
 
-def _predicted(path: Path, here: _Point, before: _Point | None, step: float) -> FloatArray:
-    """Change of x by the cubic through two points; by the tangent where there is one point, or the two differ much."""
-    straight = step * here.tangent
-    if before is None:
-        return straight
-    way, moved, share = here.t - before.t, here.x - before.x, step / (here.t - before.t)
-    cubic = way * (here.tangent + before.tangent) - 2 * moved
-    bent = share**2 * (cubic + way * here.tangent - moved) + share**3 * cubic
-    return straight + bent if path.length(bent) <= MOST_BENT * path.length(straight) else straight
+def _target(current: _Point, step: float) -> float:
+    target = current.t + step
+    if target > 1.0 - ENDS_MEET:
+        # Exactly 1, so that the last equations are those of the full load.
+        return 1.0
+    return target
 
 
-def _promising(path: Path, here: _Point, predicted: FloatArray, target: float) -> bool:
-    """Whether the Jacobian at hand foresees a correction that can be trusted; a new one costs far more than to ask."""
-    if here.found.secant is None:
+def _predicted_change(path: Path, current: _Point, previous: _Point | None, step: float) -> FloatArray:
+    """Change of x by the cubic through two points; by the tangent where there is one point, or the two differ much.
+
+    With σ = (t − t₁)/h, h = t₁ − t₀ and Δ = x₁ − x₀ the Hermite cubic is x₁ + h x₁' σ + (c₃ + h x₁' − Δ) σ² + c₃ σ³,
+    c₃ = h (x₁' + x₀') − 2 Δ.
+    """
+    linear = step * current.tangent
+    if previous is None:
+        return linear
+    interval = current.t - previous.t
+    share = step / interval
+    change = current.x - previous.x
+    cubic = interval * (current.tangent + previous.tangent) - 2 * change
+    quadratic = cubic + interval * current.tangent - change
+    bent = share**2 * quadratic + share**3 * cubic
+    if path.length(bent) <= MOST_BENT * path.length(linear):
+        return linear + bent
+    # Where a path turns sharply the cubic overshoots.
+    return linear
+
+
+def _predictor_plausible(path: Path, current: _Point, predicted: FloatArray, target: float) -> bool:
+    """Whether the Jacobian at hand foresees a correction that would be accepted.
+
+    This costs one residual; to let Newton fail costs a Jacobian and its factorisation.
+    """
+    jacobian = current.correction.last_jacobian
+    if jacobian is None:
         return True
-    residual = path.residual(here.x + predicted, target)
-    foreseen = here.found.secant.response(residual, here.found.residual)
-    return foreseen is None or _small(path, foreseen, predicted)
+    residual = path.residual(current.x + predicted, target)
+    foreseen = jacobian.response(residual, current.correction.residual)
+    if foreseen is None:
+        # Without a forecast Newton has to try.
+        return True
+    return _is_small(path, foreseen, predicted)
 
 
-def _trusted(path: Path, trial: NewtonResult, x: FloatArray, predicted: FloatArray) -> bool:
+def _corrector_accepted(path: Path, trial: NewtonResult, x: FloatArray, predicted: FloatArray) -> bool:
     """Whether a corrected point lies on the path and not on some other."""
-    if trial.outcome is not Outcome.CONVERGED or trial.damped:
+    if trial.outcome is not Outcome.CONVERGED:
         return False
-    return _small(path, trial.x - x - predicted, predicted)
+    if trial.damped:
+        return False
+    correction = trial.x - x - predicted
+    return _is_small(path, correction, predicted)
 
 
-def _small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool:
-    return path.length(correction) <= 0.3 + 0.5 * path.length(predicted)
+def _is_small(path: Path, correction: FloatArray, predicted: FloatArray) -> bool:
+    # The floor lets short steps converge to a path that bends; the share keeps long ones off other branches.
+    longest = CORRECTION_FLOOR + CORRECTION_SHARE * path.length(predicted)
+    length = path.length(correction)
+    return length <= longest
 
 
-def _tangent(path: Path, here: NewtonResult, t: float) -> FloatArray:
-    """The dx/dt of the path, with the Jacobian that the correction has left."""
-    tangent = None if here.secant is None else here.secant.response(path.rate(here.x, t), here.residual)
-    return np.zeros_like(here.x) if tangent is None else tangent
-
-
-def _stalled(path: Path, here: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
-    """The last point, which was found roughly, as near to equilibrium as Newton brings it."""
-    end = newton(path.at(here.t), here.x, limits.newton)
-    return ContinuationResult(end.x, Outcome.LOAD_STALLED, end.residual_norm, iterations + end.iterations, here.t)
+def _stalled(path: Path, last: _Point, limits: ContinuationSettings, iterations: int) -> ContinuationResult:
+    """The last point, which was corrected inexactly, as near to equilibrium as Newton brings it."""
+    equations = path.at(last.t)
+    end = newton(equations, last.x, limits.newton)
+    return ContinuationResult(
+        x=end.x,
+        outcome=Outcome.LOAD_STALLED,
+        residual_norm=end.residual_norm,
+        iterations=iterations + end.iterations,
+        reached=last.t,
+    )

@@ -1,8 +1,9 @@
-"""Descent of an energy to a minimum, told only its gradient and its Hessian: off saddles, along negative curvature.
+"""Descent of an energy to a minimum by its gradient and its Hessian: off saddles, along negative curvature.
 
 A trust region: the step minimises the quadratic model of the energy in a ball; at a saddle it leaves along the
 eigenvector of the lowest eigenvalue. The energy need not be written: its change over a step is the work of the
 gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd ed., Springer 2006, sections 4.1 and 4.3.
+See docs/theory.md, section 9.
 """
 
 from __future__ import annotations
@@ -16,8 +17,31 @@ from numpy.polynomial.legendre import leggauss
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.newton import length_of, relative_norm
 
-WORK_NODES, WORK_WEIGHTS = (leggauss(4)[0] + 1) / 2, leggauss(4)[1] / 2
-"""Quadrature of the work along a step."""
+_GAUSS_NODES, _GAUSS_WEIGHTS = leggauss(4)
+
+WORK_NODES = (_GAUSS_NODES + 1) / 2
+"""Quadrature nodes of the work along a step, shares of it."""
+
+WORK_WEIGHTS = _GAUSS_WEIGHTS / 2
+"""Their weights."""
+
+ACCEPT_ABOVE = 0.1
+"""Share of the foreseen decrease from which on a step is taken."""
+
+SHRINK_BELOW = 0.25
+"""Share of the foreseen decrease below which the trust region shrinks."""
+
+GROW_ABOVE = 0.75
+"""Share of the foreseen decrease above which the trust region may grow."""
+
+AT_BOUNDARY = 0.9
+"""Share of the radius beyond which a step counts as held back by the trust region."""
+
+RADIUS_TOLERANCE = 1e-6
+"""Relative accuracy of the multiplier that puts a step on the boundary of the ball."""
+
+BISECTIONS = 100
+"""Most halvings in the search for that multiplier."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +58,10 @@ class Energy:
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Energy at x + step less that at x."""
-        rates = [self.gradient(x + s * step) @ step for s in WORK_NODES]
+        rates = []
+        for share in WORK_NODES:
+            gradient = self.gradient(x + share * step)
+            rates.append(gradient @ step)
         return float(WORK_WEIGHTS @ rates)
 
 
@@ -57,74 +84,143 @@ class DescentSettings:
     steps: int = 300
 
 
+@dataclass(frozen=True)
+class _QuadraticModel:
+    """An energy about a point, in the axes of its Hessian.
+
+    Attributes:
+        gradient: shape (n,).
+        curvatures: eigenvalues of the Hessian, ascending, shape (n,).
+        axes: its eigenvectors, n×n, one a column.
+    """
+
+    gradient: FloatArray
+    curvatures: FloatArray
+    axes: FloatArray
+
+    def is_saddle(self, flat: float) -> bool:
+        """Whether a curvature is negative beyond a share of the largest, which is taken for one at least."""
+        sizes = np.abs(self.curvatures)
+        scale = max(1.0, float(sizes.max()))
+        lowest = float(self.curvatures[0])
+        return lowest < -flat * scale
+
+    def step(self, radius: float, side: float) -> FloatArray:
+        """The step to the minimum in the ball of a radius, shape (n,)."""
+        slopes = self.axes.T @ self.gradient
+        minimum = ball_minimum(self.curvatures, slopes, radius, side)
+        return np.asarray(self.axes @ minimum)
+
+    def change(self, step: FloatArray) -> float:
+        """Change of the energy that the model foresees over a step."""
+        components = self.axes.T @ step
+        linear = self.gradient @ step
+        quadratic = components**2 @ self.curvatures / 2
+        return float(linear + quadratic)
+
+
 def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSettings) -> FloatArray | None:
-    """The minimum at the foot of a start; None where a number is not finite or the steps run out.
+    """Find the minimum at the foot of a start.
 
     Args:
         energy: what to lower.
         start: shape (n,).
         side: +1 or −1, the side on which a saddle is left.
         settings: limits.
+
+    Returns:
+        the minimum, shape (n,); None where a number is not finite or the steps run out.
     """
-    x, radius = start, settings.longest / 4
-    model: tuple[FloatArray, FloatArray, FloatArray] | None = None
+    x = start
+    radius = settings.longest / 4
+    model: _QuadraticModel | None = None
     for _ in range(settings.steps):
         if model is None:
             model = _quadratic_model(energy, x)
         if model is None:
             return None
-        gradient, values, vectors = model
-        low = float(values[0]) < -settings.flat * max(1.0, float(np.abs(values).max()))
-        if relative_norm(gradient, x) <= settings.tolerance and not low:
+        flat = relative_norm(model.gradient, x) <= settings.tolerance
+        if flat and not model.is_saddle(settings.flat):
             return x
-        step = vectors @ ball_minimum(values, vectors.T @ gradient, radius, side)
-        predicted = float(gradient @ step + (vectors.T @ step) ** 2 @ values / 2)
-        actual = energy.change(x, step)
-        ratio = actual / predicted if predicted < 0.0 and np.isfinite(actual) else -1.0
-        if ratio > 0.1:
-            x, model = x + step, None
-        if ratio < 0.25:
-            radius = length_of(step) / 4
-        elif ratio > 0.75 and length_of(step) > 0.9 * radius:
+
+        step = model.step(radius, side)
+        agreement = _agreement(model.change(step), energy.change(x, step))
+        if agreement > ACCEPT_ABOVE:
+            x = x + step
+            # A refused step leaves the model as it is: only the ball shrinks.
+            model = None
+        length = length_of(step)
+        if agreement < SHRINK_BELOW:
+            radius = length / 4
+        elif agreement > GROW_ABOVE and length > AT_BOUNDARY * radius:
+            # A step inside the ball says nothing of a larger one.
             radius = min(2 * radius, settings.longest)
         if radius < settings.shortest:
             return None
     return None
 
 
-def _quadratic_model(energy: Energy, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Gradient, eigenvalues and eigenvectors of the Hessian; None where they are not finite."""
-    gradient, hessian = energy.gradient(x), energy.hessian(x)
-    if not (np.all(np.isfinite(gradient)) and np.all(np.isfinite(hessian))):
+def _agreement(foreseen: float, actual: float) -> float:
+    """Share of the foreseen decrease that has come about; −1 where none was foreseen or a number is not finite."""
+    if foreseen < 0.0 and np.isfinite(actual):
+        return actual / foreseen
+    return -1.0
+
+
+def _quadratic_model(energy: Energy, x: FloatArray) -> _QuadraticModel | None:
+    """The quadratic model at a point; None where a number is not finite."""
+    gradient = energy.gradient(x)
+    hessian = energy.hessian(x)
+    if not np.all(np.isfinite(gradient)):
         return None
-    values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
-    return gradient, values, vectors
+    if not np.all(np.isfinite(hessian)):
+        return None
+    curvatures, axes = np.linalg.eigh((hessian + hessian.T) / 2)
+    return _QuadraticModel(gradient, curvatures, axes)
 
 
-def ball_minimum(values: FloatArray, slopes: FloatArray, radius: float, side: float) -> FloatArray:
-    """Minimum of Σ slope z + ½ value z² over the ball |z| ≤ radius, shape (n,).
+def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side: float) -> FloatArray:
+    """Minimum of Σ slope z + ½ curvature z² over the ball |z| ≤ radius.
+
+    It is z = −slope / (curvature + μ) with μ = 0 inside, else with the μ that puts z on the boundary and leaves no
+    curvature + μ negative: Nocedal and Wright, theorem 4.1.
 
     Args:
-        values: curvatures, ascending, shape (n,).
+        curvatures: ascending, shape (n,).
         slopes: shape (n,).
         radius: of the ball.
         side: direction along the first axis where its slope is zero and its curvature negative.
+
+    Returns:
+        z, shape (n,).
     """
-    tiny = 1e-12 * max(1.0, float(np.abs(values).max()))
-    if values[0] > tiny:
-        inside = -slopes / values
+    lowest = float(curvatures[0])
+    rounding = 1e-12 * max(1.0, float(np.abs(curvatures).max()))
+    if lowest > rounding:
+        inside = -slopes / curvatures
         if length_of(inside) <= radius:
             return np.asarray(inside)
-    floor = max(0.0, -float(values[0])) + tiny
-    at_floor = -slopes / (values + floor)
-    if length_of(at_floor) < radius:
-        # The hard case: no slope along the lowest curvature, the ball's surface is reached along it.
-        at_floor[0] += side * np.sqrt(radius**2 - length_of(at_floor) ** 2) if values[0] < -tiny else 0.0
-        return np.asarray(at_floor)
-    low, high = floor, floor + length_of(slopes) / radius
-    for _ in range(100):
-        shift = (low + high) / 2
-        low, high = (shift, high) if length_of(slopes / (values + shift)) > radius else (low, shift)
-        if high - low <= 1e-6 * high:
+
+    # Any smaller μ would leave curvature + μ negative along the lowest curvature.
+    smallest = max(0.0, -lowest) + rounding
+    at_smallest = -slopes / (curvatures + smallest)
+    if length_of(at_smallest) < radius:
+        # The hard case: no slope along the lowest curvature, the boundary is reached along it.
+        rest = 0.0
+        if lowest < -rounding:
+            rest = side * np.sqrt(radius**2 - length_of(at_smallest) ** 2)
+        at_smallest[0] += rest
+        return np.asarray(at_smallest)
+
+    # The length of z falls as μ grows, and is below the radius at the upper end.
+    low = smallest
+    high = smallest + length_of(slopes) / radius
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        if length_of(slopes / (curvatures + middle)) > radius:
+            low = middle
+        else:
+            high = middle
+        if high - low <= RADIUS_TOLERANCE * high:
             break
-    return np.asarray(-slopes / (values + high))
+    return np.asarray(-slopes / (curvatures + high))

@@ -1,9 +1,9 @@
-"""Limit points and bifurcations between two points of a curve: found, told apart, located.
+"""Limit points and bifurcations between two points of a curve: detected, told apart, located.
 
-A limit point is a zero of d(factor)/d(arclength). At a bifurcation a number of the monitor changes sign: for loads
-with a potential an eigenvalue of the second variation, which sees multiple ones too; otherwise the smallest singular
-value of the bordered matrix with the sign of its determinant, which a limit point leaves alone. R. Seydel,
-*Practical Bifurcation and Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5.
+A limit point is a zero of dλ/ds. At a bifurcation a number of the monitor changes sign: for loads with a potential an
+eigenvalue of the second variation, which sees multiple ones too; otherwise the smallest singular value of the bordered
+matrix with the sign of its determinant, which a limit point leaves alone. R. Seydel, *Practical Bifurcation and
+Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5. See docs/theory.md, section 11.
 """
 
 from __future__ import annotations
@@ -62,121 +62,183 @@ class Arc:
 
     def at(self, s: float) -> ArcPoint | None:
         """The point an arclength s beyond the start; None where it cannot be computed."""
-        if s in (0.0, self.step):
-            return self.start if s == 0.0 else self.end
-        a, t = self.start.y, self.start.tangent
-        curving = self.end.y - a - self.step * t
-        guess = a + s * t + (s / self.step) ** 2 * curving
-        found = self.curve.correct(guess, Plane(t, float(t @ a) + s))
-        return None if found is None else self.curve.point(found[0], t, self.start.length + s)
+        if s == 0.0:
+            return self.start
+        if s == self.step:
+            return self.end
+        origin = self.start.y
+        tangent = self.start.tangent
+        # A parabola through both ends predicts; the plane across the tangent keeps s what it is.
+        curving = self.end.y - origin - self.step * tangent
+        predicted = origin + s * tangent + (s / self.step) ** 2 * curving
+        plane = Plane(tangent, float(tangent @ origin) + s)
+        corrected = self.curve.correct(predicted, plane)
+        if corrected is None:
+            return None
+        return self.curve.point(corrected.y, tangent, self.start.length + s)
 
     def zero(self, value: Callable[[ArcPoint], float]) -> ArcPoint | None:
         """Where a value that changes sign along the piece vanishes; None where it cannot be computed."""
-        visited: dict[float, ArcPoint] = {0.0: self.start, self.step: self.end}
+        computed: dict[float, ArcPoint] = {0.0: self.start, self.step: self.end}
 
-        def at(s: float) -> float:
+        def value_at(s: float) -> float:
             point = self.at(s)
             if point is None:
                 return float("nan")
-            visited[s] = point
+            computed[s] = point
             return value(point)
 
-        return visited.get(bracketed_zero(at, (0.0, value(self.start)), (self.step, value(self.end))))
+        first = (0.0, value(self.start))
+        last = (self.step, value(self.end))
+        s = bracketed_zero(value_at, first, last)
+        return computed.get(s)
 
 
-def bracketed_zero(value: Callable[[float], float], one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Zero of a function between two arguments with values of different sign: the Illinois method.
+def bracketed_zero(value: Callable[[float], float], first: tuple[float, float], last: tuple[float, float]) -> float:
+    """Find a zero of a function between two arguments by the Illinois method.
 
     M. Dowell, P. Jarratt, *A modified regula falsi method for computing the root of an equation*, BIT 11 (1971).
+
+    Args:
+        value: the function.
+        first: an argument with its value.
+        last: an argument with its value, of the other sign.
 
     Returns:
         the argument last evaluated, within LOCATED of the zero; not a number where the function is not.
     """
-    (a, fa), (b, fb) = one, other
-    if fa == 0.0 or fb == 0.0:
-        return a if fa == 0.0 else b
-    last = b
+    a, value_a = first
+    b, value_b = last
+    if value_a == 0.0:
+        return a
+    if value_b == 0.0:
+        return b
+    latest = b
     for _ in range(EVALUATIONS):
-        c = b - fb * (b - a) / (fb - fa)
+        c = b - value_b * (b - a) / (value_b - value_a)
+        # Rounding may put the secant's zero on an end or beyond.
         if not min(a, b) < c < max(a, b):
             c = (a + b) / 2
-        fc = value(c)
-        if np.isnan(fc):
-            return fc
-        if fc == 0.0 or abs(c - last) <= LOCATED or abs(b - a) <= LOCATED:
+        value_c = value(c)
+        if np.isnan(value_c):
+            return value_c
+        located = abs(c - latest) <= LOCATED or abs(b - a) <= LOCATED
+        if value_c == 0.0 or located:
             return c
-        if (fc > 0.0) != (fb > 0.0):
-            a, fa = b, fb
+        sign_changes = (value_c > 0.0) != (value_b > 0.0)
+        if sign_changes:
+            a = b
+            value_a = value_b
         else:
-            fa /= 2
-        b, fb, last = c, fc, c
-    return last
+            # The same end a second time: half its value makes the next secant cross to the other side.
+            value_a /= 2
+        b = c
+        value_b = value_c
+        latest = c
+    return latest
 
 
 def events_between(arc: Arc) -> list[Event] | None:
     """Every event of a piece in the order of travel; None where a shorter piece is needed to tell them apart."""
-    limits = _limits(arc)
-    zeros = _zeros(arc)
+    limits = _limit_points(arc)
+    zeros = _monitor_zeros(arc)
     if limits is None or zeros is None:
         return None
     if limits and arc.curve.monitor.feels_limits:
         if not zeros:
+            # The sign change of the limit point is undone by another in the same step.
             return None
-        nearest = min(zeros, key=lambda point: abs(point.length - limits[0].point.length))
+        # One number of the monitor vanishes because of the limit point: the nearest.
+        limit_length = limits[0].point.length
+        nearest = min(zeros, key=lambda point: abs(point.length - limit_length))
         zeros = [point for point in zeros if point is not nearest]
-    return sorted(limits + _merged(zeros), key=lambda event: event.point.length)
+    events = limits + _bifurcations(zeros)
+    return sorted(events, key=lambda event: event.point.length)
 
 
 def signed_singular_value(jacobian: FloatArray, bordered: FloatArray) -> FloatArray:
     """Smallest singular value of the bordered matrix with the sign of its determinant, shape (1,)."""
-    sign = float(np.linalg.slogdet(bordered)[0])
-    return np.array([(1.0 if sign >= 0.0 else -1.0) * np.linalg.norm(bordered, -2)])
+    smallest = np.linalg.norm(bordered, -2)
+    determinant_sign = float(np.linalg.slogdet(bordered)[0])
+    if determinant_sign >= 0.0:
+        return np.array([smallest])
+    return np.array([-smallest])
 
 
 DETERMINANT = Monitor(signed_singular_value, feels_limits=False)
 """Monitor of equations without a potential."""
 
 
-def _limits(arc: Arc) -> list[Event] | None:
-    if (arc.start.factor_rate < 0.0) == (arc.end.factor_rate < 0.0):
+def _limit_points(arc: Arc) -> list[Event] | None:
+    """The limit point of a piece, if there is one; None where it cannot be computed."""
+    falls_at_start = arc.start.load_factor_rate < 0.0
+    falls_at_end = arc.end.load_factor_rate < 0.0
+    if falls_at_start == falls_at_end:
         return []
-    point = arc.zero(lambda p: p.factor_rate)
-    return None if point is None else [Event("limit", point)]
+    point = arc.zero(lambda p: p.load_factor_rate)
+    if point is None:
+        return None
+    return [Event("limit", point)]
 
 
-def _zeros(arc: Arc) -> list[ArcPoint] | None:
-    """Where numbers of the monitor change sign, each for itself."""
-    neutral = min(_neutral(arc.start.spectrum), _neutral(arc.end.spectrum))
-    before, after = (_negative(_without(p.spectrum, neutral)) for p in (arc.start, arc.end))
-    found = []
-    for k in range(min(before, after), max(before, after)):
-        point = arc.zero(lambda p, k=k: float(_without(p.spectrum, neutral)[k]))  # type: ignore[misc]
+def _monitor_zeros(arc: Arc) -> list[ArcPoint] | None:
+    """Where numbers of the monitor change sign, each for itself; None where one cannot be computed."""
+    # What is zero at both ends belongs to a symmetry.
+    neutral = min(_count_neutral(arc.start.spectrum), _count_neutral(arc.end.spectrum))
+    negative_at_start = _count_negative(_without_neutral(arc.start.spectrum, neutral))
+    negative_at_end = _count_negative(_without_neutral(arc.end.spectrum, neutral))
+    fewer = min(negative_at_start, negative_at_end)
+    more = max(negative_at_start, negative_at_end)
+    zeros = []
+    for k in range(fewer, more):
+        point = arc.zero(_monitored(k, neutral))
         if point is None:
             return None
-        found.append(point)
-    return found
+        zeros.append(point)
+    return zeros
 
 
-def _merged(zeros: list[ArcPoint]) -> list[Event]:
+def _monitored(k: int, neutral: int) -> Callable[[ArcPoint], float]:
+    """Number k of the monitor, neutral ones left out, as a function of the point."""
+
+    def value(point: ArcPoint) -> float:
+        spectrum = _without_neutral(point.spectrum, neutral)
+        return float(spectrum[k])
+
+    return value
+
+
+def _bifurcations(zeros: list[ArcPoint]) -> list[Event]:
+    """Zeros as events; those at one point are one event of a higher multiplicity."""
     events: list[Event] = []
+    latest = -np.inf
     for point in sorted(zeros, key=lambda p: p.length):
-        if events and point.length - events[-1].point.length <= SAME:
-            events[-1] = Event("bifurcation", events[-1].point, events[-1].multiplicity + 1)
+        if point.length - latest <= SAME:
+            same = events[-1]
+            events[-1] = Event("bifurcation", same.point, same.multiplicity + 1)
         else:
             events.append(Event("bifurcation", point))
+            latest = point.length
     return events
 
 
-def _neutral(spectrum: FloatArray) -> int:
+def _count_neutral(spectrum: FloatArray) -> int:
     """How many numbers are zero to rounding."""
-    return int(np.sum(np.abs(spectrum) <= SINGULAR * max(1.0, float(np.abs(spectrum).max(initial=0.0)))))
+    sizes = np.abs(spectrum)
+    largest = float(sizes.max(initial=0.0))
+    rounding = SINGULAR * max(1.0, largest)
+    zero = sizes <= rounding
+    return int(np.sum(zero))
 
 
-def _without(spectrum: FloatArray, neutral: int) -> FloatArray:
+def _without_neutral(spectrum: FloatArray, neutral: int) -> FloatArray:
     """The spectrum without the numbers that a symmetry keeps at zero all along the piece, still ascending."""
-    kept = np.argsort(np.abs(spectrum), kind="stable")[neutral:]
+    sizes = np.abs(spectrum)
+    by_size = np.argsort(sizes, kind="stable")
+    kept = by_size[neutral:]
     return spectrum[np.sort(kept)]
 
 
-def _negative(spectrum: FloatArray) -> int:
-    return int(np.sum(spectrum < 0.0))
+def _count_negative(spectrum: FloatArray) -> int:
+    negative = spectrum < 0.0
+    return int(np.sum(negative))

@@ -1,8 +1,11 @@
 """Newton's method that keeps a Jacobian while it serves; success is judged here, by finiteness and residual.
 
-A Jacobian and its factorisation cost several residuals. Between two of them the steps are corrected by rank-one
-updates, which converge superlinearly. A step that does not lower the residual well enough asks for a new Jacobian;
-with a new one it is halved until it does. The exported C holds the same algorithm.
+A Jacobian and its factorisation cost several residuals. Between two of them the steps are corrected by Broyden's
+rank-one updates, which converge superlinearly. A step that does not lower the residual well enough asks for a new
+Jacobian; with a new one it is halved until it does (J. E. Dennis, R. B. Schnabel, *Numerical Methods for Unconstrained
+Optimization and Nonlinear Equations*, SIAM 1996, sections 6.3 and 8.3). See docs/theory.md, section 9.
+
+The exported C takes the same steps, but has no :attr:`NewtonSettings.aim`: it stops at the tolerance.
 """
 
 from __future__ import annotations
@@ -13,11 +16,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.broyden import Jacobian, Secant
+from cosserat_casadi.numerics.broyden import Jacobian, UpdatedJacobian
 from cosserat_casadi.numerics.outcome import Outcome
 
 SUFFICIENT_DECREASE = 1e-4
+"""Share of the step length by which the residual norm must fall at least (Armijo's condition)."""
+
 SHORTEST_STEP = 2.0**-12
+"""Share of a Newton step below which the line search gives up."""
 
 KEPT_DECREASE = 0.5
 """A Jacobian is kept while a step leaves at most this share of the residual."""
@@ -47,7 +53,7 @@ class NewtonSettings:
         tolerance: bound on the residual norm, see :func:`relative_norm`.
         aim: residual norm at which to stop; between it and the tolerance full steps go on while they help.
         iterations: most steps tried.
-        rough: length of the step that would come next, as the last one foretells it, at which to stop; 0 for never.
+        inexact: length of the step that would come next, as the last one foretells it, at which to stop; 0 for never.
         jacobians: most Jacobians factorised.
         damping: whether a step may be shortened.
     """
@@ -55,7 +61,7 @@ class NewtonSettings:
     tolerance: float = 1e-11
     aim: float = 1e-13
     iterations: int = 60
-    rough: float = 0.0
+    inexact: float = 0.0
     jacobians: int = 60
     damping: bool = True
 
@@ -72,7 +78,7 @@ class NewtonResult:
         jacobians: Jacobians factorised.
         damped: whether any step had to be shortened.
         residual: residual at x, shape (n,).
-        secant: the last Jacobian with the steps since; None where none was asked for.
+        last_jacobian: the last Jacobian with the steps since; None where none was asked for.
     """
 
     x: FloatArray
@@ -82,7 +88,100 @@ class NewtonResult:
     jacobians: int
     damped: bool
     residual: FloatArray
-    secant: Secant | None
+    last_jacobian: UpdatedJacobian | None
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A step that lowers the residual.
+
+    Attributes:
+        step: the full step, shape (n,).
+        length: share of it that was taken.
+        x: where it leads, shape (n,).
+        residual: residual there, shape (n,).
+        norm: 2-norm of that residual.
+    """
+
+    step: FloatArray
+    length: float
+    x: FloatArray
+    residual: FloatArray
+    norm: float
+
+
+@dataclass
+class _Iterate:
+    """What changes from one Newton step to the next.
+
+    Attributes:
+        x: unknowns, shape (n,).
+        residual: residual at x, shape (n,).
+        norm: 2-norm of the residual.
+        jacobian: the last Jacobian with the steps since; None before the first.
+        reuse_jacobian: whether the next step may take that Jacobian.
+        inexact_enough: whether the last step foretells one shorter than the settings ask to go on for.
+        iterations: steps tried.
+        jacobians: Jacobians factorised.
+        damped: whether a step had to be shortened.
+    """
+
+    x: FloatArray
+    residual: FloatArray
+    norm: float
+    jacobian: UpdatedJacobian | None = None
+    reuse_jacobian: bool = False
+    inexact_enough: bool = False
+    iterations: int = 0
+    jacobians: int = 0
+    damped: bool = False
+
+    def within(self, bound: float) -> bool:
+        """Whether the relative norm of the residual is at most a bound."""
+        largest = bound * _scale(self.x)
+        return self.norm <= largest
+
+    def linearise(self, equations: Equations) -> UpdatedJacobian:
+        """Form a Jacobian at x, without updates yet."""
+        self.jacobian = UpdatedJacobian(equations.jacobian(self.x))
+        self.jacobians += 1
+        return self.jacobian
+
+    def accept(self, trial: _Trial, jacobian: UpdatedJacobian, inexact: float) -> None:
+        """Move on, and decide whether the Jacobian that gave the step serves for the next one.
+
+        Args:
+            trial: where to.
+            jacobian: what gave the step.
+            inexact: as in :class:`NewtonSettings`.
+        """
+        norm_before = self.norm
+        self.x = trial.x
+        self.residual = trial.residual
+        self.norm = trial.norm
+        if trial.length < 1.0:
+            # Broyden's update holds for full steps only, so a shortened one ends the use of its Jacobian.
+            self.damped = True
+            self.reuse_jacobian = False
+            return
+        jacobian.steps.append(trial.step)
+        # The next step will be shorter than this one by about as much as the residual has fallen.
+        self.inexact_enough = length_of(trial.step) * trial.norm < inexact * norm_before
+        decreased = trial.norm <= KEPT_DECREASE * norm_before
+        self.reuse_jacobian = decreased and len(jacobian.steps) < KEPT_STEPS
+
+    def result(self, outcome: Outcome) -> NewtonResult:
+        """The end of the solve at this iterate."""
+        return NewtonResult(
+            x=self.x,
+            outcome=outcome,
+            residual_norm=self.norm / _scale(self.x),
+            iterations=self.iterations,
+            jacobians=self.jacobians,
+            damped=self.damped,
+            residual=self.residual,
+            last_jacobian=self.jacobian,
+        )
 
 
 def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) -> NewtonResult:
@@ -93,69 +192,93 @@ def newton(equations: Equations, start: FloatArray, settings: NewtonSettings) ->
         start: first iterate, shape (n,).
         settings: limits.
     """
-    x, damped, jacobians, keep, rough = start, False, 0, False, False
-    residual, secant = equations.residual(x), Secant(np.zeros((0, 0)))
-    norm = length_of(residual)
-
-    def end(outcome: Outcome, iterations: int) -> NewtonResult:
-        kept = secant if jacobians else None
-        return NewtonResult(x, outcome, norm / _size(x), iterations, jacobians, damped, residual, kept)
-
-    iteration = -1
+    residual = equations.residual(start)
+    iterate = _Iterate(start, residual, length_of(residual))
     while True:
-        iteration += 1
-        # Beside unknowns without a finite norm every residual would be small.
-        if not np.isfinite(norm) or not np.isfinite(_size(x)):
-            return end(Outcome.NOT_FINITE, iteration)
-        done = rough or norm <= settings.tolerance * _size(x)
-        spent = iteration == settings.iterations or (jacobians == settings.jacobians and not keep)
-        if rough or norm <= settings.aim * _size(x) or spent:
-            return end(Outcome.CONVERGED if done else Outcome.MAX_ITERATIONS, iteration)
-        if not keep:
-            secant, jacobians, keep = Secant(equations.jacobian(x)), jacobians + 1, False
-            if not secant.finite:
-                return end(Outcome.NOT_FINITE, iteration)
-        step, whole = secant.step(residual), keep or done or not settings.damping
-        found = None if step is None else _search(equations, x, step, norm, 1.0 if whole else SHORTEST_STEP)
-        if step is None or found is None:
-            if done or not keep:
-                return end(Outcome.CONVERGED if done else Outcome.SINGULAR, iteration + 1)
-            keep = False
-            continue
-        x, length, residual = found
-        norm, before = length_of(residual), norm
-        damped = damped or length < 1.0
-        if length == 1.0:
-            secant.steps.append(step)
-            rough = length_of(step) * norm < settings.rough * before
-        keep = length == 1.0 and norm <= KEPT_DECREASE * before and len(secant.steps) < KEPT_STEPS
+        outcome = _outcome_before_step(iterate, settings)
+        if outcome is not None:
+            return iterate.result(outcome)
+
+        jacobian = iterate.jacobian
+        if jacobian is None or not iterate.reuse_jacobian:
+            jacobian = iterate.linearise(equations)
+            if not jacobian.finite:
+                return iterate.result(Outcome.NOT_FINITE)
+
+        within_tolerance = iterate.within(settings.tolerance)
+        # A shorter step mends neither a Jacobian of an earlier iterate nor, below the tolerance, rounding.
+        full_step_only = iterate.reuse_jacobian or within_tolerance or not settings.damping
+        step = jacobian.step(iterate.residual)
+        trial = _line_search(equations, iterate, step, full_step_only)
+        iterate.iterations += 1
+
+        if trial is not None:
+            iterate.accept(trial, jacobian, settings.inexact)
+        elif within_tolerance:
+            # Only full steps towards the aim were left, and they help no more.
+            return iterate.result(Outcome.CONVERGED)
+        elif iterate.reuse_jacobian:
+            # The Jacobian may be too old: the same iterate gets one of its own.
+            iterate.reuse_jacobian = False
+        else:
+            return iterate.result(Outcome.SINGULAR)
 
 
-def _search(
-    equations: Equations, x: FloatArray, step: FloatArray, norm: float, shortest: float
-) -> tuple[FloatArray, float, FloatArray] | None:
-    """Halve the step until the residual falls; None if it never does."""
+def _outcome_before_step(iterate: _Iterate, settings: NewtonSettings) -> Outcome | None:
+    """How the solve ends at an iterate; None where another step is due."""
+    # Beside unknowns without a finite norm every residual would be small.
+    scale = _scale(iterate.x)
+    if not np.isfinite(iterate.norm) or not np.isfinite(scale):
+        return Outcome.NOT_FINITE
+
+    # The last Jacobian of the budget may go on serving.
+    no_jacobian_left = iterate.jacobians == settings.jacobians
+    no_step_left = iterate.iterations == settings.iterations
+    budget_spent = no_step_left or (no_jacobian_left and not iterate.reuse_jacobian)
+    aim_reached = iterate.inexact_enough or iterate.within(settings.aim)
+    if not aim_reached and not budget_spent:
+        return None
+
+    # Between tolerance and aim the budget may run out: that is a success all the same.
+    if iterate.inexact_enough or iterate.within(settings.tolerance):
+        return Outcome.CONVERGED
+    return Outcome.MAX_ITERATIONS
+
+
+def _line_search(
+    equations: Equations, iterate: _Iterate, step: FloatArray | None, full_step_only: bool
+) -> _Trial | None:
+    """Halve a step until the residual falls; None where there is no step or none lowers it."""
+    if step is None:
+        return None
+    shortest = SHORTEST_STEP
+    if full_step_only:
+        shortest = 1.0
+    # Halving, not interpolating: a residual that overflows gives nothing to interpolate.
     length = 1.0
     while length >= shortest:
-        trial = x + length * step
-        residual = equations.residual(trial)
-        trial_norm = length_of(residual)
-        if np.isfinite(trial_norm) and trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm:
-            return trial, length, residual
+        x = iterate.x + length * step
+        residual = equations.residual(x)
+        norm = length_of(residual)
+        bound = (1 - SUFFICIENT_DECREASE * length) * iterate.norm
+        if np.isfinite(norm) and norm <= bound:
+            return _Trial(step, length, x, residual, norm)
         length /= 2
     return None
 
 
 def relative_norm(residual: FloatArray, x: FloatArray) -> float:
     """2-norm of the dimensionless residual over one plus that of the unknowns: what rounding scales with."""
-    return length_of(residual) / _size(x)
+    scale = _scale(x)
+    return length_of(residual) / scale
 
 
-def _size(x: FloatArray) -> float:
+def _scale(x: FloatArray) -> float:
     return 1.0 + length_of(x)
 
 
 def length_of(vector: FloatArray) -> float:
     """2-norm; infinite where the squares overflow, which the line search takes for a step too long."""
     with np.errstate(over="ignore", invalid="ignore"):
-        return float(np.sqrt(vector @ vector))
+        squares = vector @ vector
+        return float(np.sqrt(squares))

@@ -1,4 +1,4 @@
-"""How a solve ended, as data: the value is the sentence that a user reads."""
+"""How a solve ended, as data: the value is the sentence that a user reads. See docs/theory.md, sections 9 and 10."""
 
 from __future__ import annotations
 

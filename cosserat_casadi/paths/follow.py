@@ -1,26 +1,30 @@
-"""Equilibrium paths of a model: one input grows from zero, the equilibrium is followed through folds and branches."""
+"""Equilibrium paths of a model: one input grows from zero, the equilibrium is followed through folds and branches.
+
+See docs/theory.md, section 11.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.load_path import input_path
+from cosserat_casadi.equilibrium.load_path import column, input_path
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.equilibrium.solve import solve
-from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, judged, variations
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
-from cosserat_casadi.numerics.continuation import Path, Progress
-from cosserat_casadi.numerics.events import DETERMINANT
+from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
 
 
@@ -90,51 +94,109 @@ class EquilibriumPath:
         """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
         if self.smallest_eigenvalue is None or self.neutral is None:
             return None
-        return (self.smallest_eigenvalue > 0.0) | self.neutral
+        every_variation_costs = self.smallest_eigenvalue > 0.0
+        return every_variation_costs | self.neutral
 
     def inputs(self, factor: float) -> FloatArray:
         """Stacked inputs at a factor."""
-        return self.base + factor * self.change
+        change = factor * self.change
+        return self.base + change
 
     def tip(self, rod: str | None = None) -> Pose:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
-        return _tips(self.model, self.x, self.model.rod_name(rod))
+        name = self.model.rod_name(rod)
+        return self._tips(name, self.factor, self.x)
 
     def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
         """Pose of a rod's tip at an event, shapes (1, …)."""
-        return _tips(self.model, event.x[None, :], self.model.rod_name(rod))
+        name = self.model.rod_name(rod)
+        return self._tips(name, [event.factor], [event.x])
 
     def section(self, rod: str | None = None) -> float:
-        """Abscissa of the section whose way tells most: the tip, of a held rod where the followed load acts, or 1/2."""
-        name, scene = self.model.rod_name(rod), self.model.scene
-        if all(holder.rod != name for holder in (*scene.supports, *scene.joints)):
+        """Abscissa of the section whose way tells most of the path.
+
+        The tip of a free rod; of a rod held at its tip where the followed load acts, or its middle.
+        """
+        name = self.model.rod_name(rod)
+        scene = self.model.scene
+        tip_is_free = all(holder.rod != name for holder in (*scene.supports, *scene.joints))
+        if tip_is_free:
             return 1.0
-        load = next(load for load in scene.causes if load.name == self.name.split(".")[0])
-        return float(getattr(load, "at", 0.5)) if getattr(load, "rod", name) == name else 0.5
+        # The tip of a held rod does not move, so that its way tells nothing.
+        load_name = self.name.split(".")[0]
+        load = next(load for load in scene.causes if load.name == load_name)
+        if getattr(load, "rod", name) != name:
+            return 0.5
+        return float(getattr(load, "at", 0.5))
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
-        return _positions(self.model, self.x, self.model.rod_name(rod), X)
+        name = self.model.rod_name(rod)
+        return self._positions(name, X, self.factor, self.x)
 
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
-        return np.asarray(_positions(self.model, event.x[None, :], self.model.rod_name(rod), X)[0])
+        name = self.model.rod_name(rod)
+        positions = self._positions(name, X, [event.factor], [event.x])
+        return np.asarray(positions[0])
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
-        factor, x = float(self.factor[index]), self.x[index]
-        stable, least = self.stable, self.smallest_eigenvalue
-        return Solution(
+        x = self.x[index]
+        inputs = self.inputs(float(self.factor[index]))
+        residual = column(self.model.residual(x, inputs))
+        solution = Solution(
             self.model,
-            self.inputs(factor),
+            inputs,
             x,
             Outcome.CONVERGED,
             Outcome.CONVERGED.value,
-            residual_norm=relative_norm(self.model.residual(x, self.inputs(factor)).full()[:, 0], x),
+            residual_norm=relative_norm(residual, x),
             iterations=0,
-            smallest_eigenvalue=None if least is None else float(least[index]),
-            stable=None if stable is None else bool(stable[index]),
         )
+        stable = self.stable
+        if stable is None or self.smallest_eigenvalue is None:
+            return solution
+        return replace(
+            solution,
+            smallest_eigenvalue=float(self.smallest_eigenvalue[index]),
+            stable=bool(stable[index]),
+        )
+
+    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> Pose:
+        """Poses of a rod's tip at k equilibria.
+
+        Args:
+            rod: name of the rod.
+            factors: factor of each equilibrium.
+            unknowns: unknowns of each, shape (model.size,).
+        """
+        tip = self.model.tip[rod]
+        positions = []
+        quaternions = []
+        rotations = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            # The length and the base of a rod may be inputs.
+            inputs = self.inputs(factor)
+            position, quaternion, rotation = tip(x, inputs)
+            positions.append(position.full()[:, 0])
+            quaternions.append(quaternion.full()[:, 0])
+            rotations.append(rotation.full())
+        return Pose(
+            position=np.array(positions).reshape(-1, 3),
+            rotation=np.array(rotations).reshape(-1, 3, 3),
+            quaternion=np.array(quaternions).reshape(-1, 4),
+        )
+
+    def _positions(self, rod: str, X: float, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> FloatArray:
+        """Positions of a section at k equilibria, shape (k, 3), m; arguments as in :meth:`_tips`."""
+        section_pose = self.model.shape[rod]
+        positions = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            inputs = self.inputs(factor)
+            position, _ = section_pose(x, inputs, X)
+            positions.append(position.full()[:, 0])
+        return np.array(positions).reshape(-1, 3)
 
 
 @dataclass(frozen=True)
@@ -145,7 +207,7 @@ class _Followed:
         model: the model.
         name: the input.
         base: stacked inputs with this one at zero.
-        change: what is added to them at factor 1.
+        change: what is added to them at the load factor 1.
     """
 
     model: Model
@@ -156,15 +218,22 @@ class _Followed:
     @cached_property
     def potential(self) -> bool:
         """Whether all loads have a potential along the path."""
-        return self.model.has_potential(self.base) and self.model.has_potential(self.base + self.change)
+        has_potential = self.model.has_potential
+        end = self.base + self.change
+        return has_potential(self.base) and has_potential(end)
 
     @property
     def monitor(self) -> Monitor:
         """Eigenvalues of the second variation where that has a meaning, else the determinant."""
         if not self.potential:
             return DETERMINANT
+        # Eigenvalues see a double bifurcation too, where the determinant keeps its sign.
         allowed = variations(self.model)
-        return Monitor(lambda jacobian, _: admissible_eigenvalues(jacobian, allowed), feels_limits=True)
+
+        def eigenvalues(jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:
+            return admissible_eigenvalues(jacobian, allowed)
+
+        return Monitor(eigenvalues, feels_limits=True)
 
     @cached_property
     def scale(self) -> FloatArray:
@@ -172,43 +241,98 @@ class _Followed:
 
         Otherwise a strong load on a held rod would make a long way of small steps.
         """
-        rate = self.model.path_rate(np.zeros(self.model.size), self.base, 1.0, self.change, 0.0).full()
-        scale = np.ones(self.model.size)
-        scale[variations(self.model).held] = max(1.0, float(np.linalg.norm(rate)))
+        model = self.model
+        unloaded = np.zeros(model.size)
+        load_factor = 1.0
+        load_factor_rate = 0.0
+        rate = model.path_rate(unloaded, self.base, load_factor, self.change, load_factor_rate)
+        load = float(np.linalg.norm(rate.full()))
+        multipliers = variations(model).held
+        scale = np.ones(model.size)
+        scale[multipliers] = max(1.0, load)
         return scale
 
     def curve(self, start: FloatArray, settings: ArcSettings) -> Curve:
         """The path's equations in scaled unknowns."""
-        plain, scale = input_path(self.model, start, self.base, self.base + self.change), self.scale
+        scale = self.scale
+        unscaled = input_path(self.model, start, self.base, self.base + self.change)
+
+        def jacobian(x: FloatArray, t: float) -> FloatArray:
+            # The chain rule: one column an unknown.
+            unscaled_jacobian = dense(unscaled.jacobian(scale * x, t))
+            return unscaled_jacobian * scale
+
         scaled = Path(
-            residual=lambda x, t: plain.residual(scale * x, t),
-            jacobian=lambda x, t: dense(plain.jacobian(scale * x, t)) * scale,
-            rate=lambda x, t: plain.rate(scale * x, t),
+            residual=lambda x, t: unscaled.residual(scale * x, t),
+            jacobian=jacobian,
+            rate=lambda x, t: unscaled.rate(scale * x, t),
             start=start / scale,
         )
         return Curve(scaled, self.monitor, settings)
 
-    def record(self, found: Trace, message: str = "") -> EquilibriumPath:
-        """What was found, as arrays."""
-        outcome = found.outcome or PathOutcome.MAX_STEPS
-        y = np.array([p.y for p in found.points]).reshape(-1, self.model.size + 1)
-        tests = [judged(p.spectrum) for p in found.points] if self.potential else None
-        place = self.model.inputs.slices[self.name]
-        shape = self.model.inputs.defaults[self.model.inputs.names.index(self.name)].shape
+    def record(self, traced: Trace, message: str = "") -> EquilibriumPath:
+        """A trace as arrays.
+
+        Args:
+            traced: what has been computed of the curve.
+            message: a sentence for the user; by default that of the outcome.
+        """
+        outcome = traced.outcome or PathOutcome.MAX_STEPS
+        # Without a point there are no rows, but columns all the same.
+        y = np.array([point.y for point in traced.points]).reshape(-1, self.model.size + 1)
+        load_factors = y[:, -1]
+        smallest_eigenvalue = None
+        neutral = None
+        if self.potential:
+            tests = [stability_of(point.spectrum) for point in traced.points]
+            smallest_eigenvalue = np.array([test.smallest_eigenvalue for test in tests])
+            neutral = np.array([test.neutral for test in tests], dtype=np.bool_)
         return EquilibriumPath(
             model=self.model,
             name=self.name,
-            value=self.change[place].reshape(shape, order="F"),
+            value=self._value(),
             base=self.base,
             change=self.change,
             outcome=outcome,
-            message=message or _sentence(outcome, y[:, -1]),
-            factor=y[:, -1],
+            message=message or _sentence(outcome, load_factors),
+            factor=load_factors,
             x=y[:, :-1] * self.scale,
-            smallest_eigenvalue=None if tests is None else np.array([t.smallest_eigenvalue for t in tests]),
-            neutral=None if tests is None else np.array([t.neutral for t in tests], dtype=np.bool_),
-            events=_events(found, self.scale),
-            branch=found.branch,
+            smallest_eigenvalue=smallest_eigenvalue,
+            neutral=neutral,
+            events=self._events(traced),
+            branch=traced.branch,
+        )
+
+    def _value(self) -> FloatArray:
+        """The followed input at the load factor 1, shaped as the input."""
+        layout = self.model.inputs
+        index = layout.names.index(self.name)
+        shape = layout.defaults[index].shape
+        stacked = self.change[layout.slices[self.name]]
+        return stacked.reshape(shape, order="F")
+
+    def _events(self, traced: Trace) -> tuple[PathEvent, ...]:
+        """The events of a trace as those of the path."""
+        lengths = np.array([point.length for point in traced.points])
+        events = [self._event(event, lengths) for event in traced.events]
+        return tuple(events)
+
+    def _event(self, event: Event, lengths: FloatArray) -> PathEvent:
+        """An event of the curve as one of the path.
+
+        Args:
+            event: of the curve in scaled unknowns.
+            lengths: arclengths of the points of the path, ascending.
+        """
+        point = event.point
+        # An event that is a point of the path, where a branch leaves, lies before what follows it.
+        position = np.searchsorted(lengths, point.length, side="right")
+        return PathEvent(
+            kind=event.kind,
+            factor=point.load_factor,
+            x=point.x * self.scale,
+            multiplicity=event.multiplicity,
+            position=int(position),
         )
 
 
@@ -235,58 +359,42 @@ def follow_path(
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
         settings: limits.
-        progress: told the largest factor reached.
+        progress: receives the largest factor reached.
 
     Raises:
         SceneError: the input is unknown, or a value is refused.
     """
     followed = _followed(model, name, value, values)
-    start = solve(model, model.inputs.unpack(followed.base))
+    values_at_zero = model.inputs.unpack(followed.base)
+    start = solve(model, values_at_zero)
     if not start.converged:
-        none = Trace([], outcome=PathOutcome.NO_START)
-        return followed.record(none, f"{PathOutcome.NO_START.value} {start.message}")
+        outcome = PathOutcome.NO_START
+        empty = Trace([], outcome=outcome)
+        return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
-    return followed.record(trace(curve, branch=branch, progress=progress))
+    traced = trace(curve, branch=branch, progress=progress)
+    return followed.record(traced)
 
 
 def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str, npt.ArrayLike] | None) -> _Followed:
-    full = model.pack({**(values or {}), name: value})
+    """The input to follow, its value checked with the others.
+
+    Raises:
+        SceneError: the input is unknown, or a value is refused.
+    """
+    given = dict(values or {})
+    given[name] = value
+    full = model.pack(given)
     base = full.copy()
+    # The followed input grows from zero, whatever the scene gives it; all others keep their values.
     base[model.inputs.slices[name]] = 0.0
-    return _Followed(model, name, base, full - base)
+    change = full - base
+    return _Followed(model, name, base, change)
 
 
-def _sentence(outcome: PathOutcome, factors: FloatArray) -> str:
-    if outcome is PathOutcome.CONVERGED or not len(factors):
+def _sentence(outcome: PathOutcome, load_factors: FloatArray) -> str:
+    if outcome is PathOutcome.CONVERGED or not len(load_factors):
         return outcome.value
-    return f"{outcome.value} Largest factor reached: {factors.max():.6g}; last: {factors[-1]:.6g}."
-
-
-def _events(found: Trace, scale: FloatArray) -> tuple[PathEvent, ...]:
-    lengths = np.array([point.length for point in found.points])
-    return tuple(
-        PathEvent(
-            event.kind,
-            event.point.factor,
-            event.point.x * scale,
-            event.multiplicity,
-            int(np.searchsorted(lengths, event.point.length, side="right")),
-        )
-        for event in found.events
-    )
-
-
-def _tips(model: Model, x: FloatArray, rod: str) -> Pose:
-    """Poses of a tip for unknowns of shape (k, n)."""
-    none = np.zeros(model.inputs.size)
-    found = [[part.full() for part in model.tip[rod](row, none)] for row in x]
-    position = np.array([p[:, 0] for p, _, _ in found]).reshape(-1, 3)
-    quaternion = np.array([q[:, 0] for _, q, _ in found]).reshape(-1, 4)
-    rotation = np.array([r for _, _, r in found]).reshape(-1, 3, 3)
-    return Pose(position, rotation, quaternion)
-
-
-def _positions(model: Model, x: FloatArray, rod: str, X: float) -> FloatArray:
-    """Positions of a section for unknowns of shape (k, n), shape (k, 3)."""
-    none = np.zeros(model.inputs.size)
-    return np.array([model.shape[rod](row, none, X)[0].full()[:, 0] for row in x]).reshape(-1, 3)
+    largest = load_factors.max()
+    last = load_factors[-1]
+    return f"{outcome.value} Largest factor reached: {largest:.6g}; last: {last:.6g}."

@@ -1,4 +1,7 @@
-"""A path on a discretisation that is fine enough: refined until the events and the end stay where they are."""
+"""A path on a discretisation that is fine enough: refined until the events and the end stay where they are.
+
+See docs/theory.md, section 11, "Modes".
+"""
 
 from __future__ import annotations
 
@@ -10,22 +13,25 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import ROUNDING, Report, largest_turn
+from cosserat_casadi.accuracy.refine import ROUNDING, largest_turn
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings
-from cosserat_casadi.numerics.continuation import Progress
+from cosserat_casadi.numerics.progress import Progress, Report
 from cosserat_casadi.paths.follow import EquilibriumPath, follow_path
 from cosserat_casadi.paths.trace import PathOutcome
 
-LADDER = (6, 9, 12, 16, 21, 28, 36)
-"""Modes per strain component and element, rung by rung."""
+MODES = (6, 9, 12, 16, 21, 28, 36)
+"""Modes per strain component and element, one refinement level after the other."""
 
 SPARE = 2
 """Intervals beyond those that the modes of an unbent rod need."""
 
-LOOKED_AT = 12
-"""Points of a path whose turn says how many intervals the next rung needs."""
+SAMPLES = 12
+"""Points of a path whose turn says how many intervals the next refinement level needs."""
+
+SMALLEST_FACTOR = 1e-12
+"""Factor of an event below which differences count absolutely."""
 
 
 def follow_scene_path(
@@ -52,8 +58,8 @@ def follow_scene_path(
         values: other inputs.
         branch: number of the bifurcation to leave at.
         settings: limits.
-        progress: told the largest factor reached.
-        report: told the discretisation.
+        progress: receives the largest factor reached.
+        report: receives the discretisation, in words.
 
     Raises:
         SceneError: the input is unknown, or a value is refused.
@@ -61,52 +67,93 @@ def follow_scene_path(
 
     def follow(model: Model) -> EquilibriumPath:
         if report is not None:
-            report(f"{model.size} unknowns, {max(d.nodes for d in model.discretisation.values())} intervals")
-        return follow_path(model, name, value, values, branch=branch, settings=settings, progress=progress)
+            discretisations = model.discretisation.values()
+            intervals = max(discretisation.nodes for discretisation in discretisations)
+            report(f"{model.size} unknowns, {intervals} intervals")
+        return follow_path(
+            model,
+            name,
+            value,
+            values,
+            branch=branch,
+            settings=settings,
+            progress=progress,
+        )
 
-    if scene.accuracy.modes is not None or scene.accuracy.nodes is not None:
+    accuracy = scene.accuracy
+    fixed = accuracy.modes is not None or accuracy.nodes is not None
+    if fixed:
+        # There is nothing to refine, and so nothing to estimate an error by.
         return follow(build(scene))
     coarse: EquilibriumPath | None = None
-    for modes in LADDER:
-        turn = 0.0 if coarse is None else _turn(coarse)
+    for modes in MODES:
+        turn = 0.0
+        if coarse is not None:
+            turn = _largest_turn(coarse)
+        # Chebyshev interpolation resolves 2 rad in an interval.
         nodes = nodes_for(modes) + SPARE + ceil(turn / 2)
-        fine = follow(build(scene, discretise(scene, modes, nodes, "magnus8")))
-        change = np.inf if coarse is None else path_distance(coarse, fine)
-        if change <= scene.accuracy.tolerance:
-            return replace(fine, error_estimate=change + ROUNDING)
+        # The rotation of highest order: what changes from level to level is the modes' error alone.
+        discretisation = discretise(scene, modes, nodes, "magnus8")
+        fine = follow(build(scene, discretisation))
+        if coarse is not None:
+            change = path_distance(coarse, fine)
+            if change <= accuracy.tolerance:
+                return replace(fine, error_estimate=change + ROUNDING)
         coarse = fine
-    return fine if not fine.converged else _unresolved(fine)
+    if not fine.converged:
+        return fine
+    return replace(fine, outcome=PathOutcome.UNRESOLVED, message=PathOutcome.UNRESOLVED.value)
 
 
-def path_distance(one: EquilibriumPath, other: EquilibriumPath) -> float:
+def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
     """Largest difference of two paths of a scene: event factors (relative), tips there and at factor 1 (over length).
 
     Infinite where they end otherwise or have other events.
     """
-    kinds = [[event.kind for event in path.events] for path in (one, other)]
-    if one.outcome is not other.outcome or kinds[0] != kinds[1]:
+    coarse_kinds = [event.kind for event in coarse.events]
+    fine_kinds = [event.kind for event in fine.events]
+    if coarse.outcome is not fine.outcome or coarse_kinds != fine_kinds:
         return float("inf")
-    gaps = [0.0]
-    for a, b in zip(one.events, other.events, strict=True):
-        gaps.append(abs(a.factor - b.factor) / max(abs(b.factor), 1e-12))
-    for name, discrete_rod in one.model.discrete.rods.items():
-        moved = [
-            one.event_tip(a, name).position - other.event_tip(b, name).position
-            for a, b in zip(one.events, other.events, strict=True)
-        ]
-        if one.converged:
-            moved.append(one.tip(name).position[-1:] - other.tip(name).position[-1:])
-        gaps += [float(np.abs(gap).max()) / discrete_rod.properties.length for gap in moved]
-    return max(gaps)
+    differences = [0.0]
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        difference = abs(coarse_event.factor - fine_event.factor)
+        scale = max(abs(fine_event.factor), SMALLEST_FACTOR)
+        differences.append(difference / scale)
+    for rod in coarse.model.discrete.rods:
+        differences += _tip_differences(coarse, fine, rod)
+    return max(differences)
 
 
-def _turn(path: EquilibriumPath) -> float:
+def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -> list[float]:
+    """Distances of a rod's tips at events and at factor 1, the largest component over the length."""
+    pairs = []
+    for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
+        coarse_tip = coarse.event_tip(coarse_event, rod)
+        fine_tip = fine.event_tip(fine_event, rod)
+        pairs.append((coarse_tip.position, fine_tip.position))
+    # A path that ends short of factor 1 has no end to compare.
+    if coarse.converged:
+        coarse_tip = coarse.tip(rod)
+        fine_tip = fine.tip(rod)
+        pairs.append((coarse_tip.position[-1], fine_tip.position[-1]))
+    length = coarse.model.discrete.rods[rod].properties.length
+    differences = []
+    for coarse_position, fine_position in pairs:
+        change = np.abs(coarse_position - fine_position)
+        differences.append(float(change.max()) / length)
+    return differences
+
+
+def _largest_turn(path: EquilibriumPath) -> float:
     """Largest angle through which an element turns at some points of a path, rad."""
-    if not len(path.factor):
+    count = len(path.factor)
+    if not count:
         return 0.0
-    chosen = np.unique(np.linspace(0, len(path.factor) - 1, LOOKED_AT).astype(int))
-    return max(largest_turn(path.solution(int(i))) for i in chosen)
-
-
-def _unresolved(path: EquilibriumPath) -> EquilibriumPath:
-    return replace(path, outcome=PathOutcome.UNRESOLVED, message=PathOutcome.UNRESOLVED.value)
+    samples = np.linspace(0, count - 1, SAMPLES)
+    # Short paths have fewer points than samples.
+    indices = np.unique(samples.astype(int))
+    turns = []
+    for index in indices:
+        solution = path.solution(int(index))
+        turns.append(largest_turn(solution))
+    return max(turns)

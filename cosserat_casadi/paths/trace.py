@@ -1,4 +1,7 @@
-"""A curve of equilibria from factor 0 to factor 1: steps, their control, the events on the way, the end."""
+"""A curve of equilibria from load factor 0 to 1: steps, their control, the events on the way, the end.
+
+See docs/theory.md, section 11.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ import numpy as np
 
 from cosserat_casadi.numerics.arclength import ArcPoint, Curve, Plane
 from cosserat_casadi.numerics.branches import switch
-from cosserat_casadi.numerics.continuation import Progress
 from cosserat_casadi.numerics.events import Arc, Event, events_between
+from cosserat_casadi.numerics.progress import Progress
 
 GROWTH = 1.5
 """Factor on the step after a quick correction."""
@@ -19,7 +22,10 @@ SEPARATE = 1e-4
 """Step below which events that cannot be told apart are left out rather than looked at more closely."""
 
 FARTHEST = -1.0
-"""Factor below which a path counts as led back."""
+"""Load factor below which a path counts as led back."""
+
+AWAY = 4
+"""Steps that a path must be long before coming near its start closes it."""
 
 
 class PathOutcome(Enum):
@@ -46,7 +52,7 @@ class PathOutcome(Enum):
 
 @dataclass
 class Trace:
-    """What was found along a curve.
+    """What has been computed of a curve.
 
     Attributes:
         points: accepted points in the order of travel.
@@ -62,93 +68,157 @@ class Trace:
 
 
 def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) -> Trace:
-    """Follow a curve from the start of its path, at factor 0, until the factor first reaches 1.
+    """Follow a curve from the start of its path, at load factor 0, until the load factor first reaches 1.
 
     Args:
         curve: the curve.
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
-        progress: told the largest factor reached, in [0, 1].
+        progress: receives the largest load factor reached, in [0, 1].
     """
-    y = np.append(curve.path.start, 0.0)
-    first = curve.point(y, np.append(np.zeros_like(curve.path.start), 1.0), 0.0)
+    # The start has no point before it: that the load grows decides which way is forward.
+    unloaded = np.append(curve.path.start, 0.0)
+    growing_load = np.append(np.zeros_like(curve.path.start), 1.0)
+    first = curve.point(unloaded, growing_load, 0.0)
     if first is None:
         return Trace([], outcome=PathOutcome.NO_START)
-    found, step, best = Trace([first]), curve.settings.first, 0.0
+    traced = Trace([first])
+    step = curve.settings.first
+    largest = 0.0
     for _ in range(curve.settings.steps):
-        step = _next(curve, found, step, leave=branch if found.branch is None else 0)
-        best = max(best, min(found.points[-1].factor, 1.0))
+        # A path is left once: on the branch it goes straight on.
+        leave_at = 0
+        if traced.branch is None:
+            leave_at = branch
+        step = _extend(curve, traced, step, leave_at)
+        reached = min(traced.points[-1].load_factor, 1.0)
+        largest = max(largest, reached)
         if progress is not None:
-            progress(best)
-        if found.outcome is not None:
-            return found
-    found.outcome = PathOutcome.MAX_STEPS
-    return found
+            progress(largest)
+        if traced.outcome is not None:
+            return traced
+    traced.outcome = PathOutcome.MAX_STEPS
+    return traced
 
 
-def _next(curve: Curve, found: Trace, step: float, *, leave: int) -> float:
-    """Try one step and add what it finds; the step to try next."""
-    here = found.points[-1]
-    step = curve.bounded(here, step)
-    advanced = curve.advance(here, step)
-    events = None if advanced is None else events_between(Arc(curve, here, advanced[0]))
-    if advanced is None or (events is None and step > SEPARATE):
-        if step / 2 < curve.settings.shortest:
-            found.outcome = PathOutcome.LOAD_STALLED
-        return step / 2
-    end = _end(Arc(curve, here, advanced[0]))
+def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
+    """Try one step and add what it passes to a trace.
+
+    Args:
+        curve: the curve.
+        traced: what has been computed of it.
+        step: arclength to try.
+        leave_at: as ``branch`` of :func:`trace`.
+
+    Returns:
+        the step to try next.
+    """
+    limits = curve.settings
+    current = traced.points[-1]
+    step = curve.bounded(current, step)
+    advance = curve.advance(current, step)
+    if advance is None:
+        return _halved(traced, step, limits.shortest)
+    arc = Arc(curve, current, advance.point)
+    events = events_between(arc)
+    if events is None and step > SEPARATE:
+        return _halved(traced, step, limits.shortest)
+
+    # A step may pass the load factor 1; what lies beyond is not asked for.
+    end = _end(arc)
+    # In a very short step events that stay together are left out: the path is worth more than they.
     passed = [event for event in events or [] if event.point.length <= end.length]
-    position = _place_to_leave(found, passed, abs(leave))
-    if position is not None:
-        _leave(curve, found, passed[: position + 1], 1 if leave > 0 else -1)
-        return curve.settings.first
-    found.points.append(end)
-    found.events += passed
-    found.outcome = _outcome(found, step, missing=leave != 0)
-    return step * (GROWTH if advanced[1] <= curve.settings.quick else 1.0)
+    departure = _departure(traced, passed, abs(leave_at))
+    if departure is not None:
+        # What lies beyond the bifurcation on this curve is none of the branch's.
+        side = 1
+        if leave_at < 0:
+            side = -1
+        _leave(curve, traced, passed[: departure + 1], side)
+        return limits.first
+    traced.points.append(end)
+    traced.events += passed
+    traced.outcome = _outcome(traced, step, bifurcation_missing=leave_at != 0)
+    if advance.corrections <= limits.grow_below:
+        step *= GROWTH
+    return step
+
+
+def _halved(traced: Trace, step: float, shortest: float) -> float:
+    """Half of a step that was refused; the path ends where that is too short."""
+    half = step / 2
+    if half < shortest:
+        traced.outcome = PathOutcome.LOAD_STALLED
+    return half
 
 
 def _end(arc: Arc) -> ArcPoint:
-    """The end of a step, or the point within it at which the factor reaches 1."""
-    if arc.end.factor < 1.0:
+    """The end of a step, or the point within it at which the load factor reaches 1."""
+    if arc.end.load_factor < 1.0:
         return arc.end
-    near = arc.zero(lambda point: point.factor - 1.0)
+    near = arc.zero(lambda point: point.load_factor - 1.0)
     if near is None:
         return arc.end
-    level = np.append(np.zeros_like(near.x), 1.0)
-    exact = arc.curve.correct(np.append(near.x, 1.0), Plane(level, 1.0))
-    point = None if exact is None else arc.curve.point(np.append(exact[0][:-1], 1.0), near.tangent, near.length)
+    # At the load factor 1 to the last digit, so that the end is the equilibrium asked for.
+    across_loads = np.append(np.zeros_like(near.x), 1.0)
+    guess = np.append(near.x, 1.0)
+    corrected = arc.curve.correct(guess, Plane(across_loads, 1.0))
+    if corrected is None:
+        return near
+    x = corrected.y[:-1]
+    exact = np.append(x, 1.0)
+    point = arc.curve.point(exact, near.tangent, near.length)
     return point or near
 
 
-def _place_to_leave(found: Trace, passed: list[Event], number: int) -> int | None:
-    """Which event of a step is the bifurcation of that number along the curve; None where it does not lie there."""
+def _departure(traced: Trace, passed: list[Event], number: int) -> int | None:
+    """Index of the bifurcation to leave at among the events of a step.
+
+    Args:
+        traced: what has been computed of the curve.
+        passed: events of the step.
+        number: of the bifurcation along the curve, counted from 1; 0 for none.
+
+    Returns:
+        the index; None where that bifurcation does not lie in the step.
+    """
     if not number:
         return None
-    before = sum(event.kind == "bifurcation" for event in found.events)
-    places = [i for i, event in enumerate(passed) if event.kind == "bifurcation"]
-    return places[number - before - 1] if before < number <= before + len(places) else None
+    before = sum(event.kind == "bifurcation" for event in traced.events)
+    indices = [i for i, event in enumerate(passed) if event.kind == "bifurcation"]
+    in_step = number - before
+    if not 0 < in_step <= len(indices):
+        return None
+    return indices[in_step - 1]
 
 
-def _leave(curve: Curve, found: Trace, passed: list[Event], side: int) -> None:
+def _leave(curve: Curve, traced: Trace, passed: list[Event], side: int) -> None:
     """From the last of these events onto one half of the branch that crosses there."""
-    event = passed[-1]
-    found.events += passed
-    found.points.append(event.point)
-    first = switch(curve, event.point, event.multiplicity, side)
+    bifurcation = passed[-1]
+    traced.events += passed
+    # The branch begins at the bifurcation itself, which belongs to both curves.
+    traced.points.append(bifurcation.point)
+    first = switch(curve, bifurcation.point, bifurcation.multiplicity, side)
     if first is None:
-        found.outcome = PathOutcome.NO_BRANCH
+        traced.outcome = PathOutcome.NO_BRANCH
         return
-    found.branch = len(found.points)
-    found.points.append(first)
+    traced.branch = len(traced.points)
+    traced.points.append(first)
 
 
-def _outcome(found: Trace, step: float, *, missing: bool) -> PathOutcome | None:
+def _outcome(traced: Trace, step: float, *, bifurcation_missing: bool) -> PathOutcome | None:
     """How the path ends at its last point; None where it goes on."""
-    last, first = found.points[-1], found.points[0]
-    if last.factor >= 1.0:
-        return PathOutcome.NO_BIFURCATION if missing else PathOutcome.CONVERGED
-    if last.factor < FARTHEST:
+    first = traced.points[0]
+    last = traced.points[-1]
+    if last.load_factor >= 1.0:
+        if bifurcation_missing:
+            return PathOutcome.NO_BIFURCATION
+        return PathOutcome.CONVERGED
+    if last.load_factor < FARTHEST:
         return PathOutcome.TURNED_BACK
-    back = float(np.linalg.norm(last.y - first.y)) < step and last.tangent @ first.tangent > 0.0
-    return PathOutcome.CLOSED if back and last.length > 4 * step else None
+    # A step may jump over the start itself, and a curve may cross itself there in another direction.
+    near_start = float(np.linalg.norm(last.y - first.y)) < step
+    same_direction = last.tangent @ first.tangent > 0.0
+    if near_start and same_direction and last.length > AWAY * step:
+        return PathOutcome.CLOSED
+    return None

@@ -59,9 +59,9 @@ def march(
 
 
 def solution_of(defect: Any, start: np.ndarray) -> np.ndarray:
-    found = root(defect, start, tol=1e-13)
-    assert np.abs(found.fun).max() < 1e-9
-    return np.asarray(found.x)
+    balanced = root(defect, start, tol=1e-13)
+    assert np.abs(balanced.fun).max() < 1e-9
+    return np.asarray(balanced.x)
 
 
 WEIGHT = {"name": "weight", "kind": "gravity", "acceleration": [0.0, 1.0, -3.0]}
@@ -73,17 +73,17 @@ def test_two_rods_in_series_vs_one(strain: str) -> None:
     base = {"position": [0.1, 0, 0], "tangent": [1, 0, 1]}
     push = {"name": "push", "kind": "tip_wrench", "force": [0.9, 0.0, -0.4], "moment": [0, 0.2, 0]}
     weight = {**WEIGHT, "acceleration": [0.5, 0.0, -3.0]}
-    one = solved(scene(rod("a", 0.8, strain, base=base), loads=[{**push, "rod": "a"}, weight]))
+    single = solved(scene(rod("a", 0.8, strain, base=base), loads=[{**push, "rod": "a"}, weight]))
     parts = (rod("a", 0.5, strain, base=base), rod("b", 0.3, strain, base={"rod": "a"}))
-    two = solved(scene(*parts, loads=[{**push, "rod": "b"}, weight]))
-    assert_allclose(two.tip("b").position, one.tip().position, rtol=0, atol=2e-9)
-    assert_allclose(two.tip("b").rotation, one.tip().rotation, rtol=0, atol=2e-9)
-    assert_allclose(two.base_wrench("a").moment, one.base_wrench().moment, rtol=0, atol=2e-8)
-    passed = two.pose([1.0], "a").rotation[0] @ two.internal_wrench([1.0], "a")[0, :3]
-    assert_allclose(two.base_wrench("b").moment, -passed, rtol=0, atol=1e-7)
-    assert two.stable is one.stable
+    series = solved(scene(*parts, loads=[{**push, "rod": "b"}, weight]))
+    assert_allclose(series.tip("b").position, single.tip().position, rtol=0, atol=2e-9)
+    assert_allclose(series.tip("b").rotation, single.tip().rotation, rtol=0, atol=2e-9)
+    assert_allclose(series.base_wrench("a").moment, single.base_wrench().moment, rtol=0, atol=2e-8)
+    passed = series.pose([1.0], "a").rotation[0] @ series.internal_wrench([1.0], "a")[0, :3]
+    assert_allclose(series.base_wrench("b").moment, -passed, rtol=0, atol=1e-7)
+    assert series.stable is single.stable
     # A dead moment has a potential only where all turns share an axis.
-    assert (one.stable is not None) == (strain == "planar")
+    assert (single.stable is not None) == (strain == "planar")
 
 
 def test_rod_carried_between_the_ends_vs_shooting() -> None:
@@ -137,7 +137,7 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
         loads=[WEIGHT, {"name": "side", "kind": "body_wrench", "body": "plate", "force": SIDE.tolist()}],
     )
     own = solved(wanted)
-    place = own.body("plate")
+    pose = own.body("plate")
     total = mass * np.array(WEIGHT["acceleration"])
 
     def defect(unknown: np.ndarray) -> np.ndarray:
@@ -155,11 +155,11 @@ def test_tripod_with_mass_vs_shooting(kind: str) -> None:
 
     # The shooting starts near the library's answer; that it stays there to its own tolerance is the test.
     roots = [np.concatenate([-own.base_wrench(n).force, -own.base_wrench(n).moment]) for n in "abc"]
-    near = np.concatenate([place.position[0], place.quaternion[0], *roots])
-    found = solution_of(defect, near + 1e-3 * np.random.default_rng(3).standard_normal(len(near)))
-    assert_allclose(place.position[0], found[:3], rtol=0, atol=1e-8)
-    assert_allclose(place.rotation[0], matrix(found[3:7]), rtol=0, atol=2e-8)
-    assert_allclose(np.concatenate(roots), found[7:], rtol=0, atol=1e-6)
+    near = np.concatenate([pose.position[0], pose.quaternion[0], *roots])
+    shot = solution_of(defect, near + 1e-3 * np.random.default_rng(3).standard_normal(len(near)))
+    assert_allclose(pose.position[0], shot[:3], rtol=0, atol=1e-8)
+    assert_allclose(pose.rotation[0], matrix(shot[3:7]), rtol=0, atol=2e-8)
+    assert_allclose(np.concatenate(roots), shot[7:], rtol=0, atol=1e-6)
     assert own.stable
 
 
@@ -191,16 +191,16 @@ def test_portal_vs_its_half() -> None:
             loads=[{**WEIGHT, "acceleration": [0, 0, -3.0]}],
         )
     )
-    place = whole.body("beam")
-    assert_allclose(place.position[0][:2], [0.2, 0.0], rtol=0, atol=1e-9)
-    assert_allclose(place.rotation[0], np.eye(3), rtol=0, atol=1e-9)
+    pose = whole.body("beam")
+    assert_allclose(pose.position[0][:2], [0.2, 0.0], rtol=0, atol=1e-9)
+    assert_allclose(pose.rotation[0], np.eye(3), rtol=0, atol=1e-9)
     left, right = whole.base_wrench("l"), whole.base_wrench("r")
     assert_allclose(left.force + right.force, [0, 0, 3.0 * (0.4 + 0.5)], rtol=0, atol=1e-9)
     assert_allclose(left.force * [-1, 1, 1], right.force, rtol=0, atol=1e-9)
     support = {
         "rod": "l",
         "kind": "clamped",
-        "position": [0, 0, float(place.position[0][2])],
+        "position": [0, 0, float(pose.position[0][2])],
         "quaternion": [1, 0, 0, 0],
     }
     half = solved(scene(legs[0], supports=[support], loads=[{**WEIGHT, "acceleration": [0, 0, -3.0]}]))
@@ -214,13 +214,13 @@ def test_planar_loop_of_carried_rods_vs_one_held_rod() -> None:
     base, at = {"tangent": [0, 0, 1]}, [0.25, 0.0, 0.45]
     support = {"kind": "clamped", "position": at, "quaternion": [np.cos(0.6), 0, np.sin(0.6), 0]}
     weight = {**WEIGHT, "acceleration": [0.0, 0.0, -3.0]}
-    one = solved(scene(rod("a", 0.8, "planar", base=base), supports=[{**support, "rod": "a"}], loads=[weight]))
+    single = solved(scene(rod("a", 0.8, "planar", base=base), supports=[{**support, "rod": "a"}], loads=[weight]))
     parts = (rod("a", 0.5, "planar", base=base), rod("b", 0.3, "planar", base={"rod": "a"}))
-    two = solved(scene(*parts, supports=[{**support, "rod": "b"}], loads=[weight]))
-    assert_allclose(two.tip("a").position, one.pose([0.625]).position, rtol=0, atol=3e-9)
-    assert_allclose(two.base_wrench("a").force, one.base_wrench().force, rtol=0, atol=1e-7)
-    assert two.stable is True
-    assert one.stable is True
+    series = solved(scene(*parts, supports=[{**support, "rod": "b"}], loads=[weight]))
+    assert_allclose(series.tip("a").position, single.pose([0.625]).position, rtol=0, atol=3e-9)
+    assert_allclose(series.base_wrench("a").force, single.base_wrench().force, rtol=0, atol=1e-7)
+    assert series.stable is True
+    assert single.stable is True
 
 
 def test_assembly_that_cannot_close_says_what_is_left() -> None:
@@ -266,5 +266,5 @@ def test_reference_platform(path: Any) -> None:
     for name, leg in wanted["rods"].items():
         pair = [(own["rods"][name]["base_wrench"][k], leg["base_wrench"][k]) for k in ("force", "moment")]
         largest = max(np.abs(reference).max() for _, reference in pair)
-        for found, reference in pair:
-            assert_allclose(found, reference, rtol=0, atol=tolerance * largest)
+        for value, reference in pair:
+            assert_allclose(value, reference, rtol=0, atol=tolerance * largest)

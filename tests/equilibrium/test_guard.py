@@ -53,8 +53,8 @@ def test_coarseness_vs_quadrature_of_the_curvature(strain: str, transport: str) 
     solution = Solution(model, model.pack(), x, Outcome.CONVERGED, "", 0.0, 0)
     nodes = model.discrete.rods["rod"].grid.nodes
     turns = [quad(lambda X: float(np.linalg.norm(solution.strain([X])[0, :3])), a, b)[0] for a, b in pairwise(nodes)]
-    found = 2.0 * float(model.coarseness(x, model.pack()))
-    assert max(turns) * (1 - 1e-3) <= found <= 1.25 * max(turns)
+    largest = 2.0 * float(model.coarseness(x, model.pack()))
+    assert max(turns) * (1 - 1e-3) <= largest <= 1.25 * max(turns)
 
 
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
@@ -88,8 +88,8 @@ def test_roll_up_vs_circles(strain: str, turns: int) -> None:
 
 def shot(wanted: Scene, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
     """Tip by shooting: the base moment near a given one with which the tip's load is left with nothing."""
-    found = root(lambda m: integrate(wanted, force, m).moment_left, moment, tol=1e-12)
-    return np.asarray(integrate(wanted, force, found.x).position)
+    balanced = root(lambda m: integrate(wanted, force, m).moment_left, moment, tol=1e-12)
+    return np.asarray(integrate(wanted, force, balanced.x).position)
 
 
 @pytest.mark.slow

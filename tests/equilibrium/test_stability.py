@@ -12,7 +12,7 @@ from scipy.special import ellipe, ellipk
 
 from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow_path, solve, solve_scene
 from cosserat_casadi.equilibrium.relax import energy_at
-from cosserat_casadi.equilibrium.stability import judged
+from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
@@ -29,8 +29,8 @@ STIFFNESS = {"planar": {"bending_y": 1.0}, "kirchhoff": ROUND}
 
 def column(strain: str, *loads: dict[str, Any], **changes: Any) -> Scene:
     """A rod of length 1 along z with unit bending stiffness, round where it is not planar."""
-    one = {"name": "rod", "length": 1.0, "strain": strain, "stiffness": STIFFNESS[strain], "linear_density": 1.0}
-    return scene(*loads, rods=[one], **changes)
+    upright = {"name": "rod", "length": 1.0, "strain": strain, "stiffness": STIFFNESS[strain], "linear_density": 1.0}
+    return scene(*loads, rods=[upright], **changes)
 
 
 def standing(strain: str, weight: float, **changes: Any) -> Scene:
@@ -134,18 +134,18 @@ def test_critical_equilibrium_is_neither_called_stable_nor_neutral() -> None:
     wanted = column("planar", push(force=[0, 0, -2 * CRITICAL]))
     model = build(wanted, discretise(wanted, 8, 16, "magnus6"))
     (event, *_) = follow_path(model, "push.force", [0, 0, -2 * CRITICAL]).events
-    there = solve(model, {"push.force": [0, 0, -2 * CRITICAL * event.factor]})
-    assert there.converged
-    assert there.stable is False
-    assert "critical" in there.message
+    critical = solve(model, {"push.force": [0, 0, -2 * CRITICAL * event.factor]})
+    assert critical.converged
+    assert critical.stable is False
+    assert "critical" in critical.message
 
 
 def test_verdict_of_eigenvalues() -> None:
-    assert judged(np.zeros(0)).stable
-    assert judged(np.array([0.1, 2.0])).stable
-    neutral = judged(np.array([-1e-12, 0.1, 5.0]))
+    assert stability_of(np.zeros(0)).stable
+    assert stability_of(np.array([0.1, 2.0])).stable
+    neutral = stability_of(np.array([-1e-12, 0.1, 5.0]))
     assert (neutral.stable, neutral.neutral, neutral.zero) == (True, True, 1)
-    unstable = judged(np.array([-0.1, 1e-13, 1.0]))
+    unstable = stability_of(np.array([-0.1, 1e-13, 1.0]))
     assert (unstable.stable, unstable.neutral, unstable.negative) == (False, False, 1)
 
 
@@ -172,9 +172,9 @@ def test_newton_on_a_circle_of_equilibria_does_not_turn() -> None:
         lambda x: (x @ x - 1) * x, lambda x: (x @ x - 1) * np.eye(3) + 2 * np.outer(x, x) + np.diag([0, 0, 1e-18])
     )
     start = np.array([0.9, 0.5, 0.0])
-    found = newton(equations, start, NewtonSettings())
-    assert found.outcome is Outcome.CONVERGED
-    assert_allclose(found.x, start / np.linalg.norm(start), rtol=0, atol=1e-9)
+    result = newton(equations, start, NewtonSettings())
+    assert result.outcome is Outcome.CONVERGED
+    assert_allclose(result.x, start / np.linalg.norm(start), rtol=0, atol=1e-9)
 
 
 # The descent
@@ -197,13 +197,13 @@ def test_step_in_the_ball_vs_brute_force() -> None:
 def test_descent_leaves_a_saddle_to_either_side(side: float) -> None:
     """Double well (x² − 1)²/4 + y²: a saddle at zero, minima at x = ±1."""
     energy = Energy(lambda x: np.array([x[0] ** 3 - x[0], 2 * x[1]]), lambda x: np.diag([3 * x[0] ** 2 - 1, 2.0]))
-    found = descend(energy, np.zeros(2), side, DescentSettings())
-    assert found is not None
-    assert_allclose(np.abs(found), [1.0, 0.0], rtol=0, atol=1e-7)
-    other = descend(energy, np.zeros(2), -side, DescentSettings())
-    assert other is not None
-    assert_allclose(other, -found, rtol=0, atol=1e-7)
-    assert_allclose(energy.change(np.zeros(2), found), -0.25, rtol=1e-12, atol=0)
+    minimum = descend(energy, np.zeros(2), side, DescentSettings())
+    assert minimum is not None
+    assert_allclose(np.abs(minimum), [1.0, 0.0], rtol=0, atol=1e-7)
+    mirrored = descend(energy, np.zeros(2), -side, DescentSettings())
+    assert mirrored is not None
+    assert_allclose(mirrored, -minimum, rtol=0, atol=1e-7)
+    assert_allclose(energy.change(np.zeros(2), minimum), -0.25, rtol=1e-12, atol=0)
 
 
 def test_descent_without_a_minimum_ends() -> None:

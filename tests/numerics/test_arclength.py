@@ -77,18 +77,18 @@ def hat(monitor: Monitor) -> Curve:
     )
 
 
-def events(found: Trace) -> list[tuple[str, float]]:
-    return [(event.kind, event.point.factor) for event in found.events]
+def events(traced: Trace) -> list[tuple[str, float]]:
+    return [(event.kind, event.point.load_factor) for event in traced.events]
 
 
 @MONITORS
 def test_cubic_goes_through_both_folds_and_back(monitor: Monitor) -> None:
-    found = trace(cubic(monitor))
-    assert found.outcome is PathOutcome.CONVERGED
-    assert [kind for kind, _ in events(found)] == ["limit", "limit"]
-    assert_allclose([factor for _, factor in events(found)], [0.5, -0.5], rtol=1e-12, atol=0)
-    assert_allclose([event.point.x[0] for event in found.events], [-1.0, 1.0], rtol=0, atol=1e-9)
-    y = np.array([point.y for point in found.points])
+    traced = trace(cubic(monitor))
+    assert traced.outcome is PathOutcome.CONVERGED
+    assert [kind for kind, _ in events(traced)] == ["limit", "limit"]
+    assert_allclose([factor for _, factor in events(traced)], [0.5, -0.5], rtol=1e-12, atol=0)
+    assert_allclose([event.point.x[0] for event in traced.events], [-1.0, 1.0], rtol=0, atol=1e-9)
+    y = np.array([point.y for point in traced.points])
     assert y[-1, 1] == 1.0
     assert_allclose(y[:, 0] ** 3 - 3 * y[:, 0], 4 * y[:, 1], rtol=0, atol=1e-10)
     assert np.all(np.diff(y[:, 0]) > 0)
@@ -96,36 +96,36 @@ def test_cubic_goes_through_both_folds_and_back(monitor: Monitor) -> None:
 
 @MONITORS
 def test_pitchfork_is_found_and_gone_straight_through(monitor: Monitor) -> None:
-    found = trace(pitchfork(monitor))
-    assert found.outcome is PathOutcome.CONVERGED
-    ((kind, factor),) = events(found)
+    traced = trace(pitchfork(monitor))
+    assert traced.outcome is PathOutcome.CONVERGED
+    ((kind, factor),) = events(traced)
     assert kind == "bifurcation"
     assert_allclose(factor, 0.3, rtol=1e-10, atol=0)
-    assert_allclose(found.points[-1].x, [-np.sin(0.4), np.cos(0.4)], rtol=0, atol=1e-11)
+    assert_allclose(traced.points[-1].x, [-np.sin(0.4), np.cos(0.4)], rtol=0, atol=1e-11)
 
 
 @MONITORS
 def test_pitchfork_branch_is_switched_to(monitor: Monitor) -> None:
-    found = trace(pitchfork(monitor), branch=True)
-    assert found.outcome is PathOutcome.CONVERGED
-    assert found.branch is not None
+    traced = trace(pitchfork(monitor), branch=True)
+    assert traced.outcome is PathOutcome.CONVERGED
+    assert traced.branch is not None
     c, s = np.cos(0.4), np.sin(0.4)
-    u = np.array([[c * p.x[0] + s * p.x[1], p.factor] for p in found.points[found.branch :]])
+    u = np.array([[c * p.x[0] + s * p.x[1], p.load_factor] for p in traced.points[traced.branch :]])
     assert_allclose(u[:, 0] ** 2, u[:, 1] - 0.3, rtol=0, atol=1e-11)
     assert np.all(u[:, 0] > 0)
     assert u[-1, 1] == 1.0
 
 
 def test_circle_of_branches_is_neutral_and_followed_without_drift() -> None:
-    found = trace(hat(EIGENVALUES), branch=True)
-    assert found.outcome is PathOutcome.CONVERGED
-    (event,) = found.events
+    traced = trace(hat(EIGENVALUES), branch=True)
+    assert traced.outcome is PathOutcome.CONVERGED
+    (event,) = traced.events
     assert event.multiplicity == 2
-    assert_allclose(event.point.factor, 0.3, rtol=1e-10, atol=0)
-    x = np.array([point.x for point in found.points[found.branch :]])
+    assert_allclose(event.point.load_factor, 0.3, rtol=1e-10, atol=0)
+    x = np.array([point.x for point in traced.points[traced.branch :]])
     assert_allclose(np.linalg.norm(x[-1]), np.sqrt(0.7), rtol=1e-11, atol=0)
     assert_allclose(x[:, 1] * x[-1, 0], x[:, 0] * x[-1, 1], rtol=0, atol=1e-11)
-    assert abs(found.points[-1].spectrum[0]) < 1e-12
+    assert abs(traced.points[-1].spectrum[0]) < 1e-12
 
 
 def test_a_double_bifurcation_leaves_the_determinant_alone() -> None:
@@ -144,11 +144,11 @@ def test_circle_is_closed(monitor: Monitor) -> None:
         [0.8],
         monitor,
     )
-    found = trace(circle)
-    assert found.outcome is PathOutcome.CLOSED
-    assert [kind for kind, _ in events(found)] == ["limit", "limit"]
-    assert_allclose([factor for _, factor in events(found)], [0.8, -0.8], rtol=1e-12, atol=0)
-    y = np.array([point.y for point in found.points])
+    traced = trace(circle)
+    assert traced.outcome is PathOutcome.CLOSED
+    assert [kind for kind, _ in events(traced)] == ["limit", "limit"]
+    assert_allclose([factor for _, factor in events(traced)], [0.8, -0.8], rtol=1e-12, atol=0)
+    y = np.array([point.y for point in traced.points])
     assert_allclose(np.linalg.norm(y, axis=1), 0.8, rtol=1e-10, atol=0)
 
 
@@ -162,10 +162,10 @@ def test_two_bifurcations_within_one_step_are_told_apart(apart: float, multiplic
         lambda x, t: [-x[0], -x[1]],
         [0.0, 0.0],
     )
-    found = trace(both).events
-    assert [event.multiplicity for event in found] == multiplicities
-    assert_allclose(found[0].point.factor, 0.3, rtol=1e-9, atol=0)
-    assert_allclose(found[-1].point.factor, later, rtol=1e-9, atol=0)
+    bifurcations = trace(both).events
+    assert [event.multiplicity for event in bifurcations] == multiplicities
+    assert_allclose(bifurcations[0].point.load_factor, 0.3, rtol=1e-9, atol=0)
+    assert_allclose(bifurcations[-1].point.load_factor, later, rtol=1e-9, atol=0)
 
 
 def test_events_beyond_factor_one_are_not_told() -> None:
@@ -175,9 +175,9 @@ def test_events_beyond_factor_one_are_not_told() -> None:
         lambda x, t: [-x[0]],
         [0.0],
     )
-    found = trace(beyond)
-    assert found.outcome is PathOutcome.CONVERGED
-    assert found.events == []
+    traced = trace(beyond)
+    assert traced.outcome is PathOutcome.CONVERGED
+    assert traced.events == []
 
 
 def test_transcritical_bifurcation_is_followed_both_ways() -> None:
@@ -206,16 +206,16 @@ def test_steps_run_out_and_stalls_are_said() -> None:
     wall = curve(lambda x, t: [x[0] - t], lambda x, t: [[1.0 if t < 0.5 else np.nan]], lambda x, t: [-1.0], [0.0])
     stalled = trace(wall)
     assert stalled.outcome is PathOutcome.LOAD_STALLED
-    assert 0.4 < stalled.points[-1].factor < 0.5
+    assert 0.4 < stalled.points[-1].load_factor < 0.5
     assert np.all(np.isfinite([point.y for point in stalled.points]))
 
 
 def test_path_that_leads_back_is_said() -> None:
     """x² = 0.5 − factor turns at 0.5 and never comes again."""
     parabola = curve(lambda x, t: [x[0] ** 2 + t - 0.5], lambda x, t: [[2 * x[0]]], lambda x, t: [1.0], [np.sqrt(0.5)])
-    found = trace(parabola)
-    assert found.outcome is PathOutcome.TURNED_BACK
-    assert_allclose(events(found)[0][1], 0.5, rtol=1e-12, atol=0)
+    traced = trace(parabola)
+    assert traced.outcome is PathOutcome.TURNED_BACK
+    assert_allclose(events(traced)[0][1], 0.5, rtol=1e-12, atol=0)
 
 
 def test_a_path_without_bifurcation_has_no_branch() -> None:
@@ -230,29 +230,31 @@ def test_correction_of_least_norm_where_a_direction_is_neutral() -> None:
         lambda x, t: [0.0, 0.0],
         [0.0, 0.0],
     )
-    found = neutral.correct(np.array([1.2, 0.7, 0.3]), Plane(np.array([0.0, 0.0, 1.0]), 0.3))
-    assert found is not None
-    assert_allclose(found[0], [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
+    corrected = neutral.correct(np.array([1.2, 0.7, 0.3]), Plane(np.array([0.0, 0.0, 1.0]), 0.3))
+    assert corrected is not None
+    assert_allclose(corrected.y, [1.0, 0.7, 0.3], rtol=0, atol=1e-12)
 
 
 def test_a_step_goes_its_length_along_the_tangent_and_not_around_a_corner() -> None:
     """On the unit circle a step of 0.5 turns the tangent by 30°: refused, though Newton would converge."""
     circle = curve(
-        lambda x, t: [x[0] ** 2 + t**2 - 1.0], lambda x, t: [[2 * x[0]]], lambda x, t: [2 * t], [1.0], stray=0.5
+        lambda x, t: [x[0] ** 2 + t**2 - 1.0], lambda x, t: [[2 * x[0]]], lambda x, t: [2 * t], [1.0], max_distance=0.5
     )
     start = circle.point(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
     assert start is not None
     assert circle.advance(start, 0.5) is None
     advanced = circle.advance(start, 0.2)
     assert advanced is not None
-    assert_allclose(advanced[0].y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
-    assert_allclose(advanced[0].tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
-    assert advanced[0].length == 0.2
+    assert_allclose(advanced.point.y, [np.sqrt(0.96), 0.2], rtol=0, atol=1e-13)
+    assert_allclose(advanced.point.tangent, [-0.2, np.sqrt(0.96)], rtol=0, atol=1e-13)
+    assert advanced.point.length == 0.2
 
 
 def test_a_correction_that_strays_is_refused() -> None:
     """A parabola that leaves its tangent by 0.3 where the step is 0.2."""
-    parabola = curve(lambda x, t: [x[0] - 7.5 * t**2], lambda x, t: [[1.0]], lambda x, t: [-15.0 * t], [0.0], bend=-1.0)
+    parabola = curve(
+        lambda x, t: [x[0] - 7.5 * t**2], lambda x, t: [[1.0]], lambda x, t: [-15.0 * t], [0.0], min_cosine=-1.0
+    )
     start = parabola.point(np.zeros(2), np.array([0.0, 1.0]), 0.0)
     assert start is not None
     assert parabola.advance(start, 0.2) is None
@@ -277,5 +279,5 @@ def test_bracketed_zero_of_powers(power: int, zero: float) -> None:
     def value(s: float) -> float:
         return s**power - zero**power
 
-    found = bracketed_zero(value, (0.0, value(0.0)), (1.0, value(1.0)))
-    assert_allclose(found, zero, rtol=0, atol=1e-11)
+    located = bracketed_zero(value, (0.0, value(0.0)), (1.0, value(1.0)))
+    assert_allclose(located, zero, rtol=0, atol=1e-11)

@@ -182,6 +182,19 @@ def test_multipliers_of_a_held_rod_vs_solve() -> None:
     assert_allclose(path.x[-1], direct.x, rtol=0, atol=1e-9)
 
 
+@pytest.mark.parametrize("length", [0.3, 0.6])
+def test_tips_of_a_rod_whose_length_and_base_are_inputs_vs_solve(length: float) -> None:
+    """Their values belong to the poses of the path, though no path follows them."""
+    free = {"inputs": ["push.force", "rod.length", "rod.base.position"]}
+    model = build(scene(push(force=[0.2, 0, 0]), rods=[rod("planar", base={"position": [0.1, 0, 0.2]})], **free))
+    path = follow_path(model, "push.force", [0.2, 0, 0], {"rod.length": length})
+    direct = solve(model, {"rod.length": length})
+    assert path.converged
+    assert_allclose(path.tip().position[0], [0.1, 0, 0.2 + length], rtol=0, atol=1e-12)
+    assert_allclose(path.tip().position[-1], direct.tip().position[0], rtol=0, atol=1e-10)
+    assert_allclose(path.position(0.5)[-1], direct.pose([0.5]).position[0], rtol=0, atol=1e-10)
+
+
 def test_other_loads_stay_at_their_values() -> None:
     """The start is the rod under its weight alone."""
     weight = {"name": "weight", "kind": "gravity", "acceleration": [0.3, -0.2, -2.0]}
@@ -269,7 +282,7 @@ def test_bad_inputs_are_refused(name: str, value: object, words: str) -> None:
 
 
 def test_progress_grows_to_one() -> None:
-    told: list[float] = []
-    follow_path(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=told.append)
-    assert told[-1] == 1.0
-    assert told == sorted(told)
+    shares: list[float] = []
+    follow_path(build(scene(push(), strain="planar")), "push.force", [1, 0, 0], progress=shares.append)
+    assert shares[-1] == 1.0
+    assert shares == sorted(shares)
