@@ -16,13 +16,16 @@ from cosserat_casadi.rod.cable import Routing
 def routing(actuator: Any, grid: Grid) -> Routing:
     """Routing of a tendon or a chamber through the nodes of its span."""
     nodes = _nodes_in(actuator.span, grid)
-    return Routing(nodes, *offset_at(actuator, grid.nodes[nodes]))
+    offset, slope = offset_at(actuator, grid.nodes[nodes])
+    return Routing(nodes, offset, slope)
 
 
 def offset_at(actuator: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Offset D and its derivative dD/dX at any abscissae, shape (2, k) each, m."""
     helix = getattr(actuator, "helix", None)
-    return _polynomial(actuator.offset, X) if helix is None else _wound(helix, X)
+    if helix is not None:
+        return _helix(helix, X)
+    return _polynomial(actuator.offset, X)
 
 
 def span_ends(actuator: Any) -> tuple[float, ...]:
@@ -33,20 +36,28 @@ def span_ends(actuator: Any) -> tuple[float, ...]:
 
 def _nodes_in(span: tuple[float, float], grid: Grid) -> Indices:
     """Nodes of the elements inside a span, each side of a break with its own."""
+    start, end = span
     middles = grid.nodes.reshape(grid.elements, -1).mean(axis=1)
-    inside = (middles > span[0]) & (middles < span[1])
+    inside = (middles > start) & (middles < end)
     return np.flatnonzero(np.repeat(inside, grid.intervals + 1))
 
 
 def _polynomial(offset: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Polynomials of X and their derivatives, shape (2, k) each, m."""
-    coefficients = [np.atleast_1d(np.asarray(component, dtype=float)) for component in offset]
-    values = np.array([polynomial.polyval(X, c) + 0.0 * X for c in coefficients])
-    return values, np.array([polynomial.polyval(X, polynomial.polyder(c)) + 0.0 * X for c in coefficients])
+    values = []
+    slopes = []
+    for component in offset:
+        coefficients = np.atleast_1d(np.asarray(component, dtype=float))
+        # A constant polynomial gives one number; all abscissae are wanted.
+        values.append(polynomial.polyval(X, coefficients) + 0.0 * X)
+        slopes.append(polynomial.polyval(X, polynomial.polyder(coefficients)) + 0.0 * X)
+    return np.array(values), np.array(slopes)
 
 
-def _wound(helix: scenes.Helix, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _helix(helix: scenes.Helix, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A helix of constant pitch and its derivative, shape (2, k) each, m."""
     angle = 2 * np.pi * helix.turns * X + helix.phase
     rate = 2 * np.pi * helix.turns * helix.radius
-    place = helix.radius * np.array([np.cos(angle), np.sin(angle)])
-    return place, rate * np.array([-np.sin(angle), np.cos(angle)])
+    outward = np.array([np.cos(angle), np.sin(angle)])
+    around = np.array([-np.sin(angle), np.cos(angle)])
+    return helix.radius * outward, rate * around

@@ -18,7 +18,9 @@ class BodyWrench(Load):
 
     def on_body(self, load: Any, body: Any) -> BodyPoint | None:
         """The point of the body it names."""
-        return BodyPoint(load.position) if load.body == body.name else None
+        if load.body != body.name:
+            return None
+        return BodyPoint(load.position)
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment as given."""

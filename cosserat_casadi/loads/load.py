@@ -113,7 +113,8 @@ class Load(ABC):
 
     def axes(self, load: Any) -> Axes:
         """Axes that force and moment are given in; what is given by an energy is in world axes."""
-        return "section" if getattr(load, "frame", "world") == "body" else "world"
+        frame = getattr(load, "frame", "world")
+        return "section" if frame == "body" else "world"
 
     def abscissa(self, load: Any) -> float | None:
         """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod."""
@@ -130,7 +131,9 @@ class Load(ABC):
     def breaks(self, load: Any) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
         at = self.abscissa(load)
-        return () if at is None else (at,)
+        if at is None:
+            return ()
+        return (at,)
 
     def profiles(self, load: Any, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
         """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
@@ -158,26 +161,31 @@ class Load(ABC):
         largest = float(np.linalg.norm(force, axis=0).max())
         legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
         found = []
-        for k, (start, vector) in enumerate(zip(position.T, force.T, strict=True)):
+        for start, vector in zip(position.T, force.T, strict=True):
             if np.any(vector):
-                found.append(Arrow(start, vector, "line", "" if k else legend))
+                found.append(Arrow(start, vector, "line", legend))
+            # One entry in the legend is enough.
+            legend = ""
         return found
 
     def point_arrows(self, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
         """Force and moment on one section or on a body, shape (3, 1) each; what is zero is not drawn."""
         found = []
-        vectors: tuple[tuple[Sort, FloatArray], ...] = (("point", force[:, 0]), ("moment", moment[:, 0]))
-        for sort, vector in vectors:
-            if np.any(vector):
-                legend = f"{label}: {np.linalg.norm(vector):.3g} {UNITS[sort]}" if label else ""
-                found.append(Arrow(position[:, 0], vector, sort, legend))
+        vectors: dict[Sort, FloatArray] = {"point": force[:, 0], "moment": moment[:, 0]}
+        for sort, vector in vectors.items():
+            if not np.any(vector):
+                continue
+            size = float(np.linalg.norm(vector))
+            legend = f"{label}: {size:.3g} {UNITS[sort]}" if label else ""
+            found.append(Arrow(position[:, 0], vector, sort, legend))
         return found
 
 
 def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:
     """Three components, each a number or a list of Legendre coefficients, as one (3, k) array."""
     rows = [np.atleast_1d(np.asarray(component, dtype=float)) for component in vector]
-    matrix = np.zeros((len(rows), max(len(row) for row in rows)))
+    longest = max(len(row) for row in rows)
+    matrix = np.zeros((len(rows), longest))
     for i, row in enumerate(rows):
         matrix[i, : len(row)] = row
     return matrix
@@ -185,4 +193,6 @@ def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:
 
 def constant(values: FloatArray) -> Matrix | None:
     """A baked-in magnitude: None where it is zero, so that it adds no instruction."""
-    return ca.sparsify(ca.DM(values)) if np.any(values) else None
+    if not np.any(values):
+        return None
+    return ca.sparsify(ca.DM(values))

@@ -41,14 +41,16 @@ class TracedLoad:
 
     def coefficients(self, values: Mapping[str, Matrix]) -> tuple[Matrix | None, Matrix | None]:
         """Force and moment of a load that is free of the pose, in its axes, 3×k each; None for one that is zero."""
+        # No number would be right for the pose: should it be read after all, the result is not a number.
         nowhere = Section(ca.DM.nan(3, 1), ca.DM.nan(3, 3), ca.DM.nan(0, 1))
         force, moment = self.member.wrench(self.load, nowhere, values)
-        return force if force.nnz() else None, moment if moment.nnz() else None
+        return _unless_zero(force), _unless_zero(moment)
 
     def data(self, site: Site) -> FloatArray:
         """What the kernel takes as data at the sections of a rod, shape (d, k)."""
         profiles = [self.member.profiles(self.load, site.rod, site.X, count) for count in self.columns]
-        return np.vstack([*profiles, self.member.data(self.load, site)])
+        own = self.member.data(self.load, site)
+        return np.vstack([*profiles, own])
 
 
 def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
@@ -60,36 +62,56 @@ def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int
         values: its inputs; only which of their entries are stored is read.
         data_size: how many numbers of a section it depends on.
     """
-    section = Section(ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3), ca.SX.sym("data", data_size))
+    section = Section(
+        position=ca.SX.sym("position", 3),
+        rotation=ca.SX.sym("rotation", 3, 3),
+        data=ca.SX.sym("data", data_size),
+    )
+    # Entries that are zero for good have no symbol, so that what they would make is structurally zero too.
     symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
     energy = member.energy(load, section, symbols)
-    force, moment = (ca.sparsify(ca.SX(part)) for part in member.wrench(load, section, symbols))
+    force, moment = (ca.sparsify(ca.SX(vector)) for vector in member.wrench(load, section, symbols))
     pose = _entries(section.position, section.rotation, section.data)
     pose_free = energy is None and not ca.depends_on(_entries(force, moment), pose)
     if energy is None and member.axes(load) == "section":
         force = section.rotation @ force
         moment = section.rotation @ moment
     columns = force.shape[1], moment.shape[1]
-    profiles = [ca.SX.sym("force_profiles", columns[0]), ca.SX.sym("moment_profiles", columns[1])]
-    arguments = [section.position, section.rotation, stored(symbols), ca.vertcat(*profiles, section.data)]
-    results = [force @ profiles[0], moment @ profiles[1]]
-    world_wrench = ca.Function("wrench", arguments, results, KERNEL_ARGUMENTS, ["force", "moment"])
-    world_energy = None
-    if energy is not None:
-        # The wrench is the derivative of the energy times its first profile, and so is the energy.
-        density = energy * profiles[0][0]
-        world_energy = ca.Function("energy", arguments, [density], KERNEL_ARGUMENTS, ["energy"])
-    return TracedLoad(member, load, SectionKernel(world_wrench, world_energy), columns, pose_free)
+    kernel = _kernel(section, stored(symbols), force, moment, energy)
+    return TracedLoad(member, load, kernel, columns, pose_free)
+
+
+def _kernel(section: Section, parameters: Matrix, force: ca.SX, moment: ca.SX, energy: Matrix | None) -> SectionKernel:
+    """The kernel of a wrench, 3×k each, or an energy in the symbols of a section and of the inputs."""
+    force_profiles = ca.SX.sym("force_profiles", force.shape[1])
+    moment_profiles = ca.SX.sym("moment_profiles", moment.shape[1])
+    data = ca.vertcat(force_profiles, moment_profiles, section.data)
+    arguments = [section.position, section.rotation, parameters, data]
+    results = [force @ force_profiles, moment @ moment_profiles]
+    wrench = ca.Function("wrench", arguments, results, KERNEL_ARGUMENTS, ["force", "moment"])
+    if energy is None:
+        return SectionKernel(wrench)
+    # The wrench is the derivative of the energy times its one profile, and so the energy has the profile too.
+    density = energy * force_profiles[0]
+    return SectionKernel(wrench, ca.Function("energy", arguments, [density], KERNEL_ARGUMENTS, ["energy"]))
 
 
 def stored(values: Mapping[str, Matrix]) -> Matrix:
     """The stored entries of all inputs of a load, p×1, in their order."""
-    entries: Matrix = ca.vertcat(*[value.nz[:] for value in values.values()])
-    return entries
+    entries = [value.nz[:] for value in values.values()]
+    stacked: Matrix = ca.vertcat(*entries)
+    return stacked
 
 
 def _entries(*parts: Matrix) -> Matrix:
-    return ca.vertcat(*[ca.vec(part) for part in parts])
+    columns = [ca.vec(part) for part in parts]
+    return ca.vertcat(*columns)
+
+
+def _unless_zero(vector: Matrix) -> Matrix | None:
+    if not vector.nnz():
+        return None
+    return vector
 
 
 def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], data_size: int, *, one_axis: bool) -> bool:
@@ -99,22 +121,16 @@ def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], dat
     where all that it acts on turns about one axis. A load that turns with its section, or depends on its pose in
     another way, has none, unless it vanishes at these inputs.
     """
+    # Inputs that are zero leave no entry, so that a wrench that vanishes with them is structurally zero.
     numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values.items()}
     found = traced(member, load, numbers, data_size)
     if found.kernel.world_energy is not None:
         return True
-    force_vanishes, moment_vanishes = _vanishing(found, numbers)
+    wrench = found.kernel.world_wrench
+    force_vanishes = wrench.nnz_out(0) == 0
+    moment_vanishes = wrench.nnz_out(1) == 0
     if force_vanishes and moment_vanishes:
         return True
     if found.follower or not found.pose_free:
         return False
     return moment_vanishes or one_axis
-
-
-def _vanishing(found: TracedLoad, numbers: Mapping[str, ca.DM]) -> tuple[bool, bool]:
-    """Whether force and moment are zero at these inputs, whatever the pose."""
-    kernel = found.kernel.world_wrench
-    symbols = [ca.SX.sym(kernel.name_in(i), kernel.sparsity_in(i)) for i in range(kernel.n_in())]
-    symbols[2] = ca.SX(stored(numbers))
-    force, moment = (ca.sparsify(part) for part in kernel.call(symbols))
-    return force.nnz() == 0, moment.nnz() == 0

@@ -19,7 +19,7 @@ from cosserat_casadi.model.inputs import InputLayout, load_values, magnitude
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.kinematics import shape
-from cosserat_casadi.rod.strain import Ratio, drawn
+from cosserat_casadi.rod.strain import Ratio, per_reference_length
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
 
 
@@ -91,10 +91,10 @@ class RodLoads:
         profiles = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
         if not np.any(profiles):
             return None
-        per_reference_length = drawn(coefficients, self.ratio)
+        scaled = per_reference_length(coefficients, self.ratio)
         if force is None:
-            return LineWrench(None, per_reference_length, profiles, kernel.follower)
-        return LineWrench(per_reference_length, None, profiles, kernel.follower)
+            return LineWrench(None, scaled, profiles, kernel.follower)
+        return LineWrench(scaled, None, profiles, kernel.follower)
 
     def _pose_wrench(self, kernel: TracedLoad, site: Site) -> PoseWrench:
         at = kernel.member.abscissa(kernel.load)

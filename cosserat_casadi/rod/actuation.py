@@ -86,9 +86,13 @@ class StrainSumOnRod:
     @cached_property
     def value(self) -> Matrix:
         """L, 1×1."""
-        strains = self.shape.rod.strain_rows(self.shape.q, self.quantity.components, self.shape.ratio)
-        parts = [row @ ca.DM(weights) for row, weights in zip(strains, self._weighted, strict=True) if row is not None]
-        return sum(parts, ca.DM(0.0))
+        rod = self.shape.rod
+        strains = rod.strain_rows(self.shape.q, self.quantity.components, self.shape.ratio)
+        total = ca.DM(0.0)
+        for row, weights in zip(strains, self._weighted, strict=True):
+            if row is not None:
+                total = total + row @ ca.DM(weights)
+        return total
 
     @cached_property
     def gradient(self) -> Matrix:
@@ -97,9 +101,12 @@ class StrainSumOnRod:
         weights = dict(zip(self.quantity.components, self._weighted, strict=True))
         rows = []
         for c in rod.properties.admitted:
-            at_nodes = rod.at_nodes[c]
-            rows.append(at_nodes.T @ weights[c] if c in weights else np.zeros(at_nodes.shape[1]))
-        return ca.sparsify(ca.DM(np.concatenate(rows)))
+            phi = rod.at_nodes[c]
+            # A strain that the quantity does not depend on has no weight.
+            own = weights.get(c, np.zeros(rod.grid.size))
+            rows.append(phi.T @ own)
+        gradient = np.concatenate(rows)
+        return ca.sparsify(ca.DM(gradient))
 
     def curvature(self, a: int, b: int) -> None:
         """Zero."""
@@ -109,4 +116,5 @@ class StrainSumOnRod:
     def _weighted(self) -> FloatArray:
         """ℓ w g, shape (len(components), M)."""
         rod = self.shape.rod
-        return np.asarray(rod.properties.length * rod.grid.weights * self.quantity.densities)
+        lengths = rod.properties.length * rod.grid.weights
+        return np.asarray(lengths * self.quantity.densities)

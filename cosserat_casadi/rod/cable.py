@@ -3,14 +3,14 @@
 The cable runs at D(X) in the sections, so its tangent in the section's frame is T = Γ + K × D + D'/ℓ and its length
 L = ℓ ∫ |T| dX. A tension τ does the work −τ δL. What the cable puts against the elastic stress is therefore
 Λ_ad = τ [D × t; t] with t = T/|T|, report (2.15), whatever the routing, and its generalised force τ ∂L/∂q needs no
-pose of any section. The sums over the nodes below are exact derivatives of the length that the nodes give.
+pose of any section. The sums over the nodes below are exact derivatives of the length that the nodes give. See
+docs/theory.md section 6.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -57,14 +57,10 @@ class RoutedCable:
     @cached_property
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
-        nodes = self.routing.nodes.tolist()
-        strain = [
-            row if row is None else row[nodes]
-            for row in self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
-        ]
-        dx, dy = (_constant(row) for row in self.routing.offset)
-        slope_x, slope_y = (_constant(row / self.shape.rod.properties.length) for row in self.routing.slope)
-        kx, ky, kz, gx, gy, gz = strain
+        kx, ky, kz, gx, gy, gz = self._strain
+        dx, dy = self._offset
+        length = self.shape.rod.properties.length
+        slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
         return (
             _sum(gx, _negative(_product(kz, dy)), slope_x),
             _sum(gy, _product(kz, dx), slope_y),
@@ -77,8 +73,9 @@ class RoutedCable:
         x, y, z = self.tangent
         if x is None and y is None and z is not None:
             return z
-        squares = _sum(*[None if row is None else row * row for row in self.tangent])
-        return ca.sqrt(cast("Matrix", squares))
+        squares = _sum(*[_product(row, row) for row in self.tangent])
+        assert squares is not None, "a cable has a tangent"
+        return ca.sqrt(squares)
 
     @cached_property
     def direction(self) -> tuple[Row, Row, Row]:
@@ -92,7 +89,7 @@ class RoutedCable:
     def lever(self) -> dict[int, Row]:
         """Rate of |T| with each admitted strain, the components of [D × t; t]."""
         x, y, z = self.direction
-        dx, dy = (_constant(row) for row in self.routing.offset)
+        dx, dy = self._offset
         levers = {
             0: _product(z, dy),
             1: _negative(_product(z, dx)),
@@ -106,36 +103,56 @@ class RoutedCable:
     @cached_property
     def value(self) -> Matrix:
         """Length L along the routing, 1×1, m."""
-        return self.stretch @ ca.DM(self._weights)
+        return self.stretch @ ca.DM(self._node_lengths)
 
     @cached_property
     def gradient(self) -> Matrix:
         """∂L/∂q, n×1, m."""
-        rod = self.shape.rod
         parts: list[Matrix] = []
         for c, lever in self.lever.items():
-            weighted = ca.DM(rod.at_nodes[c][self.routing.nodes] * self._weights[:, None])
-            parts.append(ca.DM(weighted.shape[1], 1) if lever is None else weighted.T @ lever.T)
+            phi = self.shape.rod.at_nodes[c][self.routing.nodes]
+            weighted = ca.DM(phi * self._node_lengths[:, None])
+            if lever is None:
+                parts.append(ca.DM(weighted.shape[1], 1))
+            else:
+                parts.append(weighted.T @ lever.T)
         return ca.vertcat(*parts)
 
     def curvature(self, a: int, b: int) -> Row:
-        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes."""
+        """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.
+
+        With T linear in the strains, ∂²|T| = (∂_aT·∂_bT − ∂_a|T| ∂_b|T|) / |T|.
+        """
         x, y, _ = self.tangent
         if x is None and y is None:
             return None
-        fixed = _constant(self._metric(a, b))
-        moving = _negative(_product(self.lever[a], self.lever[b]))
-        if fixed is None and moving is None:
+        metric = _constant(self._metric(a, b))
+        along = _negative(_product(self.lever[a], self.lever[b]))
+        across = _sum(metric, along)
+        if across is None:
             return None
-        row = cast("Matrix", _sum(fixed, moving)) / self.stretch * ca.DM(self._weights).T
+        row = across / self.stretch * ca.DM(self._node_lengths).T
         whole = type(row)(1, self.shape.rod.grid.size)
         whole[self.routing.nodes.tolist()] = row
         return whole
 
+    @cached_property
+    def _strain(self) -> list[Row]:
+        """The six strains at the nodes of the routing."""
+        nodes = self.routing.nodes.tolist()
+        rows = self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
+        return [None if row is None else row[nodes] for row in rows]
+
+    @property
+    def _offset(self) -> tuple[Row, Row]:
+        dx, dy = self.routing.offset
+        return _constant(dx), _constant(dy)
+
     def _metric(self, a: int, b: int) -> FloatArray:
         """Scalar product of the rates of T with two strains, shape (k,)."""
         dx, dy = self.routing.offset
-        zero, one = np.zeros_like(dx), np.ones_like(dx)
+        zero = np.zeros_like(dx)
+        one = np.ones_like(dx)
         rates = [
             np.array([zero, zero, dy]),
             np.array([zero, zero, -dx]),
@@ -144,30 +161,44 @@ class RoutedCable:
             np.array([zero, one, zero]),
             np.array([zero, zero, one]),
         ]
-        return np.asarray((rates[a] * rates[b]).sum(axis=0))
+        product = rates[a] * rates[b]
+        return np.asarray(product.sum(axis=0))
 
     @property
-    def _weights(self) -> FloatArray:
+    def _node_lengths(self) -> FloatArray:
+        """Length of rod that each node of the routing stands for, ℓ w, shape (k,), m."""
         rod = self.shape.rod
-        return np.asarray(rod.properties.length * rod.grid.weights[self.routing.nodes])
+        weights = rod.grid.weights[self.routing.nodes]
+        return np.asarray(rod.properties.length * weights)
 
 
 def _constant(row: FloatArray) -> Row:
-    return ca.DM(row).T if np.any(row) else None
+    """A row of numbers; None where all are zero."""
+    if not np.any(row):
+        return None
+    return ca.DM(row).T
 
 
 def _sum(*rows: Row) -> Row:
     present = [row for row in rows if row is not None]
-    return sum(present[1:], present[0]) if present else None
+    if not present:
+        return None
+    return sum(present[1:], present[0])
 
 
 def _product(a: Row, b: Row) -> Row:
-    return None if a is None or b is None else a * b
+    if a is None or b is None:
+        return None
+    return a * b
 
 
 def _quotient(a: Row, b: Matrix) -> Row:
-    return None if a is None else a / b
+    if a is None:
+        return None
+    return a / b
 
 
 def _negative(row: Row) -> Row:
-    return None if row is None else -row
+    if row is None:
+        return None
+    return -row

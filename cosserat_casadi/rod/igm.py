@@ -1,6 +1,7 @@
 """Inverse Geometric Model: strain coordinates and loads ↦ generalised force and base wrench, report (2.18)–(2.20).
 
-The residual K_εε q + Q_ad is divided by EI/ℓ, so it is without unit and of the size of F ℓ²/EI.
+The residual K_εε q + Q_ad is divided by EI/ℓ, so it is without unit and of the size of F ℓ²/EI. See docs/theory.md
+section 6.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Actuation, Conjugate
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import interval_kernels
 
 
@@ -25,7 +27,7 @@ class InverseGeometricModel:
 
     Attributes:
         statics: the rod's shape and internal wrench.
-        actuation: what actuators put against the elastic stress.
+        actuation: the efforts on it.
     """
 
     statics: Statics
@@ -36,10 +38,15 @@ class InverseGeometricModel:
         """The rod's shape."""
         return self.statics.shape
 
+    @property
+    def rod(self) -> DiscreteRod:
+        """The rod."""
+        return self.statics.shape.rod
+
     @cached_property
     def generalised_force(self) -> Matrix:
         """Q_ad / (EI/ℓ), n×1: report (2.18), Q_ad = −ℓ ∫ Φᵀ Bᵀ Λ dX."""
-        if self.shape.rod.discretisation.transport == "permuted":
+        if self.rod.discretisation.transport == "permuted":
             return self._weighted_force()
         return self._transposed_force()
 
@@ -51,26 +58,27 @@ class InverseGeometricModel:
     @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        unit = self.shape.rod.energy_unit
+        unit = self.rod.energy_unit
         forces = [effort / unit * conjugate.gradient for effort, conjugate in self.efforts]
-        return sum(forces[1:], forces[0]) if forces else None
+        if not forces:
+            return None
+        return sum(forces[1:], forces[0])
 
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        passive = self._elastic(ca.sparsify(ca.DM(self.shape.rod.stiffness)) @ self.shape.q) + self.generalised_force
-        return passive if self.actuation_force is None else passive + self.actuation_force
+        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
+        passive = self._elastic(stiffness @ self.shape.q) + self.generalised_force
+        if self.actuation_force is None:
+            return passive
+        return passive + self.actuation_force
 
     @cached_property
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
-        rod = self.shape.rod
-        stored = ca.bilin(ca.sparsify(ca.DM(rod.stiffness)), self.shape.q, self.shape.q)
-        return rod.energy_unit / 2 * self._elastic(stored)
-
-    def _elastic(self, value: Matrix) -> Matrix:
-        """A value in proportion to the stiffness: a longer rod is softer."""
-        return value if self.shape.ratio is None else value / self.shape.ratio
+        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
+        stored = ca.bilin(stiffness, self.shape.q, self.shape.q)
+        return self.rod.energy_unit / 2 * self._elastic(stored)
 
     @cached_property
     def potential(self) -> Matrix | None:
@@ -94,43 +102,44 @@ class InverseGeometricModel:
             total = total + effort * conjugate.value
         return total
 
+    def _elastic(self, value: Matrix) -> Matrix:
+        """A value in proportion to the stiffness: a longer rod is softer."""
+        if self.shape.ratio is None:
+            return value
+        return value / self.shape.ratio
+
     def _transposed_force(self) -> Matrix:
         """Minus the derivative of the loads' virtual work, by the transpose of the forward sweep."""
-        rod, moment = self.shape.rod, self.statics.interval_moment
-        force: Matrix = ca.DM.zeros(rod.size, 1)
-        if moment is not None and rod.properties.turning_axes:
-            pulled = interval_kernels(rod).pull.map(moment.shape[1])(*self.shape.interval_arguments, moment)
-            fold, half = rod.turn_factors
-            force = force + (half / -rod.energy_unit).T @ (fold @ stack(pulled))
+        moment = self.statics.interval_moment
+        force: Matrix = ca.DM.zeros(self.rod.size, 1)
+        if moment is not None and self.rod.properties.turning_axes:
+            pull = interval_kernels(self.rod).pull.map(moment.shape[1])
+            pulled = pull(*self.shape.interval_arguments, moment)
+            per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
+            force = force + per_coordinate.T @ stack(pulled)
         return force + self._linear_force(self.statics.force_covector)
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
-        rod = self.shape.rod
-        parts: list[Matrix] = [ca.DM.zeros(rod.size - self._linear_size(), 1)]
-        for c in rod.properties.admitted:
-            if c < 3:
-                continue
+        linear = [c for c in self.rod.properties.admitted if c >= 3]
+        sizes = [self.rod.at_nodes[c].shape[1] for c in linear]
+        # Curvature and torsion come first in q; forces work on them through moments alone.
+        parts: list[Matrix] = [ca.DM.zeros(self.rod.size - sum(sizes), 1)]
+        for c, size in zip(linear, sizes, strict=True):
             if covector is None:
-                parts.append(ca.DM.zeros(rod.at_nodes[c].shape[1], 1))
+                parts.append(ca.DM.zeros(size, 1))
                 continue
-            share = dot(self.shape.directors[c - 3], covector).T
-            fold, half = rod.node_factors(c)
-            parts.append((half * (-rod.properties.length / rod.energy_unit)).T @ (fold @ share))
+            along_director = dot(self.shape.directors[c - 3], covector)
+            per_coordinate = self.rod.node_matrix(c) * (-self.rod.properties.length / self.rod.energy_unit)
+            parts.append(per_coordinate.T @ along_director.T)
         return ca.vertcat(*parts)
 
-    def _linear_size(self) -> int:
-        rod = self.shape.rod
-        return sum(rod.at_nodes[c].shape[1] for c in rod.properties.admitted if c >= 3)
-
     def _weighted_force(self) -> Matrix:
-        """Literal quadrature of report (2.16), from the internal wrench at the nodes."""
-        return -self._project(self.statics.internal_wrench())
-
-    def _project(self, wrench: Matrix) -> Matrix:
-        """ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ) of a 6×M stress in the sections' frames, n×1."""
-        rod = self.shape.rod
-        factor = rod.properties.length / rod.energy_unit * rod.grid.weights
-        return ca.vertcat(
-            *[ca.DM(rod.at_nodes[c] * factor[:, None]).T @ wrench[c, :].T for c in rod.properties.admitted]
-        )
+        """Literal quadrature of report (2.16), −ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ), from the internal wrench at the nodes, n×1."""
+        wrench = self.statics.internal_wrench()
+        factor = self.rod.properties.length / self.rod.energy_unit * self.rod.grid.weights
+        parts = []
+        for c in self.rod.properties.admitted:
+            weighted = ca.DM(self.rod.at_nodes[c] * factor[:, None])
+            parts.append(weighted.T @ wrench[c, :].T)
+        return -ca.vertcat(*parts)

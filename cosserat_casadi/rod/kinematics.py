@@ -1,11 +1,12 @@
 """Forward sweep: from strain coordinates to the poses of the sections, report (1.9), (1.10), (2.17).
 
 Everything is in the frame of the base section: the base starts at the origin with the identity rotation, and the
-pose of the base enters where loads come in and results go out.
+pose of the base enters where loads come in and results go out. See docs/theory.md sections 4 and 5.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,7 +16,7 @@ import numpy as np
 from cosserat_casadi.maths.rotation import directors
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
-from cosserat_casadi.rod.transport import Increments, increments, transport
+from cosserat_casadi.rod.transport import IntervalRotations, interval_rotations, section_quaternions
 
 
 @dataclass(frozen=True)
@@ -26,14 +27,14 @@ class Shape:
         rod: the matrices of the rod.
         q: strain coordinates, n×1.
         section_quaternion: quaternions of the distinct sections, 4×(intervals + 1).
-        steps: rotations of the intervals between them; None where the rotation is not their product.
+        intervals: rotations of the intervals between them; None where the rotation is not their product.
         ratio: length of the rod relative to the reference length, where that is free.
     """
 
     rod: DiscreteRod
     q: Matrix
     section_quaternion: Matrix
-    steps: Increments | None
+    intervals: IntervalRotations | None
     ratio: Ratio = None
 
     @cached_property
@@ -42,17 +43,17 @@ class Shape:
         return directors(self.section_quaternion)
 
     @cached_property
-    def interval_rotations(self) -> Matrix:
+    def interval_begins(self) -> Matrix:
         """Rotation matrices of the sections at which the intervals begin, side by side, 3×(3·intervals)."""
-        columns = ca.vertcat(*[d[:, :-1] for d in self.section_directors])
-        return ca.reshape(columns, 3, columns.numel() // 3)
+        return side_by_side([d[:, :-1] for d in self.section_directors])
 
     @property
     def interval_arguments(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Turn, Ω, factors and rotation at the beginning of every interval, as the kernels of derivatives take them."""
-        if self.steps is None:
+        intervals = self.intervals
+        if intervals is None:
             raise ValueError("this rod's rotation is not a product of increments")
-        return self.steps.turn, self.steps.omega, self.steps.factors, self.interval_rotations
+        return intervals.turn, intervals.omega, intervals.factors, self.interval_begins
 
     @cached_property
     def directors(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -70,48 +71,67 @@ class Shape:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
         strain = self.rod.strain_rows(self.q, (3, 4, 5), self.ratio)
         length = self.rod.properties.length
-        pairs = [(d, row) for d, row in zip(self.directors, strain, strict=True) if row is not None]
-        scaled = [self.scale(d, length * row) for d, row in pairs]
-        total = scaled[0]
-        for term in scaled[1:]:
-            total = total + term
-        return total
+        terms = []
+        for director, row in zip(self.directors, strain, strict=True):
+            if row is not None:
+                terms.append(self.scale(director, length * row))
+        return sum(terms[1:], terms[0])
 
     @cached_property
     def position(self) -> Matrix:
         """Positions at the nodes, 3×M, by integration of the tangent, in metres."""
-        return self.tangent @ ca.DM(self.rod.grid.integration_matrix).T
+        integrate = ca.DM(self.rod.grid.integration_matrix)
+        return self.tangent @ integrate.T
 
     def position_at(self, node: int) -> Matrix:
         """Position of one node, 3×1."""
-        return self.tangent @ ca.DM(self.rod.grid.integration_matrix[node])
+        weights = ca.DM(self.rod.grid.integration_matrix[node])
+        return self.tangent @ weights
 
     @staticmethod
     def scale(vectors: Matrix, row: Matrix) -> Matrix:
         """Each column of 3×M vectors times the entry of a 1×M row."""
-        return ca.vertcat(*[component * row for component in ca.vertsplit(vectors)])
+        components = ca.vertsplit(vectors)
+        scaled = [component * row for component in components]
+        return ca.vertcat(*scaled)
 
     def to_body(self, vectors: Matrix) -> Matrix:
         """Coordinates in the sections' frames of 3×M vectors of the base frame."""
-        return ca.vertcat(*[ca.sum1(d * vectors) for d in self.directors])
+        components = [ca.sum1(d * vectors) for d in self.directors]
+        return ca.vertcat(*components)
 
     def to_base(self, vectors: Matrix) -> Matrix:
         """Coordinates in the base frame of 3×M vectors given in the sections' frames."""
-        terms = [self.scale(d, row) for d, row in zip(self.directors, ca.vertsplit(vectors), strict=True)]
-        return terms[0] + terms[1] + terms[2]
+        x, y, z = ca.vertsplit(vectors)
+        d1, d2, d3 = self.directors
+        return self.scale(d1, x) + self.scale(d2, y) + self.scale(d3, z)
 
     def rotation_at(self, node: int) -> Matrix:
         """Rotation matrix base_R_section of one node, 3×3."""
-        return ca.horzcat(*[d[:, node] for d in self.directors])
+        columns = [d[:, node] for d in self.directors]
+        return ca.horzcat(*columns)
+
+    def rotations_at(self, nodes: list[int]) -> Matrix:
+        """Rotation matrices base_R_section of k nodes side by side, 3×3k."""
+        return side_by_side([d[:, nodes] for d in self.directors])
 
     def _at_nodes(self, sections: Matrix) -> Matrix:
-        if self.rod.grid.elements == 1:
+        grid = self.rod.grid
+        if grid.elements == 1:
             return sections
-        return sections[:, np.asarray(self.rod.grid.section_of_node).tolist()]
+        columns = np.asarray(grid.section_of_node).tolist()
+        return sections[:, columns]
+
+
+def side_by_side(directors: Sequence[Matrix]) -> Matrix:
+    """Rotation matrices side by side, 3×3k, from their columns d₁, d₂, d₃, 3×k each."""
+    stacked = ca.vertcat(*directors)
+    return ca.reshape(stacked, 3, stacked.numel() // 3)
 
 
 def shape(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Shape:
     """Forward sweep of report (2.17) in the base frame."""
     product = bool(rod.properties.turning_axes) and rod.discretisation.transport != "permuted"
-    steps = increments(rod, q, ratio) if product else None
-    return Shape(rod, q, transport(rod, q, steps, ratio), steps, ratio)
+    intervals = interval_rotations(rod, q, ratio) if product else None
+    quaternions = section_quaternions(rod, q, intervals, ratio)
+    return Shape(rod, q, quaternions, intervals, ratio)

@@ -14,7 +14,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal
+from cosserat_casadi.maths.blocks import block_diagonal, unstack
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Wrench
@@ -38,9 +38,10 @@ class LoadedSections:
     def nodes(self) -> list[int]:
         """Nodes of the loaded sections: one, or all."""
         grid = self.shape.rod.grid
-        if self.load.at is None:
+        at = self.load.at
+        if at is None:
             return list(range(grid.size))
-        return [grid.node_at(self.load.at)]
+        return [grid.node_at(at)]
 
     @cached_property
     def weights(self) -> FloatArray:
@@ -60,38 +61,42 @@ class LoadedSections:
     @cached_property
     def force(self) -> Matrix | None:
         """Forces on the sections, 3×k, N or N/m; None where the load has none."""
-        return self._scaled(self._wrench[0])
+        force, _ = self._wrench
+        return self._scaled(force)
 
     @cached_property
     def moment(self) -> Matrix | None:
         """Moments on the sections, 3×k, N m or N; None where the load has none."""
-        return self._scaled(self._wrench[1])
+        _, moment = self._wrench
+        return self._scaled(moment)
 
     @cached_property
     def frozen(self) -> Wrench:
         """The wrench at this shape as one of fixed direction."""
-        if self.load.at is None:
-            return LineWrench(self.force, self.moment, None, follower=False)
-        return PointWrench(self.load.at, self.force, self.moment, follower=False)
+        return self._dead(self.force, self.moment)
 
     @cached_property
     def energy(self) -> Matrix | None:
         """Energy of the load, 1×1, J; None where it has none."""
-        if self.load.kernel.energy is None:
+        function = self.load.kernel.energy
+        if function is None:
             return None
-        densities = self._mapped(self.load.kernel.energy)
+        (densities,) = self._mapped(function)
         return self.load.scale * (densities @ ca.DM(self.weights))
 
     @cached_property
     def stiffness(self) -> Matrix:
         """Operator from [δr; δθ] to [δf; δc] of all sections, 6k×6k."""
-        kernel = self.load.kernel.stiffness
-        return self.load.scale * block_diagonal(self._mapped(kernel), kernel.sparsity_out(0))
+        function = self.load.kernel.stiffness
+        (blocks,) = self._mapped(function)
+        operator = block_diagonal(blocks, function.sparsity_out(0))
+        return self.load.scale * operator
 
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
         components = variation.shape[0] // len(self.nodes)
-        return ca.diag(ca.DM(np.tile(self.weights, components))) @ variation
+        weights = np.tile(self.weights, components)
+        return ca.diag(ca.DM(weights)) @ variation
 
     @cached_property
     def with_base(self) -> tuple[Matrix, Matrix]:
@@ -101,41 +106,46 @@ class LoadedSections:
         back in the axes of the base is left to the frozen wrench.
         """
         count = len(self.nodes)
-        ones, none = ca.DM.ones(count, 1), ca.DM(count, 1)
-        shift = [[ones, none, none], [none, ones, none], [none, none, ones]]
+        none = ca.DM(count, 1)
         x, y, z = (row.T for row in ca.vertsplit(self.position))
+        # δφ × r at every section.
         lever = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]])
-        unit = ca.blockcat(shift)
-        shifted = self.stiffness @ ca.vertcat(unit, ca.DM(3 * count, 3))
-        turned = self.stiffness @ ca.vertcat(lever, unit)
+        alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
+        no_turn = ca.DM(3 * count, 3)
+        shifted = self.stiffness @ ca.vertcat(alike, no_turn)
+        turned = self.stiffness @ ca.vertcat(lever, alike)
         return shifted, turned
 
     def changed(self, variation: Matrix) -> Wrench:
         """A wrench on the same sections whose forces and moments are a variation of this load's, 6k×1."""
         count = len(self.nodes)
-        force, moment = (ca.reshape(part, count, 3).T for part in ca.vertsplit(variation, 3 * count))
-        kept_force = force if force.nnz() else None
-        kept_moment = moment if moment.nnz() else None
-        if self.load.at is None:
-            return LineWrench(kept_force, kept_moment, None, follower=False)
-        return PointWrench(self.load.at, kept_force, kept_moment, follower=False)
+        forces, moments = ca.vertsplit(variation, 3 * count)
+        force = unstack(forces, 3)
+        moment = unstack(moments, 3)
+        return self._dead(force if force.nnz() else None, moment if moment.nnz() else None)
+
+    def _dead(self, force: Matrix | None, moment: Matrix | None) -> Wrench:
+        """A dead wrench on the loaded sections from its values there, 3×k each."""
+        at = self.load.at
+        if at is None:
+            return LineWrench(force, moment, None, follower=False)
+        return PointWrench(at, force, moment, follower=False)
 
     @cached_property
     def _wrench(self) -> Sequence[Matrix]:
-        return self._mapped_all(self.load.kernel.wrench)
+        return self._mapped(self.load.kernel.wrench)
 
     def _scaled(self, part: Matrix) -> Matrix | None:
-        return self.load.scale * part if part.nnz() else None
+        if not part.nnz():
+            return None
+        return self.load.scale * part
 
-    def _mapped(self, function: ca.Function) -> Matrix:
-        return self._mapped_all(function)[0]
-
-    def _mapped_all(self, function: ca.Function) -> list[Matrix]:
+    def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""
         count = len(self.nodes)
-        columns = [director[:, self.nodes] for director in self.shape.directors]
-        rotations = ca.reshape(ca.vertcat(*columns), 3, 3 * count)
-        fixed = [self.load.base_position, self.load.base_rotation, self.load.parameters]
-        repeated = [ca.repmat(value, 1, count) for value in fixed]
-        results = function.map(count).call([self.position, rotations, *repeated, ca.DM(self.load.data)])
+        rotations = self.shape.rotations_at(self.nodes)
+        alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]
+        repeated = [ca.repmat(value, 1, count) for value in alike]
+        given = [self.position, rotations, *repeated, ca.DM(self.load.data)]
+        results = function.map(count).call(given)
         return list(results)

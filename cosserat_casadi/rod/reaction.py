@@ -41,11 +41,12 @@ class Reaction:
 
     @cached_property
     def force_with_strain(self) -> Matrix:
-        """∂ base force / ∂q, base frame, 3×n, N: dead forces do not change it."""
+        """∂ base force / ∂q, base frame, 3×n, N: minus the sum of δf, which dead forces do not have."""
         force = ca.DM(3, self._size)
         for wrench in self._followers:
             if wrench.force is not None:
-                force = force - self._resultant(self._turned(wrench, wrench.force), wrench)
+                turned = self._turned(wrench, wrench.force)
+                force = force - self._resultant(turned, wrench)
         for load in self._statics.pose_loads:
             forces, _ = _halves(self.tangent.wrench_variation(load))
             force = force - _summed(forces, load)
@@ -53,15 +54,19 @@ class Reaction:
 
     @cached_property
     def moment_with_strain(self) -> Matrix:
-        """∂ base moment / ∂q, base frame, 3×n, N m."""
+        """∂ base moment / ∂q, base frame, 3×n, N m: minus the sum of δr × f + r × δf + δc."""
         moment = ca.DM(3, self._size)
-        if self._statics.force_covector is not None:
-            moment = moment + _hat_row(self._statics.force_covector) @ self.tangent.tangent
+        covector = self._statics.force_covector
+        if covector is not None:
+            # Σ n̂ × δt is −Σ δr × f: with r = S t and n̂ = Sᵀ f.
+            moment = moment + _hat_row(covector) @ self.tangent.tangent
         for wrench in self._followers:
             if wrench.force is not None:
-                moment = moment - self._lever(wrench) @ self._turned(wrench, wrench.force)
+                turned = self._turned(wrench, wrench.force)
+                moment = moment - self._lever(wrench) @ turned
             if wrench.moment is not None:
-                moment = moment - self._resultant(self._turned(wrench, wrench.moment), wrench)
+                turned = self._turned(wrench, wrench.moment)
+                moment = moment - self._resultant(turned, wrench)
         for load in self._statics.pose_loads:
             forces, moments = _halves(self.tangent.wrench_variation(load))
             moment = moment - _hat_row(load.position) @ forces - _summed(moments, load)
@@ -70,17 +75,29 @@ class Reaction:
     @cached_property
     def with_turn(self) -> Variation:
         """Derivatives with a turn of the base, base axes, rad."""
-        turned_back = [*self.dead, *[load.frozen for load in self._statics.pose_loads]]
-        return self._joined(
-            [[*[_turned_back(wrench, axis) for wrench in turned_back], *self._changed(1, axis)] for axis in range(3)]
-        )
+        frozen = [load.frozen for load in self._statics.pose_loads]
+        variations = []
+        for axis in range(3):
+            wrenches = [_turned_back(wrench, axis) for wrench in (*self.dead, *frozen)]
+            for load in self._statics.pose_loads:
+                _, turned = load.with_base
+                wrenches.append(load.changed(turned[:, axis]))
+            variations.append(wrenches)
+        return self._side_by_side(variations)
 
     @cached_property
     def with_shift(self) -> Variation | None:
         """Derivatives with a shift of the base, base axes, m; None where no load depends on where the rod is."""
         if not self._statics.pose_loads:
             return None
-        return self._joined([self._changed(0, axis) for axis in range(3)])
+        variations = []
+        for axis in range(3):
+            wrenches = []
+            for load in self._statics.pose_loads:
+                shifted, _ = load.with_base
+                wrenches.append(load.changed(shifted[:, axis]))
+            variations.append(wrenches)
+        return self._side_by_side(variations)
 
     @property
     def _statics(self) -> Statics:
@@ -88,48 +105,55 @@ class Reaction:
 
     @property
     def _size(self) -> int:
-        return self._statics.shape.rod.size
+        return self.tangent.rod.size
 
     @property
     def _followers(self) -> list[Wrench]:
         return [wrench for wrench in self._statics.fixed_wrenches if wrench.follower]
 
-    def _changed(self, motion: int, axis: int) -> list[Wrench]:
-        """Variations of the pose-dependent wrenches with a shift (0) or a turn (1) of the base along an axis."""
-        return [load.changed(load.with_base[motion][:, axis]) for load in self._statics.pose_loads]
-
-    def _joined(self, variations: Sequence[Sequence[Wrench]]) -> Variation:
+    def _side_by_side(self, variations: Sequence[Sequence[Wrench]]) -> Variation:
         """Residual and base wrench under each of the variations of the wrenches, side by side."""
-        models = [InverseGeometricModel(Statics(self._statics.shape, wrenches)) for wrenches in variations]
-        residual = ca.horzcat(*[model.generalised_force for model in models])
-        force = ca.horzcat(*[model.statics.base_force for model in models])
-        moment = ca.horzcat(*[model.statics.base_moment for model in models])
-        return residual, force, moment
+        residuals = []
+        forces = []
+        moments = []
+        for wrenches in variations:
+            model = InverseGeometricModel(Statics(self.tangent.shape, wrenches))
+            residuals.append(model.generalised_force)
+            forces.append(model.statics.base_force)
+            moments.append(model.statics.base_moment)
+        return ca.horzcat(*residuals), ca.horzcat(*forces), ca.horzcat(*moments)
 
     def _turned(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """δ of a vector that turns with its section, 3×n, or with the sections at all nodes, 3M×n."""
-        shape = self._statics.shape
+        shape = self.tangent.shape
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
-            return -(hat(shape.rotation_at(node) @ vector) @ self.tangent.rotation_of(node))
+            turning = self.tangent.rotation_of(node)
+            return -(hat(shape.rotation_at(node) @ vector) @ turning)
         angular = -(hat_operator(self._statics.line(wrench, vector)) @ self.tangent.rotation)
-        return ca.horzcat(angular, ca.DM(angular.shape[0], self._size - angular.shape[1]))
+        no_column = ca.DM(angular.shape[0], self._size - angular.shape[1])
+        return ca.horzcat(angular, no_column)
 
     def _resultant(self, variation: Matrix, wrench: Wrench) -> Matrix:
+        """Sum over the sections of variations of a vector, 3×n."""
         if isinstance(wrench, PointWrench):
             return variation
-        return ca.kron(ca.DM.eye(3), self._weights) @ variation
+        sums = ca.kron(ca.DM.eye(3), self._node_lengths)
+        return sums @ variation
 
     def _lever(self, wrench: Wrench) -> Matrix:
         """Moment about the base of a force on the wrench's section, 3×3, or of forces per length at the nodes, 3×3M."""
-        shape = self._statics.shape
+        shape = self.tangent.shape
         if isinstance(wrench, PointWrench):
-            return hat(shape.position_at(shape.rod.grid.node_at(wrench.at)))
-        return _hat_row(shape.position * ca.repmat(self._weights, 3, 1))
+            node = shape.rod.grid.node_at(wrench.at)
+            return hat(shape.position_at(node))
+        weighted = shape.position * ca.repmat(self._node_lengths, 3, 1)
+        return _hat_row(weighted)
 
     @property
-    def _weights(self) -> ca.DM:
-        rod = self._statics.shape.rod
+    def _node_lengths(self) -> ca.DM:
+        """Length of rod that each node stands for, ℓ w, 1×M, m."""
+        rod = self.tangent.rod
         return ca.DM(rod.properties.length * rod.grid.weights).T
 
 
@@ -141,7 +165,8 @@ def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
 
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
     """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
-    return ca.kron(ca.DM.eye(3), ca.DM.ones(1, len(load.nodes))) @ variation
+    sums = ca.kron(ca.DM.eye(3), ca.DM.ones(1, len(load.nodes)))
+    return sums @ variation
 
 
 def _hat_row(field: Matrix) -> Matrix:
@@ -153,8 +178,12 @@ def _hat_row(field: Matrix) -> Matrix:
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
     """Change of a wrench of fixed direction, as the base sees it, while the base turns about one of its axes."""
-    force = None if wrench.force is None else _cross_with_axis(wrench.force, axis)
-    moment = None if wrench.moment is None else _cross_with_axis(wrench.moment, axis)
+    force = wrench.force
+    if force is not None:
+        force = _cross_with_axis(force, axis)
+    moment = wrench.moment
+    if moment is not None:
+        moment = _cross_with_axis(moment, axis)
     return replace(wrench, force=force, moment=moment)
 
 

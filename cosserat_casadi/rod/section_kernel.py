@@ -38,20 +38,20 @@ class SectionKernel:
     def wrench(self) -> ca.Function:
         """Force and moment in the axes of the base, 3×1 each."""
         symbols = self._symbols()
-        return ca.Function("wrench", symbols, self._in_base(symbols), ARGUMENTS, ["force", "moment"])
+        results = self._in_base(symbols)
+        return ca.Function("wrench", symbols, results, ARGUMENTS, ["force", "moment"])
 
     @cached_property
     def stiffness(self) -> ca.Function:
         """6×6 derivative of [force; moment] with [δr; δθ], all in the axes of the base."""
         symbols = self._symbols()
-        position, rotation = symbols[0], symbols[1]
+        position, rotation = symbols[:2]
         wrench = ca.vertcat(*self._in_base(symbols))
-        # δR = δθ^ R: one column of rates for each axis.
-        rates = ca.horzcat(*[ca.vec(hat(axis) @ rotation) for axis in ca.horzsplit(ca.DM.eye(3))])
+        columns = [ca.vec(rate) for rate in rotation_rates(rotation)]
         with_position = ca.jacobian(wrench, position)
-        with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ rates
-        stiffness = ca.sparsify(ca.cse(ca.horzcat(with_position, with_rotation)))
-        return ca.Function("stiffness", symbols, [stiffness], ARGUMENTS, ["stiffness"])
+        with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ ca.horzcat(*columns)
+        stiffness = ca.cse(ca.horzcat(with_position, with_rotation))
+        return ca.Function("stiffness", symbols, [ca.sparsify(stiffness)], ARGUMENTS, ["stiffness"])
 
     @cached_property
     def energy(self) -> ca.Function | None:
@@ -63,20 +63,36 @@ class SectionKernel:
         return ca.Function("energy", symbols, [energy], ARGUMENTS, ["energy"])
 
     def _symbols(self) -> list[ca.SX]:
-        parameters = ca.SX.sym("parameters", self.world_wrench.size1_in(2))
-        data = ca.SX.sym("data", self.world_wrench.size1_in(3))
-        section = [ca.SX.sym("position", 3), ca.SX.sym("rotation", 3, 3)]
-        base = [ca.SX.sym("base_position", 3), ca.SX.sym("base_rotation", 3, 3)]
-        return [*section, *base, parameters, data]
+        parameter_count = self.world_wrench.size1_in(2)
+        data_count = self.world_wrench.size1_in(3)
+        return [
+            ca.SX.sym("position", 3),
+            ca.SX.sym("rotation", 3, 3),
+            ca.SX.sym("base_position", 3),
+            ca.SX.sym("base_rotation", 3, 3),
+            ca.SX.sym("parameters", parameter_count),
+            ca.SX.sym("data", data_count),
+        ]
 
     def _in_world(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
         position, rotation, base_position, base_rotation, parameters, data = symbols
-        return [base_position + base_rotation @ position, base_rotation @ rotation, parameters, data]
+        world_position = base_position + base_rotation @ position
+        world_rotation = base_rotation @ rotation
+        return [world_position, world_rotation, parameters, data]
 
     def _in_base(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
         base_rotation = symbols[3]
-        force, moment = self.world_wrench(*self._in_world(symbols))
-        return [ca.sparsify(base_rotation.T @ force), ca.sparsify(base_rotation.T @ moment)]
+        results = []
+        for vector in self.world_wrench(*self._in_world(symbols)):
+            in_base = base_rotation.T @ vector
+            results.append(ca.sparsify(in_base))
+        return results
+
+
+def rotation_rates(rotation: Matrix) -> list[Matrix]:
+    """Change of a rotation matrix with a turn about each axis, δR = δθ^ R, 3×3 each."""
+    axes = ca.horzsplit(ca.DM.eye(3))
+    return [hat(axis) @ rotation for axis in axes]
 
 
 def wrench_of_energy(energy: Matrix, position: Matrix, rotation: Matrix) -> tuple[Matrix, Matrix]:
@@ -84,7 +100,7 @@ def wrench_of_energy(energy: Matrix, position: Matrix, rotation: Matrix) -> tupl
 
     With δR = δθ^ R the energy varies by Σ ∂U/∂R ∘ (δθ^ R).
     """
-    force = -ca.gradient(energy, position)
-    with_rotation = ca.reshape(ca.gradient(energy, ca.vec(rotation)), 3, 3)
-    rates = [ca.sum1(ca.sum2(with_rotation * (hat(axis) @ rotation))) for axis in ca.horzsplit(ca.DM.eye(3))]
-    return force, -ca.vertcat(*rates)
+    with_position = ca.gradient(energy, position)
+    with_rotation = ca.gradient(energy, ca.vec(rotation))
+    with_turn = [ca.dot(with_rotation, ca.vec(rate)) for rate in rotation_rates(rotation)]
+    return -with_position, -ca.vertcat(*with_turn)

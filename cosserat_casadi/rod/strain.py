@@ -1,5 +1,7 @@
 """Strain reduction: ξ = B (ξ_a⁰ + Φ q) + B̄ ξ_c, report (2.1)–(2.8), as constant matrices on the grid.
 
+See docs/theory.md section 2.
+
 A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/ℓ₀ is written in the strain per reference length
 (ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
 its inverse.
@@ -22,13 +24,16 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
-from cosserat_casadi.maths.blocks import mirror_factors
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import RodProperties
 
 Array = npt.NDArray[np.float64]
+
+ROUNDING = 1e-15
+"""Share of the largest entry of the stiffness below which an entry is zero by orthogonality."""
 
 _POLYNOMIALS: dict[str, Callable[[int, Array], Array]] = {
     "legendre": chebyshev.legendre_polynomials,
@@ -40,9 +45,11 @@ Ratio: TypeAlias = Matrix | None
 """Length of a rod relative to the reference length, 1×1; None where it is 1 for good."""
 
 
-def drawn(value: Matrix, ratio: Ratio) -> Matrix:
-    """A value times the ratio of lengths; nothing is added where the length is fixed."""
-    return value if ratio is None else value * ratio
+def per_reference_length(value: Matrix, ratio: Ratio) -> Matrix:
+    """What is per length of the rod, per reference length: nothing is added where the length is fixed."""
+    if ratio is None:
+        return value
+    return value * ratio
 
 
 @dataclass(frozen=True)
@@ -75,61 +82,75 @@ class DiscreteRod:
     @cached_property
     def scales(self) -> tuple[float, ...]:
         """Strain that one unit of a coordinate stands for, per admitted component (1/m or none)."""
-        x, weights = legendre.leggauss(8)
-        mean = (weights / 2) @ self.properties.hooke((x + 1) / 2)
+        points, weights = legendre.leggauss(8)
+        X = (points + 1) / 2
+        mean = (weights / 2) @ self.properties.hooke(X)
         unit = self.properties.bending_stiffness / self.properties.length**2
-        return tuple(float(np.sqrt(unit / mean[i])) for i in self.properties.admitted)
+        strains = [np.sqrt(unit / mean[c]) for c in self.properties.admitted]
+        return tuple(map(float, strains))
 
     @cached_property
     def columns(self) -> dict[int, slice]:
         """Coordinates of each admitted component in q: stacked component by component, then by element."""
-        counts = [modes * self.discretisation.elements for modes in self.discretisation.modes]
-        ends = np.cumsum([0, *counts])
-        return {c: slice(int(a), int(b)) for c, a, b in zip(self.properties.admitted, ends, ends[1:], strict=False)}
+        columns = {}
+        start = 0
+        for component, modes in zip(self.properties.admitted, self.discretisation.modes, strict=True):
+            end = start + modes * self.discretisation.elements
+            columns[component] = slice(start, end)
+            start = end
+        return columns
 
     def shape_functions(self, component: int, X: Array, element: npt.NDArray[np.int64]) -> Array:
         """Φ_c at abscissae X seen from the given elements, report (2.4): shape (len(X), n_c)."""
-        place = self.properties.admitted.index(component)
-        modes = self.discretisation.modes[place]
+        number = self.properties.admitted.index(component)
+        modes = self.discretisation.modes[number]
         polynomials = _POLYNOMIALS[self.properties.basis]
         breaks = np.asarray(self.discretisation.breaks)
-        local = (X - breaks[element]) / (breaks[element + 1] - breaks[element])
-        values = self.scales[place] * polynomials(modes, local)
+        start = breaks[element]
+        width = breaks[element + 1] - start
+        values = self.scales[number] * polynomials(modes, (X - start) / width)
+        # Every element has polynomials of its own, side by side.
         result = np.zeros((len(X), modes * self.discretisation.elements))
         for row, e in enumerate(element):
-            result[row, e * modes : (e + 1) * modes] = values[row]
+            own = slice(e * modes, (e + 1) * modes)
+            result[row, own] = values[row]
         return result
 
     def degrees(self, component: int) -> npt.NDArray[np.int64]:
         """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
-        modes = self.discretisation.modes[self.properties.admitted.index(component)]
-        return np.tile(np.arange(modes), self.discretisation.elements)
+        number = self.properties.admitted.index(component)
+        degrees = np.arange(self.discretisation.modes[number])
+        return np.tile(degrees, self.discretisation.elements)
 
     def parities(self, component: int) -> Array:
         """1 for a polynomial that is even about the middle of its element, −1 for an odd one, shape (n_c,)."""
-        return np.where(self.degrees(component) % 2 == 0, 1.0, -1.0)
+        even = self.degrees(component) % 2 == 0
+        return np.where(even, 1.0, -1.0)
 
     @cached_property
-    def turn_factors(self) -> tuple[ca.DM, ca.DM]:
-        """Factors (fold, half) of the matrix foldᵀ half from q to the turns of all intervals, stacked by components.
+    def turn_matrix(self) -> FoldedMatrix:
+        """Matrix from q to the Taylor coefficients of the turns of all intervals, stacked by components.
 
-        Polynomials are even or odd about the middle of an element, and so are the intervals of its grid: every mode
-        enters the sum or the difference of two mirrored intervals alone.
+        The intervals of an element mirror each other: every mode enters the sum or the difference of two of them alone.
         """
-        count, axes = len(self.grid.left_ends), self.properties.turning_axes
-        rows, mirror, signs = [np.zeros((0, self.size))], [], []
+        count = len(self.grid.left_ends)
+        rows = [np.zeros((0, self.size))]
+        mirror = [np.zeros(0, dtype=np.int64)]
+        signs = [np.zeros(0)]
         for order, matrices in enumerate(self.taylor_matrices):
-            for axis in axes:
+            for axis in self.properties.turning_axes:
                 row = np.zeros((count, self.size))
                 if axis in matrices:
                     row[:, self.columns[axis]] = matrices[axis]
-                mirror.append(count * len(rows[1:]) + self.grid.mirrored_intervals)
+                first_row = count * (len(rows) - 1)
+                mirror.append(first_row + self.grid.mirrored_intervals)
+                # The l-th Taylor coefficient takes the sign (−1)^l when the interval is turned round.
                 signs.append(np.full(count, (-1.0) ** order))
                 rows.append(row)
-        if not mirror:
-            return ca.DM(0, 0), ca.DM(0, self.size)
+        if len(rows) == 1:
+            return FoldedMatrix(ca.DM(0, 0), ca.DM(0, self.size))
         parities = np.concatenate([self.parities(c) for c in self.columns])
-        return mirror_factors(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
+        return folded(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
 
     @cached_property
     def at_nodes(self) -> dict[int, Array]:
@@ -137,10 +158,11 @@ class DiscreteRod:
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
         return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.properties.admitted}
 
-    def node_factors(self, component: int) -> tuple[ca.DM, ca.DM]:
-        """Factors (fold, half) of Φ_c at the nodes, foldᵀ half: modes meet sums or differences of mirrored nodes."""
+    def node_matrix(self, component: int) -> FoldedMatrix:
+        """Φ_c at the nodes, M×n_c: modes meet sums or differences of mirrored nodes."""
         signs = np.ones(self.grid.size)
-        return mirror_factors(self.at_nodes[component], self.grid.mirrored_nodes, signs, self.parities(component))
+        parities = self.parities(component)
+        return folded(self.at_nodes[component], self.grid.mirrored_nodes, signs, parities)
 
     @cached_property
     def stiffness(self) -> Array:
@@ -148,18 +170,20 @@ class DiscreteRod:
 
         Gauss points enough for the product of two polynomials with a section stiffness of degree four.
         """
-        x, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
+        points, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
         matrix = np.zeros((self.size, self.size))
         for e in range(self.grid.elements):
-            a, b = self.grid.breaks[e : e + 2]
-            X = a + (b - a) * (x + 1) / 2
-            hooke = (
-                self.properties.hooke(X) * (weights * (b - a) / 2 * self.properties.length / self.energy_unit)[:, None]
-            )
+            start, end = self.grid.breaks[e : e + 2]
+            width = end - start
+            X = start + width * (points + 1) / 2
+            lengths = weights * width / 2 * self.properties.length
+            hooke = self.properties.hooke(X) * (lengths / self.energy_unit)[:, None]
+            element = np.full(len(X), e)
             for c, columns in self.columns.items():
-                phi = self.shape_functions(c, X, np.full(len(X), e))
+                phi = self.shape_functions(c, X, element)
                 matrix[columns, columns] += phi.T @ (hooke[:, [c]] * phi)
-        matrix[np.abs(matrix) < 1e-15 * np.abs(matrix).max()] = 0.0
+        largest = np.abs(matrix).max()
+        matrix[np.abs(matrix) < ROUNDING * largest] = 0.0
         return matrix
 
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
@@ -170,7 +194,9 @@ class DiscreteRod:
         for c in range(6):
             row = ca.DM(intrinsic[:, c]).T
             if c in self.columns:
-                row = row + (ca.DM(self.shape_functions(c, X, element)) @ q[self.columns[c]]).T / ratio
+                phi = ca.DM(self.shape_functions(c, X, element))
+                strain = phi @ q[self.columns[c]]
+                row = row + strain.T / ratio
             rows.append(row)
         return ca.vertcat(*rows)
 
@@ -179,11 +205,12 @@ class DiscreteRod:
         intrinsic = self.properties.intrinsic_strain(self.grid.nodes)
         rows: list[Matrix | None] = []
         for c in components:
-            row = drawn(ca.DM(intrinsic[:, c]).T, ratio) if np.any(intrinsic[:, c]) else None
+            row = None
+            if np.any(intrinsic[:, c]):
+                row = per_reference_length(ca.DM(intrinsic[:, c]).T, ratio)
             if c in self.columns:
-                fold, half = self.node_factors(c)
-                moving = (fold.T @ (half @ q[self.columns[c]])).T
-                row = moving if row is None else row + moving
+                varying = (self.node_matrix(c) @ q[self.columns[c]]).T
+                row = varying if row is None else row + varying
             rows.append(row)
         return rows
 
@@ -195,10 +222,15 @@ class DiscreteRod:
     @cached_property
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
-        return [
-            {c: per_interval[:, self.columns[c]] * (self.degrees(c) >= order) for c in self.columns if c < 3}
-            for order, per_interval in enumerate(self._taylor(self._sampled_modes))
-        ]
+        found = []
+        for order, per_interval in enumerate(self._taylor(self._sampled_modes)):
+            matrices = {}
+            for c in self.columns:
+                if c < 3:
+                    # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
+                    matrices[c] = per_interval[:, self.columns[c]] * (self.degrees(c) >= order)
+            found.append(matrices)
+        return found
 
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
@@ -208,13 +240,15 @@ class DiscreteRod:
     @cached_property
     def taylor_count(self) -> int:
         """Taylor coefficients read per interval: one where all turns share an axis."""
-        return 1 if len(self.properties.turning_axes) < 2 else magnus.coefficient_count(self.magnus_order)
+        if len(self.properties.turning_axes) < 2:
+            return 1
+        return magnus.coefficient_count(self.magnus_order)
 
     def _sampled_modes(self, X: Array, element: npt.NDArray[np.int64]) -> Array:
         samples = np.zeros((len(X), self.size))
-        for c in self.columns:
+        for c, columns in self.columns.items():
             if c < 3:
-                samples[:, self.columns[c]] = self.shape_functions(c, X, element)
+                samples[:, columns] = self.shape_functions(c, X, element)
         return samples
 
     def _taylor(self, field: Callable[[Array, npt.NDArray[np.int64]], Array]) -> list[Array]:
@@ -222,9 +256,13 @@ class DiscreteRod:
         degree = max([*self.discretisation.modes, *map(len, self.properties.intrinsic)])
         points = max(self.taylor_count, degree // 2 + 1)
         tau, to_taylor = magnus.taylor_from_samples(self.taylor_count, points)
-        width = self.grid.right_ends - self.grid.left_ends
-        X = (self.grid.left_ends + self.grid.right_ends)[:, None] / 2 + width[:, None] * tau
+        left = self.grid.left_ends
+        right = self.grid.right_ends
+        width = right - left
+        middle = (left + right) / 2
+        X = middle[:, None] + width[:, None] * tau
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals * points)
         samples = field(X.ravel(), element).reshape(len(width), points, -1)
-        scaled = samples * (self.properties.length * width)[:, None, None]
+        lengths = self.properties.length * width
+        scaled = samples * lengths[:, None, None]
         return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]

@@ -1,19 +1,27 @@
-"""Jacobian of a rod's residual from its structure, exact for the discrete model.
+"""Jacobian of a rod's residual from its structure, exact for the discrete model: docs/theory.md section 7.
 
-Column j of every matrix below is the variation of a field with the j-th strain coordinate, stacked component by
+Column i of every matrix below is the variation of a field with the i-th strain coordinate, stacked component by
 component. Rotations vary by δθ = Σ R T ∂Ω/∂q over the intervals passed, tangents by δt = δθ × t + ℓ Σ d_c δΓ_c.
 
-Two parts add to the stiffness of the rod. With the wrenches frozen, forces have a potential, so that one triangle is
-enough; frozen couples have none, and what they take from the symmetry is ½ Σ δθᵀ ĉ^ δθ at the sections they act on,
-because the rotations of one section commute but for their commutator. Then followers turn. Only what a scene's loads
-need is formed.
+**Frozen wrenches.** Forces of fixed direction have a potential, so the upper triangle of their part is enough and the
+lower one is its mirror. Couples have none, and the mirror is repaired. Write θ_i for column i of the δθ of the section
+that a couple c acts on, θ_i^ = ∂_iR Rᵀ. Since ∂_i∂_jR = ∂_j∂_iR,
+
+    ∂_iθ_j − ∂_jθ_i = θ_i × θ_j .
+
+A frozen couple has the residual g_j = −c·θ_j and the Jacobian J_ji = −c·∂_iθ_j, so that with the skew matrix
+C_ji = θ_j·(c × θ_i) the triangles differ by J_ji − J_ij = −c·(θ_i × θ_j) = −C_ji: below the diagonal C is taken from
+the mirror. A couple that follows its section varies by δc = θ_i × c and adds −(θ_i × c)·θ_j = C_ji everywhere: below,
+the two cancel and the mirror stands; above, C is added. docs/theory.md writes C as δθᵀ ĉ δθ.
+
+**What else varies.** Forces that follow turn with their sections, loads that depend on poses vary by the derivative of
+their kernel, efforts by the curvature of the quantity that they work on. Only what a scene's loads need is formed.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -26,8 +34,11 @@ from cosserat_casadi.maths.blocks import (
 )
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.folded_matrix import FoldedMatrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
 
@@ -42,99 +53,124 @@ class Tangent:
 
     igm: InverseGeometricModel
 
+    @property
+    def shape(self) -> Shape:
+        """The rod's shape."""
+        return self.igm.shape
+
+    @property
+    def rod(self) -> DiscreteRod:
+        """The rod."""
+        return self.igm.shape.rod
+
     @cached_property
     def kernels(self) -> IntervalKernels:
         """Functions of one interval."""
-        return interval_kernels(self.igm.shape.rod)
+        return interval_kernels(self.rod)
 
     @cached_property
     def intervals(self) -> int:
         """Number of intervals between sections."""
-        return len(self.igm.shape.rod.grid.left_ends)
+        return len(self.rod.grid.left_ends)
 
     @cached_property
     def angular_size(self) -> int:
         """Number n_a of coordinates of curvature and torsion, which come first in q."""
-        rod = self.igm.shape.rod
-        return sum(rod.at_nodes[c].shape[1] for c in rod.properties.admitted if c < 3)
+        angular = [c for c in self.rod.properties.admitted if c < 3]
+        return sum(self.rod.at_nodes[c].shape[1] for c in angular)
 
     @cached_property
-    def turn_factors(self) -> tuple[ca.DM, ca.DM]:
-        """Factors of the derivative of the stacked turns with respect to the angular coordinates."""
-        fold, half = self.igm.shape.rod.turn_factors
-        return fold, half[:, : self.angular_size]
-
-    @cached_property
-    def turn_matrix(self) -> ca.DM:
+    def turn_matrix(self) -> FoldedMatrix:
         """Derivative of the stacked turns with respect to the angular coordinates, (size·intervals)×n_a."""
-        fold, half = self.turn_factors
-        return fold.T @ half
+        return self.rod.turn_matrix.first_columns(self.angular_size)
 
     @cached_property
     def interval_operators(self) -> tuple[Matrix, Matrix, Matrix]:
-        """A, V, H of every interval as operators on stacked fields."""
-        shape, moment = self.igm.shape, self.igm.statics.interval_moment
+        """A, V, H of :attr:`IntervalKernels.variation` of every interval as operators on stacked fields."""
         kernel = self.kernels.variation
-        passing = ca.DM.zeros(3, self.intervals) if moment is None else moment
-        blocks = kernel.map(self.intervals)(*shape.interval_arguments, passing)
+        moment = self.igm.statics.interval_moment
+        if moment is None:
+            moment = ca.DM.zeros(3, self.intervals)
+        blocks = kernel.map(self.intervals)(*self.shape.interval_arguments, moment)
         a, v, h = (block_diagonal(block, kernel.sparsity_out(i)) for i, block in enumerate(blocks))
         return a, v, h
 
     @cached_property
-    def step(self) -> Matrix:
+    def interval_variation(self) -> Matrix:
         """δθ that each interval adds, base frame, (3·intervals)×n_a, rad."""
-        return self.interval_operators[0] @ self.turn_matrix
+        turning = self.interval_operators[0]
+        return turning @ self.turn_matrix.unfolded
 
     @cached_property
     def section_rotation(self) -> Matrix:
         """δθ of the distinct sections beyond the base, (3·intervals)×n_a, rad."""
-        return cumulative_sum(self.step, self.intervals)
+        return cumulative_sum(self.interval_variation, self.intervals)
 
     @cached_property
     def rotation(self) -> Matrix:
         """δθ of the nodes, 3M×n_a, rad."""
-        grid = self.igm.shape.rod.grid
+        grid = self.rod.grid
         if not self.kernels.axes:
             return ca.DM(3 * grid.size, self.angular_size)
-        parts = ca.vertsplit(self.section_rotation, self.intervals)
-        index = np.asarray(grid.section_of_node).tolist()
-        return ca.vertcat(*[self._with_base(part)[index, :] for part in parts])
+        section_of_node = np.asarray(grid.section_of_node).tolist()
+        parts = []
+        for part in ca.vertsplit(self.section_rotation, self.intervals):
+            sections = _with_base(part)
+            parts.append(sections[section_of_node, :])
+        return ca.vertcat(*parts)
 
     @cached_property
     def tangent(self) -> Matrix:
         """δt of the nodes, 3M×n, m."""
-        shape = self.igm.shape
-        stretches = [
-            ca.vertcat(*[ca.diag(row) @ self._stretch(c) for row in ca.vertsplit(shape.directors[c - 3])])
-            for c in self._linear
-        ]
-        return ca.horzcat(-(hat_operator(shape.tangent) @ self.rotation), *stretches)
+        columns = [-(hat_operator(self.shape.tangent) @ self.rotation)]
+        for c in self._linear:
+            director = self.shape.directors[c - 3]
+            stretch = self._stretch(c)
+            rows = [ca.diag(row) @ stretch for row in ca.vertsplit(director)]
+            columns.append(ca.vertcat(*rows))
+        return ca.horzcat(*columns)
 
     def position(self, node: int) -> Matrix:
         """δr of one node, 3×n, m."""
-        shape = self.igm.shape
-        weights = shape.rod.grid.integration_matrix[[node]]
-        x, y, z = ca.vertsplit(shape.tangent * ca.repmat(ca.DM(weights), 3, 1))
+        weights = self.rod.grid.integration_matrix[[node]]
+        x, y, z = ca.vertsplit(self.shape.tangent * ca.repmat(ca.DM(weights), 3, 1))
         none = type(x)(*x.shape)
-        turned = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]]) @ self.rotation
-        stretched = [shape.directors[c - 3] @ ca.DM(weights.T * np.asarray(self._stretch(c))) for c in self._linear]
-        return ca.horzcat(turned, *stretched)
+        # Σ w δθ × t, the sum over the nodes.
+        levers = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]])
+        columns = [levers @ self.rotation]
+        for c in self._linear:
+            stretch = weights.T * np.asarray(self._stretch(c))
+            columns.append(self.shape.directors[c - 3] @ ca.DM(stretch))
+        return ca.horzcat(*columns)
 
     def rotation_of(self, node: int) -> Matrix:
         """δθ of one node, 3×n, rad."""
-        size = self.igm.shape.rod.grid.size
-        turned = ca.vertcat(*[part[node, :] for part in ca.vertsplit(self.rotation, size)])
-        return ca.horzcat(turned, ca.DM(3, self.igm.shape.rod.size - self.angular_size))
+        components = ca.vertsplit(self.rotation, self.rod.grid.size)
+        turned = ca.vertcat(*[component[node, :] for component in components])
+        return self._with_linear_columns(turned)
+
+    def motion(self, load: LoadedSections) -> Matrix:
+        """[δr; δθ] of the sections of a load, stacked component by component, 6k×n, m and rad."""
+        if load.load.at is not None:
+            node = load.nodes[0]
+            return ca.vertcat(self.position(node), self.rotation_of(node))
+        grid = self.rod.grid
+        integrate = ca.DM(grid.integration_matrix)
+        moved = [integrate @ component for component in ca.vertsplit(self.tangent, grid.size)]
+        return ca.vertcat(*moved, self._with_linear_columns(self.rotation))
+
+    def wrench_variation(self, load: LoadedSections) -> Matrix:
+        """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
+        variation = load.stiffness @ self.motion(load)
+        return load.weighted(variation)
 
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂q, n×n, without unit."""
-        rod = self.igm.shape.rod
-        linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], ca.DM(0, self.angular_size))
-        none = ca.DM(linear.shape[0], linear.shape[0])
-        elastic = ca.sparsify(ca.DM(rod.stiffness))
-        elastic = elastic if self.igm.shape.ratio is None else elastic / self.igm.shape.ratio
-        matrix = elastic + ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
+        elastic = ca.sparsify(ca.DM(self.rod.stiffness))
+        if self.shape.ratio is not None:
+            elastic = elastic / self.shape.ratio
+        matrix = elastic + self._frozen_wrenches()
         for part in (self._following_forces(), self._pose_stiffness(), self._actuation_stiffness()):
             if part is not None:
                 matrix = matrix + part
@@ -143,131 +179,161 @@ class Tangent:
     @property
     def _linear(self) -> list[int]:
         """Admitted strains that are shear or extension."""
-        return [c for c in self.igm.shape.rod.properties.admitted if c >= 3]
+        return [c for c in self.rod.properties.admitted if c >= 3]
+
+    @property
+    def _linear_size(self) -> int:
+        """Number of coordinates of shear and extension."""
+        return self.rod.size - self.angular_size
+
+    def _with_linear_columns(self, angular: Matrix) -> Matrix:
+        """Columns of the angular coordinates, and zeros for the linear ones."""
+        return ca.horzcat(angular, ca.DM(angular.shape[0], self._linear_size))
+
+    def _frozen_wrenches(self) -> Matrix:
+        """What all wrenches add but for following forces, n×n; linear strains do not meet each other."""
+        no_row = ca.DM(0, self.angular_size)
+        linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], no_row)
+        none = ca.DM(linear.shape[0], linear.shape[0])
+        return ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
 
     def _angular_rows(self) -> Matrix:
         """Angular rows and columns but for following forces, n_a×n_a."""
-        statics, unit = self.igm.statics, self.igm.shape.rod.energy_unit
+        statics = self.igm.statics
+        unit = self.rod.energy_unit
         if statics.interval_moment is None or not self.kernels.axes:
             return ca.DM(self.angular_size, self.angular_size)
         turning, stiffness, second = self.interval_operators
-        fold, half = self.turn_factors
-        pulled = turning.T @ (self._moment_variation() + stiffness @ self.step) + second @ self.turn_matrix
-        matrix = ca.triu2symm(ca.triu((half / -unit).T @ (fold @ pulled)))
-        # Mirrored, the upper triangle lacks the skew part of frozen couples below the diagonal; that of couples which
-        # follow has the other sign, and is lacking above.
-        dead, following = (statics.couple_covector(follower) for follower in (False, True))
+        passing = self._moment_variation() + stiffness @ self.interval_variation
+        pulled = turning.T @ passing + second @ self.turn_matrix.unfolded
+        product = (self.turn_matrix / -unit).T @ pulled
+        matrix = ca.triu2symm(ca.triu(product))
+        # The mirror lacks the skew part of couples: of dead ones below the diagonal, of followers above.
+        dead = statics.couple_covector(follower=False)
         if dead is not None:
             matrix = matrix - ca.tril(self._commutator(dead / unit), False)
+        following = statics.couple_covector(follower=True)
         if following is not None:
             matrix = matrix + ca.triu(self._commutator(following / unit), False)
         return matrix
 
     def _moment_variation(self) -> Matrix:
         """δm − δθ × m of every interval under frozen wrenches, base frame, (3·intervals)×n_a."""
-        statics, count = self.igm.statics, self.intervals
-        begins = ca.vertcat(*[self._with_base(part)[:-1, :] for part in ca.vertsplit(self.section_rotation, count)])
-        variation = hat_operator(cast("Matrix", statics.interval_moment)) @ begins
+        statics = self.igm.statics
+        count = self.intervals
+        rotations = [_with_base(part) for part in ca.vertsplit(self.section_rotation, count)]
+        begins = ca.vertcat(*[part[:-1, :] for part in rotations])
+        moment = statics.interval_moment
+        assert moment is not None, "asked for where moments pass"
+        variation = hat_operator(moment) @ begins
         if statics.force_covector is None:
             return variation
         # (δθ × t) × n̂ = n̂^ t^ δθ, summed over the nodes that share a section.
+        force_hat = hat_operator(statics.force_covector)
+        tangent_hat = hat_operator(self.shape.tangent)
         gather = self._gather
-        lever = gather @ (hat_operator(statics.force_covector) @ hat_operator(self.igm.shape.tangent)) @ gather.T
-        ends = reversed_places(lever @ self.section_rotation, count)
-        return variation + reversed_places(cumulative_sum(ends, count), count)
+        lever = gather @ (force_hat @ tangent_hat) @ gather.T
+        from_tip = reversed_places(lever @ self.section_rotation, count)
+        return variation + reversed_places(cumulative_sum(from_tip, count), count)
 
     def _commutator(self, couple: Matrix) -> Matrix:
-        """Sum of δθᵀ ĉ^ δθ over the nodes, skew, n_a×n_a, for couples 3×M."""
+        """Σ δθᵀ ĉ^ δθ over the nodes, C of the module's docstring, skew, n_a×n_a, for couples 3×M."""
         return self.rotation.T @ (hat_operator(couple) @ self.rotation)
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
-        rod, covector = self.igm.shape.rod, self.igm.statics.force_covector
-        fold, half = rod.node_factors(component)
+        covector = self.igm.statics.force_covector
+        phi = self.rod.node_matrix(component)
         if covector is None:
-            return ca.DM(half.shape[1], self.angular_size)
-        lever = cross(self.igm.shape.directors[component - 3], covector)
-        share = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)]) @ self.rotation
-        return (half * (-rod.properties.length / rod.energy_unit)).T @ (fold @ share)
+            return ca.DM(phi.half.shape[1], self.angular_size)
+        lever = cross(self.shape.directors[component - 3], covector)
+        work = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)])
+        per_coordinate = phi * (-self.rod.properties.length / self.rod.energy_unit)
+        return per_coordinate.T @ (work @ self.rotation)
 
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
-        wrenches = [w for w in self.igm.statics.wrenches if w.follower]
-        rod = self.igm.shape.rod
-        parts = [self._following_force(w, w.force / rod.energy_unit) for w in wrenches if w.force is not None]
+        parts = []
+        for wrench in self.igm.statics.wrenches:
+            if wrench.follower and wrench.force is not None:
+                force = wrench.force / self.rod.energy_unit
+                parts.append(self._following_force(wrench, force))
         if not parts:
             return None
-        return ca.horzcat(-sum(parts[1:], parts[0]), ca.DM(rod.size, rod.size - self.angular_size))
+        return self._with_linear_columns(-sum(parts[1:], parts[0]))
 
     def _following_force(self, wrench: Wrench, force: Matrix) -> Matrix:
         """Sum of δtᵀ δn̂, n×n_a: δrᵀ (δθ × f) wherever the force acts."""
-        shape, grid = self.igm.shape, self.igm.shape.rod.grid
-        if isinstance(wrench, PointWrench):
-            node = grid.node_at(wrench.at)
-            turned = hat(shape.rotation_at(node) @ force) @ self.rotation_of(node)[:, : self.angular_size]
-            return -self.position(node).T @ turned
-        return self.tangent.T @ self._following_line(wrench, force)
+        if isinstance(wrench, LineWrench):
+            return self.tangent.T @ self._following_line(wrench, force)
+        return self._following_point(wrench, force)
+
+    def _following_point(self, wrench: PointWrench, force: Matrix) -> Matrix:
+        node = self.rod.grid.node_at(wrench.at)
+        turning = self.rotation_of(node)[:, : self.angular_size]
+        turned = hat(self.shape.rotation_at(node) @ force) @ turning
+        return -self.position(node).T @ turned
 
     def _following_line(self, wrench: LineWrench, force: Matrix) -> Matrix:
         """δn̂ of a force per length that turns with the sections, 3M×n_a."""
-        grid, length = self.igm.shape.rod.grid, self.igm.shape.rod.properties.length
+        grid = self.rod.grid
         turned = -(hat_operator(self.igm.statics.line(wrench, force)) @ self.rotation)
-        to_covector = ca.DM(length * grid.weights[:, None] * grid.integration_matrix).T
-        return ca.vertcat(*[to_covector @ part for part in ca.vertsplit(turned, grid.size)])
-
-    def motion(self, load: LoadedSections) -> Matrix:
-        """[δr; δθ] of the sections of a load, stacked component by component, 6k×n, m and rad."""
-        rod = self.igm.shape.rod
-        if load.load.at is not None:
-            node = load.nodes[0]
-            return ca.vertcat(self.position(node), self.rotation_of(node))
-        integrate = ca.DM(rod.grid.integration_matrix)
-        moved = [integrate @ part for part in ca.vertsplit(self.tangent, rod.grid.size)]
-        turned = ca.horzcat(self.rotation, ca.DM(3 * rod.grid.size, rod.size - self.angular_size))
-        return ca.vertcat(*moved, turned)
-
-    def wrench_variation(self, load: LoadedSections) -> Matrix:
-        """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
-        return load.weighted(load.stiffness @ self.motion(load))
+        lengths = self.rod.properties.length * grid.weights[:, None]
+        to_covector = ca.DM(lengths * grid.integration_matrix).T
+        components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
+        return ca.vertcat(*components)
 
     def _pose_stiffness(self) -> Matrix | None:
         """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
         parts = [self.motion(load).T @ self.wrench_variation(load) for load in self.igm.statics.pose_loads]
         if not parts:
             return None
-        return sum(parts[1:], parts[0]) / -self.igm.shape.rod.energy_unit
+        return sum(parts[1:], parts[0]) / -self.rod.energy_unit
 
     def _actuation_stiffness(self) -> Matrix | None:
         """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
-        rod = self.igm.shape.rod
-        admitted = rod.properties.admitted
-        blocks = {(a, b): self._curvature_block(a, b) for a in admitted for b in admitted if a <= b}
+        admitted = self.rod.properties.admitted
+        blocks = {}
+        for a in admitted:
+            for b in admitted:
+                if a <= b:
+                    blocks[a, b] = self._curvature_block(a, b)
         if not any(block.nnz() for block in blocks.values()):
             return None
-        return ca.blockcat([[blocks[a, b] if a <= b else blocks[b, a].T for b in admitted] for a in admitted])
+        for a, b in list(blocks):
+            if a < b:
+                blocks[b, a] = blocks[a, b].T
+        return ca.blockcat([[blocks[a, b] for b in admitted] for a in admitted])
 
     def _curvature_block(self, a: int, b: int) -> Matrix:
-        rod = self.igm.shape.rod
-        first, second = (ca.sparsify(ca.DM(rod.at_nodes[c])) for c in (a, b))
-        curved = [(effort, conjugate.curvature(a, b)) for effort, conjugate in self.igm.efforts]
-        rows = [effort / rod.energy_unit * row for effort, row in curved if row is not None]
+        """Rows of the coordinates of strain a, columns of those of strain b."""
+        phi_a = ca.sparsify(ca.DM(self.rod.at_nodes[a]))
+        phi_b = ca.sparsify(ca.DM(self.rod.at_nodes[b]))
+        rows = []
+        for effort, conjugate in self.igm.efforts:
+            curvature = conjugate.curvature(a, b)
+            if curvature is not None:
+                rows.append(effort / self.rod.energy_unit * curvature)
         if not rows:
-            return ca.DM(first.shape[1], second.shape[1])
-        block = first.T @ (ca.diag(sum(rows[1:], rows[0])) @ second)
-        return ca.triu2symm(ca.triu(block)) if a == b else block
+            return ca.DM(phi_a.shape[1], phi_b.shape[1])
+        total = sum(rows[1:], rows[0])
+        block = phi_a.T @ (ca.diag(total) @ phi_b)
+        if a == b:
+            return ca.triu2symm(ca.triu(block))
+        return block
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""
-        rod = self.igm.shape.rod
-        return ca.DM(rod.properties.length * rod.at_nodes[component])
+        return ca.DM(self.rod.properties.length * self.rod.at_nodes[component])
 
     @cached_property
     def _gather(self) -> ca.DM:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
-        grid = self.igm.shape.rod.grid
-        sections = np.eye(self.intervals + 1)[1:, grid.section_of_node]
-        return ca.sparsify(ca.DM(np.kron(np.eye(3), sections)))
+        sections = np.eye(self.intervals + 1)[1:, self.rod.grid.section_of_node]
+        gather = np.kron(np.eye(3), sections)
+        return ca.sparsify(ca.DM(gather))
 
-    @staticmethod
-    def _with_base(part: Matrix) -> Matrix:
-        return ca.vertcat(ca.DM(1, part.shape[1]), part)
+
+def _with_base(part: Matrix) -> Matrix:
+    """Variations of the distinct sections, the base, which does not vary, before the others."""
+    return ca.vertcat(ca.DM(1, part.shape[1]), part)

@@ -3,7 +3,7 @@
 The default integrates by products of exponentials: one Magnus increment between neighbouring nodes. A quaternion
 is a unit quaternion to rounding, the cost grows with the number of nodes, and the derivative of the discrete
 rotations is exact and cheap: δθ_{i+1} = δθ_i + R_i T(Ω_i) δΩ_i. The literal linear system of chapter 3 is the other
-member, kept as the oracle.
+member, kept as the oracle. See docs/theory.md section 4.
 """
 
 from __future__ import annotations
@@ -19,9 +19,12 @@ from cosserat_casadi.maths.blocks import unstack
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.rod.strain import DiscreteRod, Ratio, drawn
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio, per_reference_length
 
 ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
+
+IDENTITY = ca.DM([1, 0, 0, 0])
+"""Quaternion of the base section."""
 
 KEPT = {"never_inline": True}
 """Kernels stay functions when a model is expanded to scalars: generated code calls them in place of repeating them."""
@@ -50,10 +53,13 @@ class IntervalKernels:
     @cached_property
     def increment(self) -> ca.Function:
         """The map turn ↦ (quaternion, omega, factors): increment, its Ω, and the factors of its derivatives, 2×1."""
-        turn, omega = self._rotation_vector()
+        turn = ca.SX.sym("turn", self.size)
+        omega = self._rotation_vector(turn)
         made = magnus.increment(omega)
-        outputs = [made.quaternion, ca.sparsify(omega), ca.vertcat(made.half_sine, made.cubic)]
-        return ca.Function("increment", [turn], ca.cse(outputs), ["turn"], ["quaternion", "omega", "factors"], KEPT)
+        factors = ca.vertcat(made.half_sine, made.cubic)
+        outputs = ca.cse([made.quaternion, ca.sparsify(omega), factors])
+        names = ["quaternion", "omega", "factors"]
+        return ca.Function("increment", [turn], outputs, ["turn"], names, KEPT)
 
     @cached_property
     def rotation_pattern(self) -> ca.Sparsity:
@@ -68,10 +74,11 @@ class IntervalKernels:
         ``omega`` and ``factors`` are those of :attr:`increment`, ``rotation`` is the matrix R of the section at which
         the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
         """
-        symbols, made, rotation, moment = self._arguments()
-        turn, omega = self._rotation_vector(symbols[0])
-        force = ca.cse(ca.jtimes(omega, turn, made.pulled(rotation.T @ moment), True))
-        return ca.Function("pull", symbols, [force], ARGUMENTS, ["force"], KEPT)
+        a = self._arguments()
+        omega = self._rotation_vector(a.turn)
+        pulled = a.increment.pulled(a.rotation.T @ a.moment)
+        force = ca.cse(ca.jtimes(omega, a.turn, pulled, True))
+        return ca.Function("pull", a.listed, [force], ARGUMENTS, ["force"], KEPT)
 
     @cached_property
     def variation(self) -> ca.Function:
@@ -81,34 +88,70 @@ class IntervalKernels:
         the moment fixed, by Aᵀ V A + H: V of :meth:`magnus.Increment.stiffness` in the base frame, 3×3, and H, the
         second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
-        symbols, made, rotation, moment = self._arguments()
-        turn, omega = self._rotation_vector(symbols[0])
+        a = self._arguments()
+        omega = self._rotation_vector(a.turn)
+        turning = (a.rotation @ a.increment.tangent) @ ca.jacobian(omega, a.turn)
+        # V is that of the increment seen from the base: Ω turned by R.
+        turned = replace(a.increment, omega=a.rotation @ a.increment.omega)
+        stiffness = turned.stiffness(a.moment)
+        # H holds Tᵀ Rᵀ moment fixed: a symbol while it is differentiated.
         pulled = ca.SX.sym("pulled", 3)
-        turning = (rotation @ made.tangent) @ ca.jacobian(omega, turn)
-        stiffness = replace(made, omega=rotation @ made.omega).stiffness(moment)
-        second = ca.triu2symm(ca.triu(ca.jacobian(ca.jtimes(omega, turn, pulled, True), turn)))
-        second = ca.substitute(second, pulled, made.pulled(rotation.T @ moment))
-        outputs = list(map(ca.sparsify, ca.cse([turning, stiffness, second])))
-        return ca.Function("variation", symbols, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
+        force = ca.jtimes(omega, a.turn, pulled, True)
+        second = ca.triu2symm(ca.triu(ca.jacobian(force, a.turn)))
+        second = ca.substitute(second, pulled, a.increment.pulled(a.rotation.T @ a.moment))
+        outputs = [ca.sparsify(output) for output in ca.cse([turning, stiffness, second])]
+        return ca.Function("variation", a.listed, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
 
-    def _arguments(self) -> tuple[list[ca.SX], magnus.Increment, ca.SX, ca.SX]:
-        """Symbols of the arguments, and from them the increment, the rotation at the beginning, the moment."""
-        turn, omega = ca.SX.sym("turn", self.size), ca.SX.sym("omega", self.increment.sparsity_out(1))
-        factors, rotation = ca.SX.sym("factors", 2), ca.SX.sym("rotation", self.rotation_pattern)
-        moment = ca.SX.sym("moment", 3)
-        made = magnus.Increment(omega, factors[0], factors[1])
-        return [turn, omega, factors, rotation, moment], made, rotation, moment
+    def _arguments(self) -> _Symbols:
+        omega_pattern = self.increment.sparsity_out(1)
+        return _Symbols(
+            turn=ca.SX.sym("turn", self.size),
+            omega=ca.SX.sym("omega", omega_pattern),
+            factors=ca.SX.sym("factors", 2),
+            rotation=ca.SX.sym("rotation", self.rotation_pattern),
+            moment=ca.SX.sym("moment", 3),
+        )
 
-    def _rotation_vector(self, turn: ca.SX | None = None) -> tuple[ca.SX, ca.SX]:
-        """The turn, a new symbol unless given, and its rotation vector Ω."""
-        turn = ca.SX.sym("turn", self.size) if turn is None else turn
+    def _rotation_vector(self, turn: ca.SX) -> ca.SX:
+        """Rotation vector Ω of a turn, 3×1."""
+        if not self.axes:
+            return ca.SX(3, 1)
         alphas = []
-        for part in ca.vertsplit(turn, len(self.axes)) if self.axes else []:
+        for part in ca.vertsplit(turn, len(self.axes)):
             alpha = ca.SX(3, 1)
             for axis, entry in zip(self.axes, ca.vertsplit(part), strict=True):
                 alpha[axis] = entry
             alphas.append(alpha)
-        return turn, magnus.rotation_increment(alphas) if alphas else ca.SX(3, 1)
+        return magnus.rotation_increment(alphas)
+
+
+@dataclass(frozen=True)
+class _Symbols:
+    """Arguments of the kernels of one interval.
+
+    Attributes:
+        turn: Taylor coefficients of the turn.
+        omega: rotation vector of the interval.
+        factors: of the derivatives of its rotation.
+        rotation: of the section at which it begins, 3×3.
+        moment: what passes the interval, 3×1.
+    """
+
+    turn: ca.SX
+    omega: ca.SX
+    factors: ca.SX
+    rotation: ca.SX
+    moment: ca.SX
+
+    @property
+    def listed(self) -> list[ca.SX]:
+        """All, in the order of ARGUMENTS."""
+        return [self.turn, self.omega, self.factors, self.rotation, self.moment]
+
+    @property
+    def increment(self) -> magnus.Increment:
+        """The rotation of the interval."""
+        return magnus.Increment(self.omega, self.factors[0], self.factors[1])
 
 
 def interval_kernels(rod: DiscreteRod) -> IntervalKernels:
@@ -126,22 +169,24 @@ def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     axes = list(rod.properties.turning_axes)
     intrinsic = np.concatenate([taylor[:, axes].T for taylor in rod.intrinsic_taylor])
-    fold, half = rod.turn_factors
-    return drawn(ca.DM(intrinsic), ratio) + unstack(fold.T @ (half @ q), intrinsic.shape[0])
+    varying = unstack(rod.turn_matrix @ q, len(intrinsic))
+    return per_reference_length(ca.DM(intrinsic), ratio) + varying
 
 
 def largest_turn(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Largest turn of an interval between nodes, 1×1, rad: a bound on ∫|K| ds over it, from the Taylor coefficients."""
-    axes, turns = len(rod.properties.turning_axes), interval_turns(rod, q, ratio)
+    turns = interval_turns(rod, q, ratio)
+    coefficients = ca.vertsplit(turns, len(rod.properties.turning_axes))
     total = ca.DM.zeros(1, turns.shape[1])
-    for order in range(turns.shape[0] // axes):
-        rows = turns[order * axes : (order + 1) * axes, :]
-        total = total + ca.sqrt(ca.sum1(rows**2)) / (2**order * (order + 1))
+    for order, rows in enumerate(coefficients):
+        size = ca.sqrt(ca.sum1(rows**2))
+        # |τ|^order over −1/2 … 1/2.
+        total = total + size / (2**order * (order + 1))
     return ca.mmax(total)
 
 
 @dataclass(frozen=True)
-class Increments:
+class IntervalRotations:
     """Rotations of all intervals.
 
     Attributes:
@@ -157,35 +202,41 @@ class Increments:
     factors: Matrix
 
 
-def increments(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Increments:
+def interval_rotations(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> IntervalRotations:
     """Rotations of all intervals for given strain coordinates."""
     turns = interval_turns(rod, q, ratio)
-    return Increments(turns, *interval_kernels(rod).increment.map(turns.shape[1])(turns))
+    increment = interval_kernels(rod).increment.map(turns.shape[1])
+    quaternion, omega, factors = increment(turns)
+    return IntervalRotations(turns, quaternion, omega, factors)
 
 
-def transport(rod: DiscreteRod, q: Matrix, steps: Increments | None, ratio: Ratio = None) -> Matrix:
+def section_quaternions(
+    rod: DiscreteRod, q: Matrix, intervals: IntervalRotations | None, ratio: Ratio = None
+) -> Matrix:
     """Quaternions base_Q_section of the distinct sections, 4×(intervals + 1), the first the identity.
 
     Args:
         rod: matrices of the rod.
         q: strain coordinates.
-        steps: rotations of the intervals; None for a rod that does not turn, or to solve the literal system.
+        intervals: rotations of the intervals; None for a rod that does not turn, or to solve the literal system.
         ratio: length of the rod relative to the reference length.
     """
     if not rod.properties.turning_axes:
-        return ca.repmat(ca.DM([1, 0, 0, 0]), 1, len(rod.grid.left_ends) + 1)
-    if steps is None:
+        return ca.repmat(IDENTITY, 1, len(rod.grid.left_ends) + 1)
+    if intervals is None:
         return _permuted_transport(rod, q, ratio)
     pattern = interval_kernels(rod).increment.sparsity_out(0)
-    start = ca.project(ca.DM([1, 0, 0, 0]), pattern)
-    later = _chain(pattern).mapaccum(steps.quaternion.shape[1])(start, steps.quaternion)
+    start = ca.project(IDENTITY, pattern)
+    count = intervals.quaternion.shape[1]
+    later = _chain(pattern).mapaccum(count)(start, intervals.quaternion)
     quaternions: Matrix = ca.horzcat(start, later)
     return quaternions
 
 
 def _chain(pattern: ca.Sparsity) -> ca.Function:
     """One step of the product of quaternions that share a sparsity pattern closed under products."""
-    rotation, increment = ca.SX.sym("rotation", pattern), ca.SX.sym("increment", pattern)
+    rotation = ca.SX.sym("rotation", pattern)
+    increment = ca.SX.sym("increment", pattern)
     product = ca.project(quaternion_product(rotation, increment), pattern)
     return ca.Function("chain", [rotation, increment], [product])
 
@@ -193,19 +244,30 @@ def _chain(pattern: ca.Sparsity) -> ca.Function:
 def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     """Literal solve of report (3.22) for Q' = ½ ℓ A(K) Q, element after element."""
     grid = rod.grid
-    intrinsic = rod.properties.intrinsic_strain(grid.nodes)
-    rates = []
-    for axis in range(3):
-        row = drawn(ca.DM(intrinsic[:, axis]).T, ratio)
-        if axis in rod.columns:
-            row = row + (ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]).T
-        rates.append(row)
-    curvature = ca.vertcat(*rates)
-    sections: list[Matrix] = [ca.DM([1, 0, 0, 0])]
+    curvature = _curvature(rod, q, ratio)
+    sections: list[Matrix] = [IDENTITY]
     for e in range(grid.elements):
+        first = e * (grid.intervals + 1)
         width = grid.breaks[e + 1] - grid.breaks[e]
-        nodes = range(e * (grid.intervals + 1), (e + 1) * (grid.intervals + 1))
-        rate = [width * rod.properties.length / 2 * quaternion_rate_matrix(curvature[:, j]) for j in nodes]
-        solution = permuted_system(rate, [ca.DM.zeros(4, 1)] * len(rate)).solve(sections[-1][:, -1])
+        rates = []
+        for node in range(first, first + grid.intervals + 1):
+            matrix = quaternion_rate_matrix(curvature[:, node])
+            rates.append(width * rod.properties.length / 2 * matrix)
+        none = [ca.DM.zeros(4, 1)] * len(rates)
+        begins = sections[-1][:, -1]
+        solution = permuted_system(rates, none).solve(begins)
         sections.append(solution[:, 1:])
     return ca.horzcat(*sections)
+
+
+def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
+    """K at the nodes, per reference length, 3×M, 1/m."""
+    intrinsic = rod.properties.intrinsic_strain(rod.grid.nodes)
+    rows = []
+    for axis in range(3):
+        row = per_reference_length(ca.DM(intrinsic[:, axis]).T, ratio)
+        if axis in rod.columns:
+            varying = ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]
+            row = row + varying.T
+        rows.append(row)
+    return ca.vertcat(*rows)

@@ -66,9 +66,9 @@ def test_variation_of_the_pull_vs_ad(axes, count, size):
 @pytest.mark.parametrize("nodes", [4, 5])
 @pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.3, 1.0)])
 @pytest.mark.parametrize("admitted", [PLANAR, KIRCHHOFF, REISSNER, (2, 4)])
-def test_turn_factors_vs_taylor_matrices(admitted, breaks, nodes, transport):
+def test_turn_matrix_vs_taylor_matrices(admitted, breaks, nodes, transport):
     basis = strain_basis(rod(admitted, CURVED), modes=4, nodes=nodes, breaks=breaks, transport=transport)
-    fold, half = basis.turn_factors
+    matrix = basis.turn_matrix
     q = np.random.default_rng(0).uniform(-1, 1, basis.size)
     rows = [
         intrinsic[:, axis] + (matrices[axis] @ q[basis.columns[axis]] if axis in matrices else 0.0)
@@ -76,19 +76,19 @@ def test_turn_factors_vs_taylor_matrices(admitted, breaks, nodes, transport):
         for axis in basis.properties.turning_axes
     ]
     assert_allclose(interval_turns(basis, ca.DM(q)).full(), np.array(rows), rtol=0, atol=1e-15)
-    derivative = (fold.T @ half).full()
+    derivative = matrix.unfolded.full()
     assert derivative.shape == (np.size(rows), basis.size)
     modes = [max(0, 4 - order) for order in range(basis.taylor_count) for c in basis.columns if c < 3]
-    assert half.nnz() <= (0.5 if nodes % 2 == 0 else 0.55) * nodes * basis.grid.elements * sum(modes)
+    assert matrix.half.nnz() <= (0.5 if nodes % 2 == 0 else 0.55) * nodes * basis.grid.elements * sum(modes)
 
 
 @pytest.mark.parametrize("breaks", [(0.0, 1.0), (0.0, 0.3, 1.0)])
-def test_node_factors_vs_shape_functions_at_the_nodes(breaks):
+def test_node_matrix_vs_shape_functions_at_the_nodes(breaks):
     basis = strain_basis(rod(REISSNER), modes=4, nodes=6, breaks=breaks)
     for c in basis.columns:
-        fold, half = basis.node_factors(c)
-        assert_allclose((fold.T @ half).full(), basis.at_nodes[c], rtol=0, atol=1e-14)
-        assert half.nnz() <= 4 * (len(breaks) - 1) * 4
+        matrix = basis.node_matrix(c)
+        assert_allclose(matrix.unfolded.full(), basis.at_nodes[c], rtol=0, atol=1e-14)
+        assert matrix.half.nnz() <= 4 * (len(breaks) - 1) * 4
 
 
 def test_increment_vs_expm_of_its_rotation_vector():
