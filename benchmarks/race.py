@@ -25,7 +25,7 @@ from rich.progress import Progress
 from shooting_reference import CASES, PROGRAMS, Case, race, steps_for
 
 from cosserat_casadi import Model, build, export, scene_from_dict, solve, solve_scene
-from cosserat_casadi.plots.scene_plot import write_figure
+from cosserat_casadi.plots.figure import write_figure
 
 README = Path(__file__).parents[1] / "README.md"
 BEGIN, END = "<!-- race: written by benchmarks/race.py -->", "<!-- end of race -->"
