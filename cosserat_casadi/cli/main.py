@@ -49,6 +49,7 @@ def run(command: Callable[..., object]) -> int:
     except (SceneError, ExportError) as error:
         print_refusal(console, error)
         return REFUSED
+    # A NoReferenceError is a CosseratError, but the input is in order: it comes first.
     except NoReferenceError as error:
         _print_error(console, str(error))
         return NOT_FOUND
@@ -58,6 +59,7 @@ def run(command: Callable[..., object]) -> int:
     except KeyboardInterrupt:
         console.print("Stopped. Files that were not finished were not written.")
         return INTERRUPTED
+    # Raised by commands that end with a code of their own.
     except typer.Exit as stop:
         return stop.exit_code
     except typer.Abort:

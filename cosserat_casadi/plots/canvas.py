@@ -91,6 +91,7 @@ class Canvas:
             # World y points away from the reader of the x–z plane, so the turn is seen reversed.
             counter_clockwise = not counter_clockwise
         sign = {True: "↺", False: "↻"}[counter_clockwise]
+        # Text of a fixed size: a moment has no length that the scale of the axes could give it.
         style = {"fontsize": 20, "color": colour, "ha": "center", "va": "center"}
         self.axes.annotate(sign, self.projected(point), **style)
 

@@ -115,6 +115,7 @@ def draw_loads(canvas: Canvas, solution: Solution, arrows: Sequence[Arrow]) -> N
 def _draw_style(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle) -> None:
     magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
     largest = max(magnitudes, default=0.0)
+    # The largest arrow of a style has the length that the style gives it, whatever its unit.
     for arrow in arrows:
         if arrow.style == "moment" and canvas.plane is not None:
             # Drawn as a turning sign; the legend still gives its value.

@@ -63,15 +63,18 @@ def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
     for index, (name, discrete_rod) in enumerate(rods.items()):
         for component, label in enumerate(quantity.labels):
             curve = values[name][:, component]
-            if np.abs(curve).max() <= ZERO * max(np.abs(values[name]).max(), SMALLEST):
+            # A component that rounding alone has filled would take a colour and a line of the legend.
+            largest = max(np.abs(values[name]).max(), SMALLEST)
+            if np.abs(curve).max() <= ZERO * largest:
                 continue
             axes = panel
             if component >= 3:
                 axes = linear_axes
             style = _curve_style(len(rods), index, component)
             axes.plot(SAMPLES, curve, label=_curve_label(len(rods), name, label, labelled), **style)
-        for cut in discrete_rod.grid.breaks[1:-1]:
-            panel.axvline(cut, color="0.6", linewidth=0.8)
+        # Fields may jump where one element ends and the next begins.
+        for element_end in discrete_rod.grid.breaks[1:-1]:
+            panel.axvline(element_end, color="0.6", linewidth=0.8)
 
     panel.set_xlim(-0.01, 1.01)
     panel.grid(alpha=0.3)
@@ -121,15 +124,18 @@ def _hide_rounding(axes: Any) -> None:
     """Widen the limits about a constant, which is then a level line and not its rounding errors."""
     low, high = axes.get_ylim()
     largest = max(abs(low), abs(high))
-    if high - low < LEVEL * largest:
-        middle = (low + high) / 2
-        axes.set_ylim(middle - 0.1 * largest, middle + 0.1 * largest)
+    if high - low >= LEVEL * largest:
+        return
+    middle = (low + high) / 2
+    margin = 0.1 * largest
+    axes.set_ylim(middle - margin, middle + margin)
 
 
 def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
     """Components at SAMPLES, shape (len(SAMPLES), 6) for the strain, else (len(SAMPLES), 3)."""
     if quantity == "strain":
         strain = solution.strain(SAMPLES, name)
+        # The stretch is 1 in the unloaded rod: what is left is the extension.
         strain[:, 5] -= 1.0
         return strain
     wrench = solution.internal_wrench(SAMPLES, name)

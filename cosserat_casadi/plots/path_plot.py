@@ -115,6 +115,7 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
             axes.plot(displacement[part, component], path.factor[part], color=AXES[component], linestyle=stroke)
         _mark_events(axes, path, section, component)
         axes.plot([], [], color=AXES[component], label=f"{AXIS_NAMES[component]} of {section.words}")
+    # Strokes are explained by empty lines in grey: each stands for all components.
     for style in sorted(set(stability.tolist())):
         stroke, words = STYLES[style]
         axes.plot([], [], color="0.3", linestyle=stroke, label=words)
@@ -160,6 +161,7 @@ def _stability(path: EquilibriumPath) -> FloatArray:
     """Index into STYLES of every point, shape (k,)."""
     if path.stable is None or path.neutral is None:
         return np.full(len(path.factor), NOT_JUDGED)
+    # Neutral before stable: a point that can be moved on at no cost is called stable too.
     judged = np.where(path.stable, STABLE, UNSTABLE)
     styles = np.where(path.neutral, NEUTRAL, judged)
     # A point that lies on an event is neutral by itself; it is drawn as what leads to it.

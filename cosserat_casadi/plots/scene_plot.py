@@ -69,7 +69,8 @@ def plot_solution(solution: Solution) -> Any:
 
 def _plane(shapes: RodShapes, arrows: Sequence[Arrow]) -> Plane | None:
     """World axes of the coordinate plane that holds all rods and forces, moments across it, or None."""
-    deformed = np.concatenate([*shapes.deformed.values()])
+    lines = list(shapes.deformed.values())
+    deformed = np.concatenate(lines)
     for normal, axes in PLANES:
         flat = np.abs(deformed[:, normal]).max() <= FLAT * shapes.size
         if flat and all(arrow.lies_in_plane(normal) for arrow in arrows):

@@ -85,8 +85,9 @@ def draw_supports(canvas: Canvas, solution: Solution) -> None:
     """Mark the points at which tips are held."""
     for support in solution.model.scene.supports:
         marker = SUPPORT_MARKERS.get(support.kind, UNKNOWN_SUPPORT_MARKER)
-        style = {"marker": marker, "markersize": 10, "color": "0.2"}
-        canvas.markers(np.array([support.position]), label=f"{support.kind} tip", **style)
+        position = np.array([support.position])
+        label = f"{support.kind} tip"
+        canvas.markers(position, marker=marker, markersize=10, color="0.2", label=label)
 
 
 def draw_actuators(canvas: Canvas, solution: Solution) -> None:
@@ -107,11 +108,12 @@ def draw_actuators(canvas: Canvas, solution: Solution) -> None:
 
 def _tendon_style(solution: Solution, actuator: Any) -> Labelled:
     tension = solution.actuator(actuator.name)["tension"]
-    limp = tension <= SLACK * solution.model.discrete.tension_unit(actuator.rod)
+    smallest_taut = SLACK * solution.model.discrete.tension_unit(actuator.rod)
+    limp = bool(tension <= smallest_taut)
     effort = f"{tension:.3g} N"
     if limp and actuator.slack:
         effort = "slack"
-    stroke = {True: ":", False: "-"}[bool(limp)]
+    stroke = {True: ":", False: "-"}[limp]
     return f"{actuator.name}: {effort}", {"linewidth": 1.4, "linestyle": stroke}
 
 
@@ -148,6 +150,7 @@ def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     points_in_body = np.array([joint.position for joint in joints])
     points = in_world(pose, points_in_body)
     corners = points[_order_around_mean(points)]
+    # A body on one joint has no extent but that between the joint and its centre of mass.
     if len(corners) < 2:
         centre_of_mass = in_world(pose, np.array([body.centre_of_mass]))
         corners = np.concatenate([corners, centre_of_mass])
@@ -166,6 +169,7 @@ def _order_around_mean(points: FloatArray) -> Indices:
     arms = points - points.mean(axis=0)
     # Fewer than three points have fewer than three singular vectors, unless the basis is completed.
     _, _, directions = np.linalg.svd(arms, full_matrices=len(points) < 3)
+    # Singular vectors come in the order of their spread, the largest first.
     across = arms @ directions[0]
     up = arms @ directions[1]
     angles = np.arctan2(up, across)

@@ -5,6 +5,7 @@ matplotlib is an extra and is imported inside functions only.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -72,6 +73,7 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
         PlotUnavailableError: matplotlib is not installed.
         KeyError: there is no such column.
     """
+    # A column of one value would colour all points alike.
     varying = [name for name in sweep.swept if np.ptp(sweep[name]) > 0]
     coloured_by = colour or (varying or [OUTCOME])[0]
     rows = _thinned(sweep.converged)
@@ -155,7 +157,8 @@ def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | N
         view: what the panel shows of them.
         shades: shape (k,), or None.
     """
-    area = float(np.clip(DOT_AREA / max(len(points), 1), *DOT_LIMITS))
+    share = DOT_AREA / max(len(points), 1)
+    area = float(np.clip(share, *DOT_LIMITS))
     style: dict[str, Any] = {"s": area, "linewidths": 0.0, "rasterized": len(points) > RASTERISED}
     if shades is None:
         style["color"] = category_style(0)["color"]
@@ -204,7 +207,7 @@ def _plane(points: FloatArray) -> Plane | None:
 def _thinned(chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
     """Indices of the chosen rows; of more than MOST_POINTS every so many."""
     rows = np.flatnonzero(chosen)
-    stride = -(-len(rows) // MOST_POINTS)
+    stride = math.ceil(len(rows) / MOST_POINTS)
     return rows[:: max(1, stride)]
 
 

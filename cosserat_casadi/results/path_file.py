@@ -33,6 +33,7 @@ class _RodPoints:
     def entry(self, index: int) -> dict[str, Any]:
         """The plain data of one point."""
         tip = {"position": self.tip.position[index], "quaternion": self.tip.quaternion[index]}
+        # A tip that moves is all that is asked for.
         if self.X == 1.0:
             return {"tip": tip}
         section = {"X": self.X, "position": self.positions[index]}
@@ -133,6 +134,7 @@ def _rods_along(path: EquilibriumPath) -> dict[str, _RodPoints]:
 
 def _rods_at_event(path: EquilibriumPath, event: PathEvent) -> dict[str, _RodPoints]:
     """Every rod at one event, as one point."""
+    # An event lies between two points of the path and has a shape of its own.
     rods = {}
     for name in path.model.discrete.rods:
         X = path.section(name)

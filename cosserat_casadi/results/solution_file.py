@@ -34,10 +34,12 @@ def result(solution: Solution) -> dict[str, Any]:
         "smallest_eigenvalue": solution.smallest_eigenvalue,
         "iterations": solution.iterations,
         "load_factor": solution.load_factor,
+        # Columns of Legendre coefficients become rows, and what has one entry a number.
         "inputs": {name: value.T.squeeze() for name, value in inputs.items()},
         "discretisation": discretisation_entries(model),
         "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
+    # A reader of rods alone need not know of tables that the scene does not have.
     if scene.bodies:
         data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.bodies}
     if scene.actuators:

@@ -40,5 +40,6 @@ def export(
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
+    # The folder keeps the estimate, which is for these inputs; tune gives one for a range of them.
     export_model(solution.model, output, name, error_estimate=solution.error_estimate)
     print_export(Console(), solution, output)

@@ -40,5 +40,6 @@ def inverse(
     if plot is not None:
         draw_solution(solved.solution, plot)
     print_inverse(Console(), solved, given_files(output, plot))
+    # The files hold the closest pose then.
     if not solved.met:
         raise typer.Exit(NOT_FOUND)

@@ -39,6 +39,7 @@ def path(
     table: Annotated[Path | None, typer.Option("--csv", help="Write the points (CSV) here.")] = None,
 ) -> None:
     """Follow equilibria while an input grows from zero, through folds. Exit codes: 0, 2 refused, 3 not at factor 1."""
+    # Every check adds to the list; the last one raises, so that all faults are seen at once.
     problems: list[Problem] = []
     _check_bifurcation(bifurcation, problems)
     _check_files({"--output": output, "--csv": table}, plot, problems)
@@ -116,6 +117,7 @@ def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> N
         name: the input.
         value: its value; None where it is refused already, and the name alone is left to check.
     """
+    # Building also refuses what reading cannot see: joints that over-constrain.
     layout = build(scene).inputs
     if value is None:
         defaults = dict(zip(layout.names, layout.defaults, strict=True))

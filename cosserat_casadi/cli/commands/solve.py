@@ -29,6 +29,7 @@ def solve(
     ] = False,
 ) -> None:
     """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
+    # A file that cannot be written is refused before the solve, not after it.
     check_outputs(output, plot)
     solution = solve_with_progress(read_scene(scene, tuple(settings or ())), stable=stable)
     if output is not None:
@@ -39,6 +40,7 @@ def solve(
         sys.stdout.write(result_text(solution))
     else:
         print_solution(Console(), solution, given_files(output, plot))
+    # On standard error, so that --json stays pure; None is no verdict.
     if solution.converged and solution.stable is False and not stable:
         print_unstable(Console(stderr=True))
     # Where stability cannot be judged, --stable has not found what it was asked for.

@@ -61,6 +61,7 @@ def sweep(
     if plot is not None:
         _draw(swept, plot, colour)
     print_sweep(Console(), swept, output, plot, finished=finished_before)
+    # The rows are written in any case; the exit code says whether they can be trusted.
     if not swept.holds:
         raise typer.Exit(NOT_FOUND)
 

@@ -41,6 +41,7 @@ def tune(
     cases = _load_cases(over, ranges or [], samples, layout)
     tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
     print_tuning(Console(), tuning, layout, cases)
+    # A scene that misses the tolerance is not written: it would be taken for one that meets it.
     if not tuning.met:
         raise typer.Exit(NOT_FOUND)
     write_atomically(output, scene_text(tuning.scene).encode())

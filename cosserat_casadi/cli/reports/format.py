@@ -47,8 +47,10 @@ def table_of(*headings: str) -> Table:
 
 def digits(vector: FloatArray) -> list[str]:
     """Entries with six digits; what is zero beside the largest one is shown as zero."""
-    largest = max(float(np.abs(vector).max()), SMALLEST)
-    rounded = np.where(np.abs(vector) <= ROUNDING * largest, 0.0, vector)
+    magnitudes = np.abs(vector)
+    largest = max(float(magnitudes.max()), SMALLEST)
+    # What is left of a cancellation would look like a result.
+    rounded = np.where(magnitudes <= ROUNDING * largest, 0.0, vector)
     return [f"{entry:.6g}" for entry in rounded]
 
 
@@ -82,8 +84,8 @@ def discretisation_table(model: Model) -> Table:
     """Strains, modes, intervals, elements and integrator of every rod."""
     table = table_of("rod", "strains", "modes", "intervals", "elements", "rotation by")
     for name, d in model.discretisation.items():
-        admitted = model.discrete.rods[name].properties.admitted
-        strains = ", ".join(STRAINS[index] for index in admitted)
+        properties = model.discrete.rods[name].properties
+        strains = ", ".join(STRAINS[index] for index in properties.admitted)
         modes = ", ".join(str(count) for count in d.modes)
         table.add_row(escape(name), strains, modes, str(d.nodes), str(d.elements), d.transport)
     return table

@@ -60,12 +60,15 @@ def print_tuning(console: Console, tuning: Tuning, layout: InputLayout, cases: F
     console.print(discretisation_table(worst.model))
     print_plain(console, _tuning_verdict(tuning, len(cases)))
 
-    worst_inputs = layout.unpack(cases[tuning.worst])
-    values = ", ".join(f"{name} = {value.T.squeeze().tolist()}" for name, value in worst_inputs.items())
+    values = []
+    for name, value in layout.unpack(cases[tuning.worst]).items():
+        # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
+        components = value.T.squeeze()
+        values.append(f"{name} = {components.tolist()}")
     ending = worst.message
     if worst.error_estimate is not None:
         ending = f"estimated error {worst.error_estimate:.1e}"
-    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(values)}: {ending}")
+    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(', '.join(values))}: {ending}")
 
 
 def _tuning_verdict(tuning: Tuning, count: int) -> str:
@@ -79,6 +82,7 @@ def _tuning_verdict(tuning: Tuning, count: int) -> str:
 
 
 def _print_price(console: Console, model: Model) -> None:
+    # Expanding the functions into scalar operations takes seconds for a large scene.
     with console.status("Counting operations"):
         cost = price(model)
     print_plain(

@@ -68,14 +68,19 @@ def _path_table(path: EquilibriumPath) -> Table:
 
 
 def _table_rows(path: EquilibriumPath, abscissae: dict[str, float]) -> list[_TableRow]:
-    last = len(path.factor) - 1
+    factors = path.factor.tolist()
+    last = len(factors) - 1
     along = [path.position(X, name) for name, X in abscissae.items()]
-    rows = [_TableRow("start", float(path.factor[0]), 0, [positions[0] for positions in along])]
+    start = [positions[0] for positions in along]
+    end = [positions[-1] for positions in along]
+
+    rows = [_TableRow("start", factors[0], 0, start)]
     for event in path.events:
         positions = [path.event_position(event, X, name) for name, X in abscissae.items()]
+        # An event lies between two points; beyond the last one there is none to judge.
         beyond = min(event.position, last)
         rows.append(_TableRow(_event_kind(event), event.factor, beyond, positions))
-    rows.append(_TableRow("end", float(path.factor[-1]), last, [positions[-1] for positions in along]))
+    rows.append(_TableRow("end", factors[last], last, end))
     return rows
 
 
@@ -87,14 +92,20 @@ def _event_kind(event: PathEvent) -> str:
 
 def _add_row(table: Table, path: EquilibriumPath, row: _TableRow, abscissae: dict[str, float]) -> None:
     """A line for each rod; what belongs to the point stands on the first."""
-    value = ", ".join(digits(row.factor * np.ravel(path.value, order="F")))
-    cells = [row.kind, f"{row.factor:.10g}", f"[{value}]", _stability(path, row.beyond)]
+    value = row.factor * np.ravel(path.value, order="F")
+    value_cell = ", ".join(digits(value))
+    cells = [row.kind, f"{row.factor:.10g}", f"[{value_cell}]", _stability(path, row.beyond)]
     for (name, X), position in zip(abscissae.items(), row.positions, strict=True):
-        section = f"{name} X = {X:.3g}"
-        if X == 1.0:
-            section = f"{name} tip"
-        table.add_row(*[escape(cell) for cell in cells], escape(section), ", ".join(digits(position)))
+        point_cells = [escape(cell) for cell in cells]
+        position_cell = ", ".join(digits(position))
+        table.add_row(*point_cells, escape(_section_name(name, X)), position_cell)
         cells = [""] * len(cells)
+
+
+def _section_name(rod: str, X: float) -> str:
+    if X == 1.0:
+        return f"{rod} tip"
+    return f"{rod} X = {X:.3g}"
 
 
 def _stability(path: EquilibriumPath, index: int) -> str:

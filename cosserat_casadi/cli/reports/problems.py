@@ -11,7 +11,8 @@ from cosserat_casadi.errors import ExportError, SceneError
 
 def print_refusal(console: Console, error: SceneError | ExportError) -> None:
     """Print every reason for which an input is refused."""
-    print_plain(console, f"[bold red]Refused:[/] {plural(len(error.problems), 'problem')}.")
+    count = plural(len(error.problems), "problem")
+    print_plain(console, f"[bold red]Refused:[/] {count}.")
     for problem in error.problems:
         # Not wrapped: a path cut in two cannot be copied.
         print_plain(console, f"  {escape(str(problem))}", soft_wrap=True)

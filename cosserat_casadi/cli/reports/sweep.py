@@ -69,6 +69,7 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
     discretisation = chosen["discretisation"]
     if discretisation is None:
         return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
+    # Rows without an equilibrium say nothing of the discretisation.
     count = len(chosen["rows"])
     sentence = escape(
         f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals, chosen on {plural(count, 'row')}"
@@ -105,6 +106,7 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     differing = [entry for entry in compared if entry["difference"] > tolerance]
     if differing:
         yield f"[bold red]Python found another equilibrium for {_rows(differing)}.[/]"
+    # None is not unstable: loads without a potential are not judged.
     unstable = [entry for entry in compared if entry["stable"] is False]
     if unstable:
         yield (
@@ -115,7 +117,8 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
 
 def _rows(entries: list[dict[str, Any]]) -> str:
     """Numbers of rows as a user counts them, from 1."""
-    return listed([entry["row"] + 1 for entry in entries], "row")
+    numbers = [entry["row"] + 1 for entry in entries]
+    return listed(numbers, "row")
 
 
 def _or_infinite(estimate: float | None) -> float:
