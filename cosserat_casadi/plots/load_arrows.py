@@ -6,8 +6,8 @@ not drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,8 +15,6 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.plots.canvas import FLAT, Canvas
-from cosserat_casadi.plots.colours import FORCES, LINE_FORCES, MOMENTS
 from cosserat_casadi.plots.shapes import in_world
 
 ALONG_ROD = np.linspace(0.05, 0.95, 8)
@@ -30,46 +28,15 @@ class Arrow:
     Attributes:
         start: the point it acts on, world axes, shape (3,), m.
         vector: world axes, shape (3,), N, N m or N/m.
-        label: for the legend; None for all arrows of a load but the first.
-        style: a key of STYLES.
+        sort: "point" for a force, "moment", or "line" for a force per length.
+        label: for the legend; empty for all arrows of a load but the first.
     """
 
     start: FloatArray
     vector: FloatArray
-    label: str | None
-    style: str
+    sort: str
+    label: str
 
-    def lies_in_plane(self, normal: int) -> bool:
-        """Whether the plane across a world axis shows it: a force lies in the plane, a moment stands across it."""
-        outside = self.vector[[normal]]
-        if self.style == "moment":
-            outside = np.delete(self.vector, normal)
-        largest_outside = np.abs(outside).max()
-        largest = np.abs(self.vector).max()
-        return bool(largest_outside <= FLAT * largest)
-
-
-@dataclass(frozen=True)
-class ArrowStyle:
-    """How arrows of one style are drawn.
-
-    Attributes:
-        share: length of the largest one, relative to the scene.
-        colour: of all.
-        width: of the shaft, points.
-    """
-
-    share: float
-    colour: str
-    width: float
-
-
-STYLES = {
-    "point": ArrowStyle(0.22, FORCES, 2.2),
-    "moment": ArrowStyle(0.18, MOMENTS, 2.2),
-    "line": ArrowStyle(0.09, LINE_FORCES, 1.0),
-}
-"""Forces at a point, moments, forces per length. Arrows are scaled within their own style."""
 
 Values = Mapping[str, FloatArray]
 """Magnitudes of a load by field, shape (3, k) with k Legendre coefficients."""
@@ -85,6 +52,12 @@ def scene_arrows(solution: Solution) -> list[Arrow]:
     return arrows
 
 
+def undrawn_loads(solution: Solution) -> list[str]:
+    """Words for the legend on loads that have no arrows because their kind is not known here."""
+    loads = solution.model.scene.loads
+    return [f"{load.name}: {load.kind}, not drawn" for load in loads if load.kind not in LOAD_ARROWS]
+
+
 def load_arrows(solution: Solution, load: Any, values: Values) -> list[Arrow]:
     """Arrows of one load; none for a kind that this module does not know.
 
@@ -97,32 +70,6 @@ def load_arrows(solution: Solution, load: Any, values: Values) -> list[Arrow]:
     if draw is None:
         return []
     return draw(solution, load, values)
-
-
-def draw_loads(canvas: Canvas, solution: Solution, arrows: Sequence[Arrow]) -> None:
-    """Draw the arrows of all loads, and name loads that have none."""
-    for name, style in STYLES.items():
-        _draw_style(canvas, [arrow for arrow in arrows if arrow.style == name], style)
-    if canvas.plane is not None:
-        for arrow in arrows:
-            if arrow.style == "moment":
-                canvas.turning_sign(arrow.start, arrow.vector, MOMENTS)
-    for load in solution.model.scene.loads:
-        if load.kind not in LOAD_ARROWS:
-            canvas.legend_entry(f"{load.name}: {load.kind}, not drawn", linestyle="none")
-
-
-def _draw_style(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle) -> None:
-    magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
-    largest = max(magnitudes, default=0.0)
-    # The largest arrow of a style has the length that the style gives it, whatever its unit.
-    for arrow in arrows:
-        if arrow.style == "moment" and canvas.plane is not None:
-            # Drawn as a turning sign; the legend still gives its value.
-            canvas.legend_entry(arrow.label, color=style.colour, linewidth=style.width)
-            continue
-        scaled = arrow.vector * style.share * canvas.size / largest
-        canvas.arrow(arrow.start, scaled, colour=style.colour, width=style.width, label=arrow.label)
 
 
 def _rod_wrench(solution: Solution, load: Any, values: Values) -> list[Arrow]:
@@ -145,10 +92,10 @@ def _wrench(load: Any, values: Values, pose: Pose, start: FloatArray) -> list[Ar
     if load.frame == "body":
         world_R_load = pose.rotation[0]
     arrows = []
-    for field, unit, style in (("force", "N", "point"), ("moment", "N m", "moment")):
+    for field, unit, sort in (("force", "N", "point"), ("moment", "N m", "moment")):
         vector = world_R_load @ values[field][:, 0]
         if np.any(vector):
-            arrows.append(Arrow(start, vector, _magnitude_label(load.name, vector, unit), style))
+            arrows.append(Arrow(start, vector, sort, _magnitude_label(load.name, vector, unit)))
     return arrows
 
 
@@ -170,7 +117,7 @@ def _rod_weights(solution: Solution, load: Any, acceleration: FloatArray) -> lis
         rod_arrows = _line_arrows(load.name, solution.pose(ALONG_ROD, name).position, weights)
         if arrows:
             # The legend names a load once, whatever the number of rods.
-            rod_arrows = [Arrow(arrow.start, arrow.vector, None, arrow.style) for arrow in rod_arrows]
+            rod_arrows = [replace(arrow, label="") for arrow in rod_arrows]
         arrows += rod_arrows
     return arrows
 
@@ -184,7 +131,7 @@ def _body_weights(solution: Solution, load: Any, acceleration: FloatArray) -> li
         weight = body.mass * acceleration
         if np.any(weight):
             label = _magnitude_label(f"{load.name} of {body.name}", weight, "N")
-            arrows.append(Arrow(start, weight, label, "point"))
+            arrows.append(Arrow(start, weight, "point", label))
     return arrows
 
 
@@ -207,12 +154,12 @@ def _line_arrows(name: str, positions: FloatArray, vectors: FloatArray) -> list[
         positions: of the sections, shape (k, 3), m.
         vectors: shape (k, 3), N/m.
     """
-    label: str | None = f"{name}: up to {np.linalg.norm(vectors, axis=1).max():.3g} N/m"
+    label = f"{name}: up to {np.linalg.norm(vectors, axis=1).max():.3g} N/m"
     arrows = []
     for position, vector in zip(positions, vectors, strict=True):
         if np.any(vector):
-            arrows.append(Arrow(position, vector, label, "line"))
-        label = None
+            arrows.append(Arrow(position, vector, "line", label))
+        label = ""
     return arrows
 
 

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.plots.arrows import draw_arrows, lies_in_plane
 from cosserat_casadi.plots.canvas import FLAT, Canvas, Plane
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.plots.load_arrows import Arrow, draw_loads, scene_arrows
+from cosserat_casadi.plots.load_arrows import Arrow, scene_arrows, undrawn_loads
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
 from cosserat_casadi.plots.shapes import RodShapes, rod_shapes
@@ -73,7 +74,7 @@ def _plane(shapes: RodShapes, arrows: Sequence[Arrow]) -> Plane | None:
     deformed = np.concatenate(lines)
     for normal, axes in PLANES:
         flat = np.abs(deformed[:, normal]).max() <= FLAT * shapes.size
-        if flat and all(arrow.lies_in_plane(normal) for arrow in arrows):
+        if flat and all(lies_in_plane(arrow, normal) for arrow in arrows):
             return axes
     return None
 
@@ -83,7 +84,9 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_supports(canvas, solution)
     draw_actuators(canvas, solution)
     draw_bodies(canvas, solution)
-    draw_loads(canvas, solution, arrows)
+    draw_arrows(canvas, arrows)
+    for words in undrawn_loads(solution):
+        canvas.legend_entry(words, linestyle="none")
     draw_targets(canvas, solution)
     canvas.label_axes()
     canvas.equalise(shapes.points)

@@ -30,6 +30,8 @@ CLAMP: dict[str, Any] = {"color": "0.2", "marker": "s", "markersize": 9}
 JOINTS: dict[str, dict[str, Any]] = {
     "fixed": {"marker": "s", "markersize": 7, "color": "0.35"},
     "spherical": {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"},
+    "revolute": {"marker": "o", "markersize": 7, "color": "0.35"},
+    "prismatic": {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"},
 }
 """How joints are marked; rods that start on rods are fixed there."""
 
