@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,20 @@ def test_files_that_a_page_names_exist(page: Path) -> None:
     """Sources by their path in the package or in the repository."""
     for name in re.findall(r"`([\w/]+/[\w/]*(?:\.py|\.toml|\.json|/))`", prose(page)):
         assert any((root / name).exists() for root in (ROOT, ROOT / "cosserat_casadi")), name
+
+
+def test_version_is_the_same_everywhere() -> None:
+    released = version("cosserat-casadi")
+    citation = (ROOT / "CITATION.cff").read_text()
+    assert f"\nversion: {released}\n" in citation
+    assert f"\n## [{released}]\n" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_citation_is_valid_yaml_with_what_the_format_asks_for() -> None:
+    yaml = pytest.importorskip("yaml")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert {"cff-version", "message", "title", "authors"} <= set(citation)
+    assert citation["authors"] == [{"name": "cosserat_casadi developers"}]
 
 
 def test_every_page_is_in_the_table_of_contents() -> None:

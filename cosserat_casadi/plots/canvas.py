@@ -77,14 +77,15 @@ class Canvas:
         self.axes.autoscale_view()
 
     def turning_sign(self, point: FloatArray, moment: FloatArray, colour: str) -> None:
-        """Show a moment across the plane, which has no arrow in it, at its section.
+        """Show a moment across the plane, which has no arrow in it, at its section; nothing in space.
 
         Args:
             point: of the section, shape (3,), m.
             moment: shape (3,); its component across the plane gives the sense.
             colour: of the sign.
         """
-        assert self.plane is not None
+        if self.plane is None:
+            return
         (across,) = set(SPACE) - set(self.plane)
         counter_clockwise = bool(moment[across] > 0)
         if self.plane == (0, 2):
