@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow fuzz bench dial lint format schema generated clean
+.PHONY: help demo test test-slow fuzz bench dial lint format schema api generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
@@ -18,6 +18,7 @@ help:
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema and the reference of the scene format anew"
+	@echo "make api        write docs/api anew from the docstrings"
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -56,6 +57,9 @@ format: $(STAMP)
 schema: $(STAMP)
 	$(BIN)/python -m cosserat_casadi.scene.json_schema
 	$(BIN)/python -m cosserat_casadi.scene.reference
+
+api: $(STAMP)
+	$(BIN)/python docs/api_pages.py
 
 # Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.
 generated: $(STAMP)

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
 from cosserat_casadi import EquilibriumPath, Solution, follow_path, solve  # noqa: E402
-from cosserat_casadi.plots.scene_plot import figure_class, save_figure  # noqa: E402
+from cosserat_casadi.plots.figure import figure_class, save_figure  # noqa: E402
 from tests.catalogue import cases  # noqa: E402
 from tests.catalogue.checks import (  # noqa: E402
     column_eigenvalue,

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.plots.scene_plot import figure_class, write_figure
+from cosserat_casadi.plots.figure import figure_class, write_figure
 
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- dial: written by benchmarks/dial.py -->", "<!-- end of dial -->"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from peers import Peer
 
-from cosserat_casadi.plots.scene_plot import figure_class
+from cosserat_casadi.plots.figure import figure_class
 
 if TYPE_CHECKING:
     from race import Raced

@@ -1,90 +1,42 @@
-"""The README works when pasted: its scene, its commands, its Python."""
+"""The first page: short, its scene the example, its figures those of docs/accuracy.md; test_pages runs its blocks."""
 
 from __future__ import annotations
 
-import json
 import re
-import shlex
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
-import pytest
 
 from cosserat_casadi import parse_scene, read_scene
 from tests.conftest import ROOT
+from tests.pages import DOCS, blocks, commands, run_python
 
-README = (ROOT / "README.md").read_text()
+README = ROOT / "README.md"
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def test_the_first_page_is_short() -> None:
+    assert len(README.read_text().splitlines()) <= 120
 
 
 def test_scene_of_the_readme_is_the_example() -> None:
-    (text,) = blocks("toml")
+    (text,) = blocks(README, "toml")
     assert parse_scene(text) == read_scene(ROOT / "examples" / "nitinol_wire.toml")
 
 
-@pytest.mark.parametrize(("number", "says"), [(0, "Equilibrium found"), (1, "")])
-def test_python_of_the_readme_runs(number: int, says: str) -> None:
-    code = blocks("python")[number]
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert says in done.stdout
+def test_python_of_the_readme_finds_an_equilibrium() -> None:
+    (code,) = blocks(README, "python")
+    assert "Equilibrium found" in run_python(code)
 
 
-def test_every_python_block_is_run() -> None:
-    assert len(blocks("python")) == 2
+def test_there_are_three_commands() -> None:
+    assert [line.split()[1] for line in commands(README)] == ["check", "solve", "export"]
 
 
-def test_c_of_the_readme_compiles_and_runs(tmp_path: Path) -> None:
-    (line,) = [line for block in blocks("sh") for line in block.splitlines() if "gcc" in line]
-    folder = shutil.copytree(ROOT / "generated" / "nitinol_wire", tmp_path / "wire")
-    assert line.startswith("(cd wire && ")
-    done = subprocess.run(line, shell=True, cwd=folder.parent, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["status"] == "converged"
+def cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("| ").split("|")]
 
 
-def commands() -> list[str]:
-    lines = [line for block in blocks("sh") for line in block.splitlines()]
-    return [line.split(" > ")[0] for line in lines if line.startswith(".venv/bin/cosserat ")]
-
-
-def test_there_are_ten_commands() -> None:
-    assert len(commands()) == 10
-
-
-@pytest.mark.parametrize("line", commands())
-def test_commands_of_the_readme_run(line: str, tmp_path: Path) -> None:
-    words = shlex.split(line.replace("examples/", f"{ROOT}/examples/"))
-    code = "from cosserat_casadi.cli.main import main; main()"
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
-    )
-    assert done.returncode == 0, done.stderr
-
-
-def test_every_effect_is_in_the_table() -> None:
-    from cosserat_casadi.model.registry import EFFECTS, SUPPORTS
-
-    for kind in (*EFFECTS, *SUPPORTS):
-        assert f"`{kind}`" in README
-
-
-def test_pictures_and_pages_exist() -> None:
-    prose = re.sub(r"```.*?```", "", README, flags=re.DOTALL)
-    for target in re.findall(r"\]\(([^)#]+)\)", prose):
-        assert (ROOT / target).exists(), target
-
-
-def test_every_test_that_the_theory_names_exists() -> None:
-    tests = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
-    named = re.findall(r"`(?:tests/[\w/]+\.py::)?(test_\w+)`", (ROOT / "docs" / "theory.md").read_text())
-    assert len(named) > 20
-    for name in named:
-        assert f"def {name}(" in tests, name
+def test_rows_of_the_race_are_those_of_the_page_on_accuracy() -> None:
+    table = re.compile(r"<!-- race: written by benchmarks/race.py -->\n(.*?)\n<!-- end of race -->", flags=re.DOTALL)
+    first_page, page = (table.findall(text.read_text()) for text in (README, DOCS / "accuracy.md"))
+    rows = [cells(line) for line in first_page[0].splitlines()[2:]]
+    known = [cells(line) for line in page[0].splitlines() if line.startswith("| B2 |")]
+    assert len(rows) == 3
+    assert rows == [[row[1], row[2], row[9], row[10], row[11]] for row in known]

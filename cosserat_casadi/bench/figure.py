@@ -14,7 +14,7 @@ from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.pareto import front
 from cosserat_casadi.bench.reference import Reference
 from cosserat_casadi.bench.table import reference_words
-from cosserat_casadi.plots.scene_plot import figure_class, write_figure
+from cosserat_casadi.plots.figure import figure_class, write_figure
 
 STYLES = {
     "magnus4": ("#4477aa", "o", "Magnus, 4th order"),

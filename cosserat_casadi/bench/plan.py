@@ -21,7 +21,7 @@ from cosserat_casadi.bench.shooting import check_scipy
 from cosserat_casadi.bench.table import print_bench, print_strains
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
-from cosserat_casadi.plots.scene_plot import figure_class
+from cosserat_casadi.plots.figure import figure_class
 
 Report = Callable[[str, int, int], None]
 """Told what is being done, how many points are done, and of how many (0: not known)."""

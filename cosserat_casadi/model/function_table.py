@@ -152,7 +152,7 @@ def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
 
 
 @dataclass
-class _Member(Generic[Result]):
+class NamedFunction(Generic[Result]):
     """A member of a model that is built when it is first asked for, and kept."""
 
     spec: FunctionSpec = field(init=False)
@@ -175,14 +175,14 @@ class _Member(Generic[Result]):
         raise NotImplementedError
 
 
-class SceneFunction(_Member[ca.Function]):
+class SceneFunction(NamedFunction[ca.Function]):
     """One function of the whole scene."""
 
     def _build(self, model: Any) -> ca.Function | None:
         return self.spec.build(model)
 
 
-class OwnedFunctions(_Member[dict[str, ca.Function]]):
+class OwnedFunctions(NamedFunction[dict[str, ca.Function]]):
     """One function for each rod, actuator or body, by name."""
 
     def _build(self, model: Any) -> dict[str, ca.Function | None]:
@@ -233,4 +233,4 @@ def owned_functions(
 def table(model_class: type) -> list[FunctionSpec]:
     """The functions of a class of models, in the order in which they are written."""
     members = [vars(base) for base in reversed(model_class.__mro__)]
-    return [member.spec for names in members for member in names.values() if isinstance(member, _Member)]
+    return [member.spec for names in members for member in names.values() if isinstance(member, NamedFunction)]

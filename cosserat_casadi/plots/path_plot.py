@@ -1,10 +1,11 @@
-"""Figure of a path: load against the displacement of the tips, of a held rod that of a section between.
+"""The figure of a path: load against the displacement of the tips, of a held rod that of a section between.
 
 matplotlib is an extra and is imported inside functions only.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -12,14 +13,23 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath
-from cosserat_casadi.plots.scene_plot import AXES, figure_class, save_figure
+from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.plots.canvas import AXIS_NAMES
+from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 
 MARKERS = {"limit": ("o", "limit point"), "bifurcation": ("D", "bifurcation")}
-STYLES = (("-", "stable"), ("--", "unstable"), ("-.", "neutral"), ("-", "stability not judged"))
-COMPONENTS = ("x", "y", "z")
+"""Marker and words of each kind of event."""
 
-LEVEL = 1e-9
+STABLE = 0
+UNSTABLE = 1
+NEUTRAL = 2
+NOT_JUDGED = 3
+
+STYLES = (("-", "stable"), ("--", "unstable"), ("-.", "neutral"), ("-", "stability not judged"))
+"""Stroke and words of each stability, in the order above."""
+
+SMALLEST_DISPLACEMENT = 1e-9
 """Displacement relative to the length below which a component is not drawn."""
 
 
@@ -27,7 +37,7 @@ def save_path_plot(path: EquilibriumPath, file: str | Path) -> None:
     """Draw a path into a file, whole or not at all; the same path gives the same bytes.
 
     Raises:
-        SceneError: the suffix is none of FORMATS.
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
         PlotUnavailableError: matplotlib is not installed.
     """
     save_figure(lambda: plot_path(path), file)
@@ -46,83 +56,146 @@ def plot_path(path: EquilibriumPath) -> Any:
     """
     names = list(path.model.discrete.rods)
     figure = figure_class()(figsize=(7.5 * len(names), 5.4), layout="constrained")
-    for i, name in enumerate(names):
-        axes = figure.add_subplot(1, len(names), i + 1)
-        _draw_rod(axes, path, name)
-        axes.set_title(name if len(names) > 1 else _subtitle(path), fontsize=10, color=_colour(path), wrap=True)
-    figure.suptitle(path.model.scene.title or "Untitled scene", fontsize=14, fontweight="bold")
+    for index, name in enumerate(names):
+        axes = figure.add_subplot(1, len(names), index + 1)
+        _draw_rod(axes, path, _followed_section(path, name))
+        title = name
+        if len(names) == 1:
+            title = _subtitle(path)
+        axes.set_title(title, fontsize=10, color=_title_colour(path), wrap=True)
+    add_title(figure, path.model.scene.title)
     return figure
 
 
-def _draw_rod(axes: Any, path: EquilibriumPath, name: str) -> None:
-    moved, kinds = _displacement(path, name), _kinds(path)
-    place = "the tip" if path.section(name) == 1.0 else f"the section at X = {path.section(name):.3g}"
-    shown = [c for c in range(3) if np.abs(moved[:, c]).max(initial=0.0) > LEVEL] or [0]
-    for c in shown:
-        for first, last, kind in _runs(kinds):
-            axes.plot(moved[first:last, c], path.factor[first:last], color=AXES[c], linestyle=STYLES[kind][0])
-        _mark(axes, path, name, c)
-        axes.plot([], [], color=AXES[c], label=f"{COMPONENTS[c]} of {place}")
-    for kind in sorted(set(kinds.tolist())):
-        axes.plot([], [], color="0.3", linestyle=STYLES[kind][0], label=STYLES[kind][1])
+@dataclass(frozen=True)
+class _Section:
+    """The section of a rod whose displacement is drawn.
+
+    Attributes:
+        rod: its name.
+        X: its abscissa.
+        length: of the rod, m.
+        unloaded: its position in the unloaded rod, shape (3,), m.
+    """
+
+    rod: str
+    X: float
+    length: float
+    unloaded: FloatArray
+
+    @property
+    def words(self) -> str:
+        """What axes and legend call it."""
+        if self.X == 1.0:
+            return "the tip"
+        return f"the section at X = {self.X:.3g}"
+
+    def displacement(self, positions: FloatArray) -> FloatArray:
+        """Displacement from the unloaded rod over the length, of the shape of the positions."""
+        displacement = (positions - self.unloaded) / self.length
+        return np.asarray(displacement)
+
+
+def _followed_section(path: EquilibriumPath, name: str) -> _Section:
+    model = path.model
+    X = path.section(name)
+    position, _ = model.shape[name](model.unloaded(), path.base, X)
+    length = model.discrete.rods[name].properties.length
+    unloaded = position.full()[:, 0]
+    return _Section(name, X, length, np.asarray(unloaded))
+
+
+def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
+    displacement = section.displacement(path.position(section.X, section.rod))
+    stability = _stability(path)
+    for component in _moving_components(displacement):
+        for start, stop, style in _runs(stability):
+            part = slice(start, stop)
+            stroke = STYLES[style][0]
+            axes.plot(displacement[part, component], path.factor[part], color=AXES[component], linestyle=stroke)
+        _mark_events(axes, path, section, component)
+        axes.plot([], [], color=AXES[component], label=f"{AXIS_NAMES[component]} of {section.words}")
+    # Strokes are explained by empty lines in grey: each stands for all components.
+    for style in sorted(set(stability.tolist())):
+        stroke, words = STYLES[style]
+        axes.plot([], [], color="0.3", linestyle=stroke, label=words)
     axes.axhline(0.0, color="0.7", linewidth=0.8)
-    axes.set_xlabel(f"displacement of {place} / length")
-    axes.set_ylabel(f"factor × {_value(path)}")
+    axes.set_xlabel(f"displacement of {section.words} / length")
+    axes.set_ylabel(f"factor × {_input_value(path)}")
     axes.grid(alpha=0.3)
     axes.legend(loc="best", fontsize=9, framealpha=0.9)
 
 
-def _mark(axes: Any, path: EquilibriumPath, name: str, component: int) -> None:
-    """Every event as a point, named once."""
-    named = axes.get_legend_handles_labels()[1]
+def _moving_components(displacement: FloatArray) -> list[int]:
+    """Components that are drawn: those that move, or x where none does."""
+    largest = np.abs(displacement).max(axis=0, initial=0.0)
+    moving = np.flatnonzero(largest > SMALLEST_DISPLACEMENT)
+    return moving.tolist() or [0]
+
+
+def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component: int) -> None:
+    """Mark every event by a point; the legend names each kind once."""
+    labels = axes.get_legend_handles_labels()[1]
     for event in path.events:
-        marker, label = MARKERS[event.kind]
-        place = path.event_position(event, path.section(name), name)
-        moved = (place - _rest(path, name)) / path.model.discrete.rods[name].properties.length
-        style = {"marker": marker, "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
-        axes.plot(moved[component], event.factor, label=None if label in named else label, **style)
-        named.append(label)
+        label = _event_label(event)
+        position = path.event_position(event, section.X, section.rod)
+        displacement = section.displacement(position)
+        style = {"marker": _event_marker(event), "color": "0.1", "linestyle": "none", "markersize": 7, "zorder": 5}
+        legend_label = label
+        if label in labels:
+            # matplotlib leaves out of the legend what begins with an underscore.
+            legend_label = "_repeated"
+        axes.plot(displacement[component], event.factor, label=legend_label, **style)
+        labels.append(label)
 
 
-def _displacement(path: EquilibriumPath, name: str) -> FloatArray:
-    """Displacement of the section from the unloaded rod over the length, shape (k, 3)."""
-    moved = path.position(path.section(name), name) - _rest(path, name)
-    return np.asarray(moved / path.model.discrete.rods[name].properties.length)
+def _event_marker(event: PathEvent) -> str:
+    return MARKERS[event.kind][0]
 
 
-def _rest(path: EquilibriumPath, name: str) -> FloatArray:
-    unloaded = path.model.shape[name](path.model.unloaded(), path.base, path.section(name))
-    return np.asarray(unloaded[0].full()[:, 0])
+def _event_label(event: PathEvent) -> str:
+    return MARKERS[event.kind][1]
 
 
-def _kinds(path: EquilibriumPath) -> FloatArray:
+def _stability(path: EquilibriumPath) -> FloatArray:
     """Index into STYLES of every point, shape (k,)."""
-    stable, neutral = path.stable, path.neutral
-    if stable is None or neutral is None:
-        return np.full(len(path.factor), 3)
-    kinds = np.where(neutral, 2, np.where(stable, 0, 1))
+    if path.stable is None or path.neutral is None:
+        return np.full(len(path.factor), NOT_JUDGED)
+    # Neutral before stable: a point that can be moved on at no cost is called stable too.
+    judged = np.where(path.stable, STABLE, UNSTABLE)
+    styles = np.where(path.neutral, NEUTRAL, judged)
     # A point that lies on an event is neutral by itself; it is drawn as what leads to it.
-    alone = 1 + np.flatnonzero((kinds[1:-1] == 2) & (kinds[:-2] != 2) & (kinds[2:] != 2))
-    kinds[alone] = kinds[alone - 1]
-    return kinds
+    neutral = styles == NEUTRAL
+    alone = 1 + np.flatnonzero(neutral[1:-1] & ~neutral[:-2] & ~neutral[2:])
+    styles[alone] = styles[alone - 1]
+    return styles
 
 
-def _runs(kinds: FloatArray) -> list[tuple[int, int, int]]:
-    """Pieces of one kind as (first, last, kind) with last exclusive; neighbours share a point so that no gap shows."""
-    cuts = [0, *(np.flatnonzero(np.diff(kinds)) + 1).tolist(), len(kinds)]
-    return [(a, min(b + 1, len(kinds)), int(kinds[a])) for a, b in pairwise(cuts) if b > a]
+def _runs(styles: FloatArray) -> list[tuple[int, int, int]]:
+    """Pieces of one style as (start, stop, style); neighbours share a point, so that no gap shows."""
+    changes = np.flatnonzero(np.diff(styles)) + 1
+    cuts = [0, *changes.tolist(), len(styles)]
+    runs = []
+    for start, stop in pairwise(cuts):
+        if stop > start:
+            runs.append((start, min(stop + 1, len(styles)), int(styles[start])))
+    return runs
 
 
-def _value(path: EquilibriumPath) -> str:
-    numbers = ", ".join(f"{number:.4g}" for number in np.ravel(path.value, order="F"))
-    return f"{path.name} [{numbers}]"
+def _input_value(path: EquilibriumPath) -> str:
+    numbers = np.ravel(path.value, order="F")
+    components = ", ".join(f"{number:.4g}" for number in numbers)
+    return f"{path.name} [{components}]"
 
 
 def _subtitle(path: EquilibriumPath) -> str:
     if not path.converged:
         return path.message
-    return "; ".join(f"{event.kind} at {event.factor:.6g}" for event in path.events[:3]) or "no limit, no bifurcation"
+    events = [f"{event.kind} at {event.factor:.6g}" for event in path.events[:3]]
+    return "; ".join(events) or "no limit, no bifurcation"
 
 
-def _colour(path: EquilibriumPath) -> str:
-    return "0.3" if path.converged else "#cc3311"
+def _title_colour(path: EquilibriumPath) -> str:
+    if path.converged:
+        return PLAIN_TEXT
+    return FAILURE

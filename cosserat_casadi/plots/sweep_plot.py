@@ -1,10 +1,12 @@
-"""Figure of a sweep: where the tip can be, coloured by an input, a result or the outcome.
+"""The figure of a sweep: where the tip can be, coloured by an input, a result or the outcome.
 
 matplotlib is an extra and is imported inside functions only.
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,21 +14,29 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.plots.scene_plot import figure_class, save_figure
+from cosserat_casadi.plots.canvas import AXIS_NAMES, Plane
+from cosserat_casadi.plots.colours import category_style
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.sweep.outcome_table import LABELS, Sweep
 
 FLAT = 1e-6
 """Share of the largest extent below which a set of points lies in a coordinate plane."""
 
 MOST_POINTS = 40_000
-"""Points drawn; of more, every so many are left out."""
+"""Points that are drawn; of more, every so many are left out."""
 
-VECTORS = 5000
+RASTERISED = 5000
 """Points from which they are drawn as an image in a vector figure."""
 
+DOT_AREA = 4e4
+"""Area of all dots together, points²; each takes its share within DOT_LIMITS."""
+
+DOT_LIMITS = (1.5, 16.0)
+
 MAP = "viridis"
-COLOURS = ("#4477aa", "#ccbb44", "#aa3377", "#ee6677", "#cc3311", "#ee7733")
-"""Colours of the outcomes, in the order of LABELS."""
+
+OUTCOME = "outcome"
+"""What a figure is coloured by where no column is."""
 
 
 def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -> None:
@@ -36,7 +46,7 @@ def save_sweep_plot(sweep: Sweep, file: str | Path, colour: str | None = None) -
 
     Args:
         sweep: results.
-        file: its suffix is one of those of :mod:`cosserat_casadi.plots.scene_plot`.
+        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.figure`.
         colour: column of the colour, or ``outcome``; by default the first swept column that varies.
 
     Raises:
@@ -63,89 +73,148 @@ def plot_sweep(sweep: Sweep, colour: str | None = None) -> Any:
         PlotUnavailableError: matplotlib is not installed.
         KeyError: there is no such column.
     """
+    # A column of one value would colour all points alike.
     varying = [name for name in sweep.swept if np.ptp(sweep[name]) > 0]
-    chosen = colour or (varying or ["outcome"])[0]
-    failing = not sweep.converged.all() and len(varying) > 1
-    points = sweep.positions(sweep.posed[-1])[_thinned(sweep.converged)]
+    coloured_by = colour or (varying or [OUTCOME])[0]
+    rows = _thinned(sweep.converged)
+    points = sweep.positions(sweep.posed[-1])[rows]
+    shades = None
+    if coloured_by != OUTCOME:
+        shades = sweep[coloured_by][rows]
+    show_inputs = not sweep.converged.all() and len(varying) > 1
+
     plane = _plane(points)
-    figure, grid = _figure(rows=1 if plane else 2, columns=(1 if plane else 2) + failing)
-    # From above, in space; from the front below the first, from the side beside that.
-    views = [plane] if plane else [(0, 1), None, (0, 2), (1, 2)]
-    places = [grid[0, 0]] if plane else [grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1]]
-    shades = None if chosen == "outcome" else sweep[chosen][_thinned(sweep.converged)]
-    panels = [_add_view(figure, place, view) for place, view in zip(places, views, strict=True)]
-    drawn = [_scatter(panel, points, view, shades) for panel, view in zip(panels, views, strict=True)]
+    views: tuple[_View, ...] = SPACE_VIEWS
+    if plane is not None:
+        views = (_View(plane, 0, 0),)
+    figure, grid = _figure(views, show_inputs)
+    panels = [_add_view(figure, grid, view) for view in views]
+    scatters = [_scatter(panel, points, view, shades) for panel, view in zip(panels, views, strict=True)]
     if shades is not None:
-        figure.colorbar(drawn[0], ax=panels, label=chosen, shrink=0.8, pad=0.02)
-    if failing:
-        _draw_inputs(figure.add_subplot(grid[:, -1]), sweep, varying[:2])
+        figure.colorbar(scatters[0], ax=panels, label=coloured_by, shrink=0.8, pad=0.02)
+    if show_inputs:
+        _draw_inputs(figure.add_subplot(grid[:, -1]), sweep, varying[0], varying[1])
     panels[0].set_title(_subtitle(sweep), fontsize=10)
-    figure.suptitle(sweep.record.get("title") or "Untitled scene", fontsize=14, fontweight="bold")
+    add_title(figure, sweep.record.get("title"))
     return figure
 
 
-def _figure(rows: int, columns: int) -> tuple[Any, Any]:
-    size = (6.4 * columns, 5.4) if rows == 1 else (5.4 * columns, 9.0)
+@dataclass(frozen=True)
+class _View:
+    """A panel of the figure.
+
+    Attributes:
+        plane: the two world axes it shows; None shows space.
+        row: in the grid of panels.
+        column: likewise.
+    """
+
+    plane: Plane | None
+    row: int
+    column: int
+
+
+SPACE_VIEWS = (
+    _View((0, 1), 0, 0),
+    _View(None, 0, 1),
+    _View((0, 2), 1, 0),
+    _View((1, 2), 1, 1),
+)
+"""From above, in space; from the front below the first, from the side beside that."""
+
+
+def _figure(views: tuple[_View, ...], show_inputs: bool) -> tuple[Any, Any]:
+    """A figure and its grid of panels, one column wider where inputs are shown."""
+    rows = max(view.row for view in views) + 1
+    columns = max(view.column for view in views) + 1 + show_inputs
+    size = (6.4 * columns, 5.4)
+    if rows > 1:
+        size = (5.4 * columns, 9.0)
     figure = figure_class()(figsize=size, layout="constrained")
     return figure, figure.add_gridspec(rows, columns)
 
 
-def _add_view(figure: Any, place: Any, view: tuple[int, int] | None) -> Any:
-    """A panel that sees all of space, or two axes of it."""
-    if view is None:
-        panel = figure.add_subplot(place, projection="3d")
+def _add_view(figure: Any, grid: Any, view: _View) -> Any:
+    cell = grid[view.row, view.column]
+    if view.plane is None:
+        panel = figure.add_subplot(cell, projection="3d")
         panel.set(xlabel="x, m", ylabel="y, m", zlabel="z, m")
         panel.locator_params(nbins=4)
         return panel
-    panel = figure.add_subplot(place)
-    panel.set(xlabel=f"{'xyz'[view[0]]}, m", ylabel=f"{'xyz'[view[1]]}, m")
+    right, up = view.plane
+    panel = figure.add_subplot(cell)
+    panel.set(xlabel=f"{AXIS_NAMES[right]}, m", ylabel=f"{AXIS_NAMES[up]}, m")
     panel.grid(alpha=0.3)
     return panel
 
 
-def _scatter(panel: Any, points: FloatArray, view: tuple[int, int] | None, shades: FloatArray | None) -> Any:
-    size = float(np.clip(4e4 / max(len(points), 1), 1.5, 16.0))
-    style: dict[str, Any] = {"s": size, "linewidths": 0.0, "rasterized": len(points) > VECTORS}
-    style |= {"color": COLOURS[0]} if shades is None else {"c": shades, "cmap": MAP}
-    found = panel.scatter(*(points.T if view is None else points[:, list(view)].T), **style)
-    if view is None:
-        # A little smaller than its place, for the label of the third axis.
-        panel.set_box_aspect(np.ptp(points, axis=0) if len(points) else None, zoom=0.85)
+def _scatter(panel: Any, points: FloatArray, view: _View, shades: FloatArray | None) -> Any:
+    """Dots of a panel, coloured by the shades or all alike.
+
+    Args:
+        panel: the axes.
+        points: shape (k, 3), m.
+        view: what the panel shows of them.
+        shades: shape (k,), or None.
+    """
+    share = DOT_AREA / max(len(points), 1)
+    area = float(np.clip(share, *DOT_LIMITS))
+    style: dict[str, Any] = {"s": area, "linewidths": 0.0, "rasterized": len(points) > RASTERISED}
+    if shades is None:
+        style["color"] = category_style(0)["color"]
     else:
+        style |= {"c": shades, "cmap": MAP}
+    if view.plane is not None:
         panel.set_aspect("equal", adjustable="datalim")
-    return found
+        return panel.scatter(*points[:, view.plane].T, **style)
+    dots = panel.scatter(*points.T, **style)
+    extents = None
+    if len(points):
+        extents = np.ptp(points, axis=0)
+    # A little smaller than its panel, which leaves room for the label of the third axis.
+    panel.set_box_aspect(extents, zoom=0.85)
+    return dots
 
 
-def _draw_inputs(panel: Any, sweep: Sweep, columns: list[str]) -> None:
-    """How rows ended, over the first two swept columns."""
-    for number, label in enumerate(LABELS):
-        rows = _thinned(sweep.outcomes == number)
-        if rows.size:
-            one, other = (sweep[name][rows] for name in columns)
-            named = label.replace("_", " ")
-            panel.scatter(one, other, s=9.0, linewidths=0.0, color=COLOURS[number], label=named, zorder=2 + number)
-    panel.set(xlabel=columns[0], ylabel=columns[1])
+def _draw_inputs(panel: Any, sweep: Sweep, right: str, up: str) -> None:
+    """How rows ended, over two swept columns; every outcome has a colour and a marker of its own."""
+    for index, label in enumerate(LABELS):
+        rows = _thinned(sweep.outcomes == index)
+        if not rows.size:
+            continue
+        words = label.replace("_", " ")
+        # Later outcomes are drawn over converged rows: they are the few that are looked for.
+        style = {"s": 9.0, "linewidths": 0.0, "zorder": 2 + index, **category_style(index)}
+        panel.scatter(sweep[right][rows], sweep[up][rows], label=words, **style)
+    panel.set(xlabel=right, ylabel=up)
     panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, fontsize=9, markerscale=2.0)
     panel.grid(alpha=0.3)
 
 
-def _plane(points: FloatArray) -> tuple[int, int] | None:
+def _plane(points: FloatArray) -> Plane | None:
     """The two axes of the coordinate plane that all points lie in; None where they fill space, or there are none."""
-    extents = np.ptp(points, axis=0) if len(points) else np.ones(3)
-    flat = [axis for axis in range(3) if extents[axis] <= FLAT * extents.max()]
-    if not flat:
+    if not len(points):
         return None
-    seen = [axis for axis in range(3) if axis != flat[-1]]
-    return seen[0], seen[1]
+    extents = np.ptp(points, axis=0)
+    flat = np.flatnonzero(extents <= FLAT * extents.max())
+    if not flat.size:
+        return None
+    # Of points on a line two planes hold them all; the one across the last axis is shown.
+    right, up = np.delete(np.arange(3), flat[-1]).tolist()
+    return right, up
 
 
 def _thinned(chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.int64]:
-    """Places of the chosen rows; of very many every so many."""
+    """Indices of the chosen rows; of more than MOST_POINTS every so many."""
     rows = np.flatnonzero(chosen)
-    return rows[:: max(1, -(-len(rows) // MOST_POINTS))]
+    stride = math.ceil(len(rows) / MOST_POINTS)
+    return rows[:: max(1, stride)]
 
 
 def _subtitle(sweep: Sweep) -> str:
-    count, found = len(sweep.outcomes), int(sweep.converged.sum())
-    rest = "" if found == count else f", {count - found:,} without a result"
-    return f"{sweep.posed[-1]}: {found:,} of {count:,} rows{rest}"
+    count = len(sweep.outcomes)
+    converged = int(sweep.converged.sum())
+    sentence = f"{sweep.posed[-1]}: {converged:,} of {count:,} rows"
+    if converged < count:
+        sentence += f", {count - converged:,} without a result"
+    return sentence

@@ -1,1 +1,1 @@
-"""What was found, as JSON and CSV."""
+"""What was found, as JSON and CSV: one file each for solutions, paths and inverse problems."""

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from cosserat_casadi.control.inverse import Inverse
-from cosserat_casadi.results.solution_file import plain, result
+from cosserat_casadi.results.json_text import json_text, plain
+from cosserat_casadi.results.solution_file import result
 
 
-def inverse_result(found: Inverse) -> dict[str, Any]:
-    """What was found as the plain data of its file; a number that is not finite becomes null."""
-    targets = [
-        {"kind": target.kind, "what": gap.what, "position_gap": gap.position, "angle_gap": gap.angle}
-        for target, gap in zip(found.solution.model.scene.targets, found.gaps, strict=True)
-    ]
-    data: dict[str, Any] = plain({**result(found.solution), "targets_met": found.met, "targets": targets})
-    return data
+def inverse_result(inverse: Inverse) -> dict[str, Any]:
+    """An inverse problem's end as the plain data of its file; a number that is not finite becomes null."""
+    targets = []
+    for target, gap in zip(inverse.solution.model.scene.targets, inverse.gaps, strict=True):
+        entry = {
+            "kind": target.kind,
+            "what": gap.what,
+            "position_gap": gap.position,
+            "angle_gap": gap.angle,
+        }
+        targets.append(entry)
+    data = {**result(inverse.solution), "targets_met": inverse.met, "targets": targets}
+    plain_data: dict[str, Any] = plain(data)
+    return plain_data
 
 
-def inverse_text(found: Inverse) -> str:
+def inverse_text(inverse: Inverse) -> str:
     """The file as text."""
-    return json.dumps(inverse_result(found), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return json_text(inverse_result(inverse))

@@ -4,25 +4,46 @@ from __future__ import annotations
 
 import csv
 import io
-import json
+from dataclasses import dataclass
 from typing import Any
 
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
-from cosserat_casadi.results.solution_file import plain
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
-Sections = dict[str, tuple[float, FloatArray]]
-"""For rods whose tip is held: an abscissa and the positions there, shape (k, 3)."""
+POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
+"""Columns of a tip: position in m, quaternion."""
+
+
+@dataclass(frozen=True)
+class _RodPoints:
+    """Poses of a rod at k points of a path.
+
+    Attributes:
+        tip: of the tip.
+        X: abscissa of a section that moves although the tip is held; 1 where the tip moves.
+        positions: of that section, shape (k, 3), m.
+    """
+
+    tip: Pose
+    X: float
+    positions: FloatArray
+
+    def entry(self, index: int) -> dict[str, Any]:
+        """The plain data of one point."""
+        tip = {"position": self.tip.position[index], "quaternion": self.tip.quaternion[index]}
+        # A tip that moves is all that is asked for.
+        if self.X == 1.0:
+            return {"tip": tip}
+        section = {"X": self.X, "position": self.positions[index]}
+        return {"tip": tip, "section": section}
 
 
 def path_result(path: EquilibriumPath) -> dict[str, Any]:
     """A path as the plain data of its file; a number that is not finite becomes null."""
-    tips = {name: path.tip(name) for name in path.model.discrete.rods}
-    held = {name: path.section(name) for name in tips if path.section(name) < 1.0}
-    sections = {name: (X, path.position(X, name)) for name, X in held.items()}
     data = {
-        "schema": 1,
+        "schema": SCHEMA,
         "title": path.model.scene.title,
         "input": path.name,
         "value": path.value.T.squeeze(),
@@ -30,67 +51,93 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
         "message": path.message,
         "error_estimate": path.error_estimate,
         "branch": path.branch,
-        "discretisation": {
-            name: {"modes": list(d.modes), "nodes": d.nodes, "breaks": list(d.breaks), "transport": d.transport}
-            for name, d in path.model.discretisation.items()
-        },
-        "path": [
-            {"factor": float(factor), **_judged(path, i), "rods": _rods(tips, i, sections)}
-            for i, factor in enumerate(path.factor)
-        ],
-        "events": [
-            {
-                "kind": event.kind,
-                "factor": event.factor,
-                "multiplicity": event.multiplicity,
-                "before": event.position,
-                "rods": _rods(*_at_event(path, event)),
-            }
-            for event in path.events
-        ],
+        "discretisation": discretisation_entries(path.model),
+        "path": _point_entries(path),
+        "events": [_event_entry(path, event) for event in path.events],
     }
-    found: dict[str, Any] = plain(data)
-    return found
+    plain_data: dict[str, Any] = plain(data)
+    return plain_data
 
 
 def path_text(path: EquilibriumPath) -> str:
     """The file of a path as text."""
-    return json.dumps(path_result(path), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return json_text(path_result(path))
 
 
 def path_table(path: EquilibriumPath) -> str:
     """The points of a path as CSV: factor, stability, tip positions (m) and quaternions of every rod."""
     tips = {name: path.tip(name) for name in path.model.discrete.rods}
-    columns = [f"{name}.{axis}" for name in tips for axis in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+    pose_columns = [f"{name}.{axis}" for name in tips for axis in POSE_COLUMNS]
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(["factor", "stable", "smallest_eigenvalue", *columns])
-    for i, factor in enumerate(path.factor):
-        judged = ["" if word is None else str(word).lower() for word in _judged(path, i).values()]
-        poses = [number for tip in tips.values() for number in (*tip.position[i], *tip.quaternion[i])]
-        writer.writerow([repr(float(factor)), judged[0], judged[2], *[repr(float(number)) for number in poses]])
+    writer.writerow(["factor", "stable", "smallest_eigenvalue", *pose_columns])
+    for index, factor in enumerate(path.factor):
+        stability = _stability_entry(path, index)
+        row = [repr(float(factor)), _cell(stability["stable"]), _cell(stability["smallest_eigenvalue"])]
+        for tip in tips.values():
+            pose = (*tip.position[index], *tip.quaternion[index])
+            # repr gives the shortest text that reads back as the same number.
+            row += [repr(float(number)) for number in pose]
+        writer.writerow(row)
     return lines.getvalue()
 
 
-def _judged(path: EquilibriumPath, i: int) -> dict[str, bool | float | None]:
-    stable, neutral, least = path.stable, path.neutral, path.smallest_eigenvalue
-    if stable is None or neutral is None or least is None:
+def _cell(value: bool | float | None) -> str:
+    """A verdict or a number as a cell, empty where stability is not judged."""
+    if value is None:
+        return ""
+    return str(value).lower()
+
+
+def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
+    rods = _rods_along(path)
+    entries = []
+    for index, factor in enumerate(path.factor):
+        entry = {
+            "factor": float(factor),
+            **_stability_entry(path, index),
+            "rods": {name: points.entry(index) for name, points in rods.items()},
+        }
+        entries.append(entry)
+    return entries
+
+
+def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
+    rods = _rods_at_event(path, event)
+    return {
+        "kind": event.kind,
+        "factor": event.factor,
+        "multiplicity": event.multiplicity,
+        "before": event.position,
+        "rods": {name: points.entry(0) for name, points in rods.items()},
+    }
+
+
+def _stability_entry(path: EquilibriumPath, index: int) -> dict[str, bool | float | None]:
+    if path.stable is None or path.neutral is None or path.smallest_eigenvalue is None:
         return {"stable": None, "neutral": None, "smallest_eigenvalue": None}
-    return {"stable": bool(stable[i]), "neutral": bool(neutral[i]), "smallest_eigenvalue": float(least[i])}
+    return {
+        "stable": bool(path.stable[index]),
+        "neutral": bool(path.neutral[index]),
+        "smallest_eigenvalue": float(path.smallest_eigenvalue[index]),
+    }
 
 
-def _at_event(path: EquilibriumPath, event: PathEvent) -> tuple[dict[str, Pose], int, Sections]:
-    tips = {name: path.event_tip(event, name) for name in path.model.discrete.rods}
-    held = {name: path.section(name) for name in tips if path.section(name) < 1.0}
-    return tips, 0, {name: (X, path.event_position(event, X, name)[None, :]) for name, X in held.items()}
+def _rods_along(path: EquilibriumPath) -> dict[str, _RodPoints]:
+    """Every rod at all points of a path."""
+    rods = {}
+    for name in path.model.discrete.rods:
+        X = path.section(name)
+        rods[name] = _RodPoints(path.tip(name), X, path.position(X, name))
+    return rods
 
 
-def _rods(tips: dict[str, Pose], i: int, sections: Sections) -> dict[str, Any]:
-    """Tips of all rods at point i, and of a rod whose tip is held a section that moves."""
-    found: dict[str, Any] = {}
-    for name, tip in tips.items():
-        found[name] = {"tip": {"position": tip.position[i], "quaternion": tip.quaternion[i]}}
-        if name in sections:
-            X, positions = sections[name]
-            found[name]["section"] = {"X": X, "position": positions[i]}
-    return found
+def _rods_at_event(path: EquilibriumPath, event: PathEvent) -> dict[str, _RodPoints]:
+    """Every rod at one event, as one point."""
+    # An event lies between two points of the path and has a shape of its own.
+    rods = {}
+    for name in path.model.discrete.rods:
+        X = path.section(name)
+        position = path.event_position(event, X, name)
+        rods[name] = _RodPoints(path.event_tip(event, name), X, position[None, :])
+    return rods

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +10,7 @@ import numpy as np
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 SAMPLES = 41
 """Abscissae, evenly spaced, at which a result lists a rod's fields; element ends come on top."""
@@ -20,9 +19,11 @@ SAMPLES = 41
 def result(solution: Solution) -> dict[str, Any]:
     """A solution as the plain data of the result file; a number that is not finite becomes null."""
     model = solution.model
-    data = {
-        "schema": 1,
-        "title": model.scene.title,
+    scene = model.scene
+    inputs = model.inputs.unpack(solution.inputs)
+    data: dict[str, Any] = {
+        "schema": SCHEMA,
+        "title": scene.title,
         "converged": solution.converged,
         "outcome": solution.outcome.label,
         "message": solution.message,
@@ -33,29 +34,23 @@ def result(solution: Solution) -> dict[str, Any]:
         "smallest_eigenvalue": solution.smallest_eigenvalue,
         "iterations": solution.iterations,
         "load_factor": solution.load_factor,
-        "inputs": {name: value.T.squeeze() for name, value in model.inputs.unpack(solution.inputs).items()},
-        "discretisation": {
-            name: {
-                "modes": list(d.modes),
-                "nodes": d.nodes,
-                "breaks": list(d.breaks),
-                "transport": d.transport,
-            }
-            for name, d in model.discretisation.items()
-        },
-        "rods": {name: _rod(solution, name) for name in model.discrete.rods},
+        # Columns of Legendre coefficients become rows, and what has one entry a number.
+        "inputs": {name: value.T.squeeze() for name, value in inputs.items()},
+        "discretisation": discretisation_entries(model),
+        "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
-    if model.scene.bodies:
-        data["bodies"] = {body.name: _body(solution, body.name) for body in model.scene.bodies}
-    if model.scene.actuators:
-        data["actuators"] = {one.name: solution.actuator(one.name) for one in model.scene.actuators}
-    found: dict[str, Any] = plain(data)
-    return found
+    # A reader of rods alone need not know of tables that the scene does not have.
+    if scene.bodies:
+        data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.bodies}
+    if scene.actuators:
+        data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
+    plain_data: dict[str, Any] = plain(data)
+    return plain_data
 
 
 def result_text(solution: Solution) -> str:
     """The result file as text."""
-    return json.dumps(result(solution), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    return json_text(result(solution))
 
 
 def write_result(solution: Solution, path: str | Path) -> None:
@@ -63,9 +58,13 @@ def write_result(solution: Solution, path: str | Path) -> None:
     write_atomically(Path(path), result_text(solution).encode())
 
 
-def _rod(solution: Solution, name: str) -> dict[str, Any]:
-    X = _abscissae(solution.model.discretisation[name].breaks)
-    pose, tip, base = solution.pose(X, name), solution.tip(name), solution.base_wrench(name)
+def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
+    """Fields of a rod at its abscissae, its tip, and what its clamp exerts."""
+    breaks = solution.model.discretisation[name].breaks
+    X = _abscissae(breaks)
+    pose = solution.pose(X, name)
+    tip = solution.tip(name)
+    base_wrench = solution.base_wrench(name)
     return {
         "X": X,
         "position": pose.position,
@@ -73,27 +72,16 @@ def _rod(solution: Solution, name: str) -> dict[str, Any]:
         "strain": solution.strain(X, name),
         "internal_wrench": solution.internal_wrench(X, name),
         "tip": {"position": tip.position[0], "rotation": tip.rotation[0], "quaternion": tip.quaternion[0]},
-        "base_wrench": {"force": base.force, "moment": base.moment},
+        "base_wrench": {"force": base_wrench.force, "moment": base_wrench.moment},
     }
 
 
-def _body(solution: Solution, name: str) -> dict[str, Any]:
+def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
     pose = solution.body(name)
     return {"position": pose.position[0], "rotation": pose.rotation[0], "quaternion": pose.quaternion[0]}
 
 
 def _abscissae(breaks: tuple[float, ...]) -> FloatArray:
-    return np.unique(np.concatenate([np.linspace(0.0, 1.0, SAMPLES), breaks]))
-
-
-def plain(value: Any) -> Any:
-    """Arrays as lists, numbers as Python's own, what is not finite as None."""
-    if isinstance(value, dict):
-        return {key: plain(entry) for key, entry in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(entry) for entry in value]
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    return value
+    # Strains and internal forces may jump at a break: a reader finds it among the abscissae.
+    evenly = np.linspace(0.0, 1.0, SAMPLES)
+    return np.unique(np.concatenate([evenly, breaks]))

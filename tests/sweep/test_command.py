@@ -94,7 +94,7 @@ def test_an_interrupt_that_is_lost_stops_the_command(
 
     lost: list[bool] = []
     monkeypatch.setattr("cosserat_casadi.sweep.choice.solve_scene", lose)
-    monkeypatch.setattr("cosserat_casadi.cli.main.solve_scene", lose)
+    monkeypatch.setattr("cosserat_casadi.cli.commands.solving.solve_scene", lose)
     words = {"sweep": ["--over", "grid.toml"], "solve": []}[command]
     monkeypatch.setattr(sys, "argv", ["cosserat", command, "scene.toml", *words, "--output", "out.csv"])
     before = signal.getsignal(signal.SIGINT)

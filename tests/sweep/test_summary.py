@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from cosserat_casadi.cli.report import print_sweep
+from cosserat_casadi.cli.reports.sweep import print_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
 
 CHOSEN = {"discretisation": {"modes": [3, 4], "nodes": 9, "rotation": "magnus4"}, "rows": [0, 1, 2], "converged": 3}

@@ -1,0 +1,40 @@
+"""``cosserat bench``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.bench.grid import METHODS
+from cosserat_casadi.bench.plan import make_plan, run_plan
+from cosserat_casadi.cli.exit_codes import INTERRUPTED
+from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.scene import read_scene
+
+
+def bench(
+    scene: SceneFile,
+    output: Annotated[
+        Path | None, typer.Option(help="Folder for bench.csv, bench.json and the figure; what it holds is not redone.")
+    ] = None,
+    methods: Annotated[
+        str | None, typer.Option(help=f"Methods, separated by commas, out of {', '.join(METHODS)}; all by default.")
+    ] = None,
+    points: Annotated[int | None, typer.Option(help="Most points for each method.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="A coarse grid without the literal system.")] = False,
+    settings: Settings = None,
+) -> None:
+    """Measure error against time: the work-precision curve of a scene.
+
+    Errors are against an independent reference found in the same run. Exit codes: 0 measured, 2 refused,
+    3 no reference found, 130 interrupted; what was measured until then is in bench.csv.
+    """
+    plan = make_plan(read_scene(scene, tuple(settings or ())), output, methods, points, quick)
+    with progress_bar() as bar:
+        interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))
+    if interrupted:
+        raise typer.Exit(INTERRUPTED)

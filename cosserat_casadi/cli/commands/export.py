@@ -1,0 +1,45 @@
+"""``cosserat export``."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.reports.model import print_export
+from cosserat_casadi.codegen.export import check_export
+from cosserat_casadi.codegen.export import export as export_model
+from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.scene import read_scene
+
+
+def export(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option(help="Folder to write: new, empty, or of an earlier export.")],
+    name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
+    settings: Settings = None,
+) -> None:
+    """Write a scene as C sources: equations, derivatives, solver. Exit codes: 0 written, 2 refused, 3 not solved.
+
+    Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
+    """
+    if name is None:
+        name = re.sub(r"\W", "_", scene.stem)
+    # All that can be refused is refused before the solve, which may take a minute.
+    check_export(output, name)
+    exported_scene = read_scene(scene, tuple(settings or ()))
+    scene_names(name, exported_scene)
+
+    solution = solve_with_progress(exported_scene)
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+    # The folder keeps the estimate, which is for these inputs; tune gives one for a range of them.
+    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    print_export(Console(), solution, output)

@@ -1,0 +1,45 @@
+"""``cosserat inverse``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.commands.solving import draw_solution
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
+from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.solution import print_inverse
+from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.inverse_file import inverse_text
+from cosserat_casadi.scene import read_scene
+
+
+def inverse(
+    scene: SceneFile,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the result at the inputs found (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    stable: Annotated[bool, typer.Option("--stable", help="Accept a stable equilibrium only.")] = False,
+) -> None:
+    """Find inputs that bring rods and bodies to the targets of a scene.
+
+    Exit codes: 0 targets met, 2 refused, 3 not met, or no equilibrium found; the files show the closest pose then.
+    """
+    check_outputs(output, plot)
+    with solve_display("Finding inputs") as display:
+        # Read inside: building the problem is part of what the bar shows, and may be interrupted.
+        given_scene = read_scene(scene, tuple(settings or ()))
+        solved = inverse_scene(given_scene, stable=stable, report=display.show_stage)
+    if output is not None:
+        write_atomically(output, inverse_text(solved).encode())
+    if plot is not None:
+        draw_solution(solved.solution, plot)
+    print_inverse(Console(), solved, given_files(output, plot))
+    # The files hold the closest pose then.
+    if not solved.met:
+        raise typer.Exit(NOT_FOUND)

@@ -1,0 +1,49 @@
+"""``cosserat solve``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progress
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
+from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.solution_file import result_text
+from cosserat_casadi.scene import read_scene
+
+
+def solve(
+    scene: SceneFile,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the result file (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+    stable: Annotated[
+        bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
+    ] = False,
+) -> None:
+    """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
+    # A file that cannot be written is refused before the solve, not after it.
+    check_outputs(output, plot)
+    solution = solve_with_progress(read_scene(scene, tuple(settings or ())), stable=stable)
+    if output is not None:
+        write_atomically(output, result_text(solution).encode())
+    if plot is not None:
+        draw_solution(solution, plot)
+    if as_json:
+        sys.stdout.write(result_text(solution))
+    else:
+        print_solution(Console(), solution, given_files(output, plot))
+    # On standard error, so that --json stays pure; None is no verdict.
+    if solution.converged and solution.stable is False and not stable:
+        print_unstable(Console(stderr=True))
+    # Where stability cannot be judged, --stable has not found what it was asked for.
+    found = solution.converged and (solution.stable or not stable)
+    if not found:
+        raise typer.Exit(NOT_FOUND)

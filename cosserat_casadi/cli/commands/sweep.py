@@ -1,0 +1,105 @@
+"""``cosserat sweep``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems
+from cosserat_casadi.cli.progress import sweep_display
+from cosserat_casadi.cli.reports.sweep import print_stopped_sweep, print_sweep
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
+from cosserat_casadi.sweep.table import Table, read_table
+
+
+def sweep(
+    scene: SceneFile,
+    over: Annotated[Path, typer.Option(help="What to solve for: a grid (TOML), or a row for each solve (CSV).")],
+    output: Annotated[Path, typer.Option(help="Write a row for each solve here: .csv or .parquet.")],
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Run on this dask.distributed cluster: tcp://host:8786.")
+    ] = None,
+    cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    samples: Annotated[
+        int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
+    ] = SAMPLES,
+    plot: Annotated[Path | None, typer.Option(help="Draw the workspace here: .png, .pdf or .svg.")] = None,
+    colour: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
+    ] = None,
+    settings: Settings = None,
+) -> None:
+    """Solve a scene for every row of a grid or a table of inputs and parameters.
+
+    What a stopped or killed run has done is not done again. Exit codes: 0 every row has its outcome, 2 refused,
+    3 the tolerance is missed on rows that were checked, or no row has an equilibrium, 130 interrupted.
+    """
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        check_outputs(None, plot)
+    plan = _check_table(scene, tuple(settings or ()), over, output, samples, problems)
+    _check_colour(colour, plot, plan, problems)
+    if problems or plan is None:
+        raise SceneError(*problems)
+
+    # Asked now: once the sweep has run it is finished in any case.
+    finished_before = plan.finished
+    try:
+        with sweep_display() as show_count:
+            swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
+    except KeyboardInterrupt:
+        print_stopped_sweep(Console(stderr=True), plan)
+        raise typer.Exit(INTERRUPTED) from None
+
+    if plot is not None:
+        _draw(swept, plot, colour)
+    print_sweep(Console(), swept, output, plot, finished=finished_before)
+    # The rows are written in any case; the exit code says whether they can be trusted.
+    if not swept.holds:
+        raise typer.Exit(NOT_FOUND)
+
+
+def _check_table(
+    scene_file: Path, settings: tuple[str, ...], over: Path, output: Path, samples: int, problems: list[Problem]
+) -> Plan | None:
+    """The sweep that is asked for; None where the scene, the table or the output is refused."""
+    scene: Scene | None = None
+    table: Table | None = None
+    with collect_problems(problems):
+        scene = read_scene(scene_file, settings)
+    with collect_problems(problems):
+        table = read_table(over)
+    if scene is None or table is None:
+        # Without them the output is all that can still be looked at.
+        problems.extend(output_problems(output, None))
+        return None
+    with collect_problems(problems):
+        return plan_sweep(scene, table, output, samples)
+    return None
+
+
+def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, problems: list[Problem]) -> None:
+    if colour is None:
+        return
+    if plot is None:
+        problems.append(Problem("--colour", "is for a figure", "name its file with --plot"))
+    if plan is None:
+        # Which columns there will be is not known.
+        return
+    columns = ("outcome", *plan.columns)
+    if colour not in columns:
+        problems.append(Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(columns)}"))
+
+
+def _draw(swept: Sweep, file: Path, colour: str | None) -> None:
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.sweep_plot import save_sweep_plot
+
+    save_sweep_plot(swept, file, colour)

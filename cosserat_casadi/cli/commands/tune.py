@@ -1,0 +1,72 @@
+"""``cosserat tune``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.accuracy.tune import Tuning
+from cosserat_casadi.accuracy.tune import tune as tune_scene
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.progress import progress_bar
+from cosserat_casadi.cli.reports.model import print_tuning
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.load_cases import read_load_cases, spread
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.writing import scene_text
+
+
+def tune(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option(help="Write the scene with its discretisation fixed here (TOML).")],
+    tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
+    over: Annotated[Path | None, typer.Option(help="Load cases: CSV with columns such as push.force.x.")] = None,
+    ranges: Annotated[
+        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input.")
+    ] = None,
+    samples: Annotated[int, typer.Option(min=1, max=100_000, help="Load cases spread over the ranges.")] = 32,
+    settings: Settings = None,
+) -> None:
+    """Find the smallest discretisation for many load cases. Exit codes: 0 written, 2 refused, 3 tolerance not met."""
+    tuned_scene = read_scene(scene, tuple(settings or ()))
+    layout = input_layout(tuned_scene)
+    check_writable(output, "--output")
+    cases = _load_cases(over, ranges or [], samples, layout)
+    tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
+    print_tuning(Console(), tuning, layout, cases)
+    # A scene that misses the tolerance is not written: it would be taken for one that meets it.
+    if not tuning.met:
+        raise typer.Exit(NOT_FOUND)
+    write_atomically(output, scene_text(tuning.scene).encode())
+    Console().print(f"wrote {output}", highlight=False)
+
+
+def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: InputLayout) -> FloatArray:
+    """Load cases of a file, or spread over ranges, shape (count, size of the inputs).
+
+    Raises:
+        SceneError: both or none are given, or one of them is refused.
+    """
+    if over is not None and not ranges:
+        return read_load_cases(over, layout)
+    if over is None and ranges:
+        return spread(ranges, samples, layout)
+    raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
+
+
+def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: InputLayout) -> Tuning:
+    values = [layout.unpack(case) for case in cases]
+    with progress_bar() as bar:
+        task = bar.add_task("Tuning", total=None)
+
+        def show_count(done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+
+        return tune_scene(scene, values, tolerance, show_count)

@@ -1,0 +1,149 @@
+"""What a running command shows on standard error, and how it is interrupted."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import typer
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    ProgressColumn,
+    SpinnerColumn,
+    Task,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
+from rich.text import Text
+
+from cosserat_casadi.cli.exit_codes import INTERRUPTED
+
+CountCallback = Callable[[str, int, int], None]
+"""Takes a stage, how much of it is done, and how much there is; 0 of 0 where that is not known."""
+
+
+@dataclass(frozen=True)
+class SolveDisplay:
+    """Callbacks that a solve reports to.
+
+    Attributes:
+        show_share: takes the share of the present stage that is done, 0 to 1.
+        show_stage: takes the name of the stage that begins.
+    """
+
+    show_share: Callable[[float], None]
+    show_stage: Callable[[str], None]
+
+
+class RateColumn(ProgressColumn):
+    """How many are done in a second, once that is known."""
+
+    def render(self, task: Task) -> Text:
+        """The rate as text."""
+        if not task.speed:
+            return Text("")
+        return Text(f"{task.speed:,.0f}/s")
+
+
+def progress_bar(*more: ProgressColumn) -> Progress:
+    """A bar on standard error that leaves nothing behind."""
+    columns = (
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        *more,
+    )
+    # On standard error: standard output is for results, and may go into a file.
+    return Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+@contextmanager
+def remembered_interrupt() -> Iterator[Callable[[], None]]:
+    """A function that raises KeyboardInterrupt if the user has interrupted since.
+
+    CasADi calls Python to look at its arguments, and takes whatever that raises for a refusal of the argument: an
+    interrupt that falls there is lost. It is remembered, and raised again at the next report of progress.
+    """
+    signals: list[int] = []
+
+    def remember(number: int, frame: object) -> None:
+        signals.append(number)
+        raise KeyboardInterrupt
+
+    def raise_again() -> None:
+        if signals:
+            raise KeyboardInterrupt
+
+    handler_before = signal.signal(signal.SIGINT, remember)
+    try:
+        yield raise_again
+    finally:
+        signal.signal(signal.SIGINT, handler_before)
+
+
+@contextmanager
+def solve_display(command: str) -> Iterator[SolveDisplay]:
+    """A bar for a solve; an interrupt inside ends the command with its exit code.
+
+    Args:
+        command: what is being done, such as "Solving".
+    """
+    with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
+        task = bar.add_task("Building the model", total=1.0)
+
+        def show_share(share: float) -> None:
+            raise_interrupt()
+            bar.update(task, completed=share)
+
+        def show_stage(stage: str) -> None:
+            raise_interrupt()
+            bar.update(task, description=f"{command}: {stage}", completed=0.0)
+
+        try:
+            yield SolveDisplay(show_share, show_stage)
+        except KeyboardInterrupt:
+            # Typer would end the process without a sentence.
+            bar.console.print("Stopped. Nothing was written.")
+            raise typer.Exit(INTERRUPTED) from None
+
+
+@contextmanager
+def sweep_display() -> Iterator[CountCallback]:
+    """A bar for the stages of a sweep, one after the other, each with a rate of its own."""
+    with progress_bar(RateColumn()) as bar, remembered_interrupt() as raise_interrupt:
+        task = bar.add_task("Reading the table", total=None)
+        shown_stage = ""
+
+        def show_count(stage: str, done: int, total: int) -> None:
+            nonlocal shown_stage
+            raise_interrupt()
+            if stage == shown_stage:
+                bar.update(task, completed=done, total=total or None)
+            else:
+                # A rate is measured since the last reset: rows of one stage say nothing of the next.
+                bar.reset(task, description=stage, completed=done, total=total or None)
+            shown_stage = stage
+
+        yield show_count
+
+
+def count_reporter(bar: Progress, description: str) -> CountCallback:
+    """Shows what is being done, how much of it is done, and of how much, on a bar that is there.
+
+    Args:
+        bar: where to show it.
+        description: of what is done before the first report.
+    """
+    task = bar.add_task(description, total=None)
+
+    def show_count(stage: str, done: int, total: int) -> None:
+        bar.update(task, description=stage, completed=done, total=total or None)
+
+    return show_count

@@ -1,0 +1,104 @@
+"""What ``check``, ``export`` and ``tune`` print."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.accuracy.tune import Tuning
+from cosserat_casadi.cli.reports.format import discretisation_table, print_plain, table_of, title_line
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.price import price, price_of_load
+
+
+def print_check(console: Console, model: Model) -> None:
+    """Print what a valid scene holds, and what its model costs."""
+    scene = model.scene
+    print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
+    console.print(discretisation_table(model))
+    if scene.causes:
+        console.print(_load_table(model))
+    if scene.supports:
+        console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in scene.supports))
+    closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
+    if closing:
+        print_plain(console, "Ties: " + "; ".join(closing))
+    _print_price(console, model)
+    if scene.accuracy.modes is None:
+        print_plain(
+            console,
+            f"The solve picks modes and nodes for a tolerance of {scene.accuracy.tolerance:g}; "
+            "the figures are for the default ones.",
+        )
+
+
+def print_export(console: Console, solution: Solution, folder: Path) -> None:
+    """Print what was written, at what accuracy, and how to try it."""
+    model = solution.model
+    estimate = "not known"
+    if solution.error_estimate is not None:
+        estimate = f"{solution.error_estimate:.1e}"
+    print_plain(console, title_line(model.scene.title))
+    console.print(discretisation_table(model))
+    print_plain(
+        console,
+        f"{model.size} unknowns, {model.inputs.size} inputs; estimated error of the tip pose at the scene's own "
+        f"inputs: {estimate}.",
+    )
+    print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
+
+
+def print_tuning(console: Console, tuning: Tuning, layout: InputLayout, cases: FloatArray) -> None:
+    """Print the discretisation that was chosen, and the load case that is worst on it."""
+    worst = tuning.solutions[tuning.worst]
+    console.print(discretisation_table(worst.model))
+    print_plain(console, _tuning_verdict(tuning, len(cases)))
+
+    values = []
+    for name, value in layout.unpack(cases[tuning.worst]).items():
+        # Inputs are columns, (3, k) with k Legendre coefficients: a reader expects the components of one side by side.
+        components = value.T.squeeze()
+        values.append(f"{name} = {components.tolist()}")
+    ending = worst.message
+    if worst.error_estimate is not None:
+        ending = f"estimated error {worst.error_estimate:.1e}"
+    print_plain(console, f"Worst case, number {tuning.worst + 1}: {escape(', '.join(values))}: {ending}")
+
+
+def _tuning_verdict(tuning: Tuning, count: int) -> str:
+    tolerance = tuning.scene.accuracy.tolerance
+    failed = [solution for solution in tuning.solutions if not solution.converged]
+    if failed:
+        return f"[bold red]{len(failed)} of {count} load cases did not converge.[/]"
+    if tuning.met:
+        return f"[bold green]All {count} load cases are within {tolerance:g}.[/]"
+    return f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]"
+
+
+def _print_price(console: Console, model: Model) -> None:
+    # Expanding the functions into scalar operations takes seconds for a large scene.
+    with console.status("Counting operations"):
+        cost = price(model)
+    print_plain(
+        console,
+        f"Model of {model.size} unknowns in scalar operations: IGM {cost.igm:,}, residual {cost.residual:,}, "
+        f"residual and Jacobian {cost.jacobian:,}.",
+    )
+
+
+def _load_table(model: Model) -> Table:
+    table = table_of("load or actuator", "kind", "free inputs")
+    table.add_column("adds to the residual", justify="right")
+    for cause in model.scene.causes:
+        prefix = f"{cause.name}."
+        fields = [name.removeprefix(prefix) for name in model.inputs.names if name.startswith(prefix)]
+        free_inputs = ", ".join(fields) or "none"
+        cost = price_of_load(model.scene, cause.name)
+        table.add_row(escape(cause.name), cause.kind, free_inputs, f"{cost:,} operations")
+    return table

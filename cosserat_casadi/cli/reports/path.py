@@ -1,0 +1,119 @@
+"""What ``path`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, title_line
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+
+
+def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:
+    """Print the outcome, the events and the end, and the files that were written."""
+    colour = "red"
+    if path.converged:
+        colour = "green"
+    print_plain(console, title_line(path.model.scene.title))
+    print_plain(console, f"[bold {colour}]{escape(path.message)}[/]")
+    if len(path.factor):
+        console.print(_path_table(path))
+    print_plain(console, _merit_sentence(path))
+    print_written(console, written)
+
+
+def _merit_sentence(path: EquilibriumPath) -> str:
+    parts = [f"{len(path.factor)} points", f"{len(path.events)} limit points and bifurcations"]
+    if path.error_estimate is not None:
+        parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
+    for name, d in path.model.discretisation.items():
+        parts.append(f"{name}: modes {list(d.modes)}, {d.nodes} intervals")
+    return escape("; ".join(parts))
+
+
+@dataclass(frozen=True)
+class _TableRow:
+    """A point of a path that the table shows.
+
+    Attributes:
+        kind: start, end, or the kind of an event.
+        factor: of the input's value.
+        beyond: index of the first point of the path beyond it, whose stability is shown.
+        positions: of the shown section of every rod, m.
+    """
+
+    kind: str
+    factor: float
+    beyond: int
+    positions: Sequence[FloatArray]
+
+
+def _path_table(path: EquilibriumPath) -> Table:
+    """The start, the events and the end of a path, with the stability of what follows."""
+    table = Table()
+    for heading in ("point", "factor", path.name, "beyond it", "rod", "position, m"):
+        table.add_column(escape(heading), no_wrap=heading in ("point", "factor", "beyond it"))
+    # Of a rod whose tip is held another section is shown: its tip does not move.
+    abscissae = {name: path.section(name) for name in path.model.discrete.rods}
+    for row in _table_rows(path, abscissae):
+        _add_row(table, path, row, abscissae)
+    return table
+
+
+def _table_rows(path: EquilibriumPath, abscissae: dict[str, float]) -> list[_TableRow]:
+    factors = path.factor.tolist()
+    last = len(factors) - 1
+    along = [path.position(X, name) for name, X in abscissae.items()]
+    start = [positions[0] for positions in along]
+    end = [positions[-1] for positions in along]
+
+    rows = [_TableRow("start", factors[0], 0, start)]
+    for event in path.events:
+        positions = [path.event_position(event, X, name) for name, X in abscissae.items()]
+        # An event lies between two points; beyond the last one there is none to judge.
+        beyond = min(event.position, last)
+        rows.append(_TableRow(_event_kind(event), event.factor, beyond, positions))
+    rows.append(_TableRow("end", factors[last], last, end))
+    return rows
+
+
+def _event_kind(event: PathEvent) -> str:
+    if event.multiplicity == 1:
+        return event.kind
+    return f"{event.kind}, {event.multiplicity}-fold"
+
+
+def _add_row(table: Table, path: EquilibriumPath, row: _TableRow, abscissae: dict[str, float]) -> None:
+    """A line for each rod; what belongs to the point stands on the first."""
+    value = row.factor * np.ravel(path.value, order="F")
+    value_cell = ", ".join(digits(value))
+    cells = [row.kind, f"{row.factor:.10g}", f"[{value_cell}]", _stability(path, row.beyond)]
+    for (name, X), position in zip(abscissae.items(), row.positions, strict=True):
+        point_cells = [escape(cell) for cell in cells]
+        position_cell = ", ".join(digits(position))
+        table.add_row(*point_cells, escape(_section_name(name, X)), position_cell)
+        cells = [""] * len(cells)
+
+
+def _section_name(rod: str, X: float) -> str:
+    if X == 1.0:
+        return f"{rod} tip"
+    return f"{rod} X = {X:.3g}"
+
+
+def _stability(path: EquilibriumPath, index: int) -> str:
+    if path.stable is None or path.neutral is None:
+        return "not judged"
+    # Neutral first: an equilibrium that can be moved on at no cost is called stable too.
+    if path.neutral[index]:
+        return "neutral"
+    if path.stable[index]:
+        return "stable"
+    return "unstable"

@@ -1,0 +1,121 @@
+"""What ``solve`` and ``inverse`` print."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import (
+    digits,
+    discretisation_sentences,
+    print_plain,
+    print_written,
+    table_of,
+    title_line,
+)
+from cosserat_casadi.control.goals import Gap
+from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.equilibrium.solution import Solution
+
+ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}
+"""Units of what a solution holds of an actuator; an unknown quantity is shown without one."""
+
+STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
+
+
+def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
+    """Print the outcome, the rods, bodies and actuators, the figures of merit, and the files that were written."""
+    scene = solution.model.scene
+    print_plain(console, title_line(scene.title))
+    print_plain(console, f"[bold {_outcome_colour(solution)}]{escape(solution.message)}[/]")
+    console.print(_rod_table(solution))
+    if scene.actuators:
+        console.print(_actuator_table(solution))
+    print_plain(console, _merit_sentence(solution))
+    print_written(console, written)
+
+
+def print_unstable(console: Console) -> None:
+    """Warn of an unstable equilibrium, and say what to do about it."""
+    print_plain(
+        console,
+        "[bold yellow]Warning:[/] this equilibrium is not stable: a real rod leaves it. "
+        "Add --stable to find one that it keeps.",
+        soft_wrap=True,
+    )
+
+
+def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
+    """Print the inputs found, how far the targets are missed, then the equilibrium like that of a solve."""
+    inputs = table_of("input", "value found")
+    for name, value in inverse.values.items():
+        inputs.add_row(escape(name), ", ".join(digits(value.ravel(order="F"))))
+    console.print(inputs)
+
+    targets = table_of("target", "position missed by, m", "angle missed by, rad")
+    for gap in inverse.gaps:
+        targets.add_row(escape(gap.what), f"{gap.position:.3g}", _angle(gap))
+    console.print(targets)
+    print_solution(console, inverse.solution, written)
+
+
+def _angle(gap: Gap) -> str:
+    if gap.angle is None:
+        return "free"
+    return f"{gap.angle:.3g}"
+
+
+def _outcome_colour(solution: Solution) -> str:
+    if not solution.converged:
+        return "red"
+    if solution.stable is False:
+        return "yellow"
+    return "green"
+
+
+def _rod_table(solution: Solution) -> Table:
+    """Tips and clamps of rods, poses of bodies, in world axes."""
+    table = table_of("rod", "quantity")
+    for axis in ("x", "y", "z"):
+        table.add_column(axis, justify="right")
+    for name in solution.model.discrete.rods:
+        tip = solution.tip(name)
+        base_wrench = solution.base_wrench(name)
+        table.add_row(escape(name), "tip position, m", *digits(tip.position[0]))
+        table.add_row("", "tip tangent", *digits(tip.rotation[0][:, 2]))
+        table.add_row("", "clamp force, N", *digits(base_wrench.force))
+        table.add_row("", "clamp moment, N m", *digits(base_wrench.moment), end_section=True)
+    for name in solution.model.body:
+        pose = solution.body(name)
+        table.add_row(escape(name), "body position, m", *digits(pose.position[0]))
+        table.add_row("", "body z axis", *digits(pose.rotation[0][:, 2]), end_section=True)
+    return table
+
+
+def _actuator_table(solution: Solution) -> Table:
+    table = table_of("actuator", "effort", "works on")
+    for actuator in solution.model.scene.actuators:
+        state = solution.actuator(actuator.name)
+        cells = []
+        for quantity, value in state.items():
+            unit = ACTUATOR_UNITS.get(quantity, "")
+            cells.append(f"{quantity} {value:.6g} {unit}".rstrip())
+        table.add_row(escape(actuator.name), *cells)
+    return table
+
+
+def _merit_sentence(solution: Solution) -> str:
+    """How good the solution is, and what it was found on."""
+    parts = [f"residual {solution.residual_norm:.1e}", f"{solution.iterations} iterations"]
+    if solution.error_estimate is not None:
+        parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
+    if solution.shape_error_estimate is not None:
+        parts.append(f"over the whole shape {solution.shape_error_estimate:.1e}")
+    parts += discretisation_sentences(solution.model)
+    if solution.converged:
+        parts.append(STABILITY[solution.stable])
+    return escape("; ".join(parts))

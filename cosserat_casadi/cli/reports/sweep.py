@@ -1,0 +1,133 @@
+"""What ``sweep`` prints."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import listed, plural, print_plain, print_written, title_line
+from cosserat_casadi.sweep.outcome_file import record_file
+from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.run import Plan
+
+
+def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None, *, finished: bool) -> None:
+    """Print how the rows ended, on what they were computed, what the check of some rows gave, and the files.
+
+    Args:
+        console: where to print.
+        sweep: its results.
+        output: their file.
+        plot: the figure, if one was drawn.
+        finished: whether the file held the sweep already, so that nothing was computed.
+    """
+    record = sweep.record
+    tolerance = record["tolerance"]
+    print_plain(console, title_line(record["title"]))
+    console.print(_outcome_table(sweep))
+    print_plain(console, _choice_sentence(record["chosen"], tolerance), soft_wrap=True)
+    for sentence in _check_sentences(record["checked"], tolerance):
+        print_plain(console, sentence, soft_wrap=True)
+
+    written: list[Path] = []
+    if finished:
+        print_plain(console, f"{escape(str(output))} holds this sweep already: nothing was computed")
+    else:
+        written += [output, record_file(output)]
+    if plot is not None:
+        written.append(plot)
+    print_written(console, written, soft_wrap=True)
+
+
+def print_stopped_sweep(console: Console, plan: Plan) -> None:
+    """Print what a stopped sweep left."""
+    part = plan.part
+    if part is None or not part.exists():
+        console.print("Stopped before any row was solved. Nothing was written.")
+        return
+    print_plain(console, f"Stopped. What is done is kept in {escape(str(part))}: the same command goes on.")
+
+
+def _outcome_table(sweep: Sweep) -> Table:
+    table = Table()
+    table.add_column("outcome")
+    for heading in ("rows", "share"):
+        table.add_column(heading, justify="right")
+    for label, count in sweep.counts.items():
+        table.add_row(label, f"{count:,}", f"{count / len(sweep.outcomes):.1%}")
+    return table
+
+
+def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
+    """On which discretisation the rows were solved, and how good it is where it was chosen."""
+    discretisation = chosen["discretisation"]
+    if discretisation is None:
+        return "Modes, nodes and rotation are as the scene fixes them; what it leaves open has its default."
+    # Rows without an equilibrium say nothing of the discretisation.
+    count = len(chosen["rows"])
+    sentence = escape(
+        f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals, chosen on {plural(count, 'row')}"
+    )
+    estimate = chosen["error_estimate"]
+    if estimate is None:
+        return f"{sentence}, [bold red]none of which has an equilibrium.[/]"
+    if chosen["converged"] < count:
+        sentence += f", {chosen['converged']} of which have an equilibrium"
+    return f"{sentence}: estimated error {estimate:.1e}, {_within(estimate, tolerance)} {tolerance:g}."
+
+
+def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterator[str]:
+    """Sentences about the rows that were solved again in Python.
+
+    Args:
+        checked: for each such row its number, counted from 0; the estimated error, the distance of its poses from
+            those of the sweep, None where Python found no equilibrium, and whether it is stable.
+        tolerance: of the scene.
+    """
+    compared = [entry for entry in checked if entry["difference"] is not None]
+    if compared:
+        # An error that could not be estimated counts as infinite.
+        estimates = [_or_infinite(entry["error_estimate"]) for entry in compared]
+        error = max(estimates)
+        difference = max(entry["difference"] for entry in compared)
+        yield (
+            f"{plural(len(compared), 'row')} solved again in Python: estimated error at most {error:.1e}, "
+            f"{_within(error, tolerance)} {tolerance:g}; poses differ by at most {difference:.1e}."
+        )
+    lost = [entry for entry in checked if entry["difference"] is None]
+    if lost:
+        yield f"[bold red]Python found no equilibrium for {_rows(lost)}.[/]"
+    differing = [entry for entry in compared if entry["difference"] > tolerance]
+    if differing:
+        yield f"[bold red]Python found another equilibrium for {_rows(differing)}.[/]"
+    # None is not unstable: loads without a potential are not judged.
+    unstable = [entry for entry in compared if entry["stable"] is False]
+    if unstable:
+        yield (
+            f"[bold yellow]Unstable among these: {_rows(unstable)}.[/] A real rod leaves such an equilibrium. "
+            "The stability of other rows is not judged."
+        )
+
+
+def _rows(entries: list[dict[str, Any]]) -> str:
+    """Numbers of rows as a user counts them, from 1."""
+    numbers = [entry["row"] + 1 for entry in entries]
+    return listed(numbers, "row")
+
+
+def _or_infinite(estimate: float | None) -> float:
+    if estimate is None:
+        return math.inf
+    return estimate
+
+
+def _within(error: float, tolerance: float) -> str:
+    if error <= tolerance:
+        return "within"
+    return "[bold red]more than[/]"

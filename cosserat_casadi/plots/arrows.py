@@ -1,0 +1,70 @@
+"""Arrows of loads on the picture of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.loads.arrow import Arrow
+from cosserat_casadi.plots.canvas import FLAT, Canvas
+from cosserat_casadi.plots.colours import FORCES, LINE_FORCES, MOMENTS
+
+
+@dataclass(frozen=True)
+class ArrowStyle:
+    """How arrows of one sort are drawn.
+
+    Attributes:
+        share: length of the largest one, relative to the scene.
+        colour: of all.
+        width: of the shaft, points.
+    """
+
+    share: float
+    colour: str
+    width: float
+
+
+STYLES = {
+    "point": ArrowStyle(0.22, FORCES, 2.2),
+    "moment": ArrowStyle(0.18, MOMENTS, 2.2),
+    "line": ArrowStyle(0.09, LINE_FORCES, 1.0),
+}
+"""Forces at a point, moments, forces per length. Arrows are scaled within their own sort."""
+
+
+def lies_in_plane(arrow: Arrow, normal: int) -> bool:
+    """Whether the plane across a world axis shows it: a force lies in the plane, a moment stands across it."""
+    outside = arrow.vector[[normal]]
+    if arrow.sort == "moment":
+        outside = np.delete(arrow.vector, normal)
+    largest_outside = np.abs(outside).max()
+    largest = np.abs(arrow.vector).max()
+    return bool(largest_outside <= FLAT * largest)
+
+
+def draw_arrows(canvas: Canvas, arrows: Sequence[Arrow]) -> None:
+    """Draw the arrows of all loads, a moment across a plane as a turning sign."""
+    for sort, style in STYLES.items():
+        of_sort = [arrow for arrow in arrows if arrow.sort == sort]
+        _draw_sort(canvas, of_sort, style)
+    if canvas.plane is None:
+        return
+    for arrow in arrows:
+        if arrow.sort == "moment":
+            canvas.turning_sign(arrow.start, arrow.vector, MOMENTS)
+
+
+def _draw_sort(canvas: Canvas, arrows: Sequence[Arrow], style: ArrowStyle) -> None:
+    magnitudes = [float(np.linalg.norm(arrow.vector)) for arrow in arrows]
+    largest = max(magnitudes, default=0.0)
+    # The largest arrow of a sort has the length that its style gives it, whatever its unit.
+    for arrow in arrows:
+        if arrow.sort == "moment" and canvas.plane is not None:
+            # Drawn as a turning sign; the legend still gives its value.
+            canvas.legend_entry(arrow.label or None, color=style.colour, linewidth=style.width)
+            continue
+        scaled = arrow.vector * style.share * canvas.size / largest
+        canvas.arrow(arrow.start, scaled, colour=style.colour, width=style.width, label=arrow.label or None)

@@ -1,0 +1,125 @@
+"""Axes that show a scene in space, or in the coordinate plane that holds it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+Plane = tuple[int, int]
+"""World axes to the right and upwards."""
+
+SPACE = (0, 1, 2)
+AXIS_NAMES = "xyz"
+
+FLAT = 1e-9
+"""Share of an extent below which it counts as zero."""
+
+
+@dataclass(frozen=True)
+class Canvas:
+    """Axes of matplotlib, drawn on in world coordinates.
+
+    Attributes:
+        axes: of the projection that the plane asks for.
+        plane: the coordinate plane that is shown; None shows space.
+        size: largest extent of the scene, m, which arrows and section axes are scaled with.
+    """
+
+    axes: Any
+    plane: Plane | None
+    size: float
+
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """World axes that are shown."""
+        return self.plane or SPACE
+
+    def line(self, points: FloatArray, **style: Any) -> None:
+        """Draw a line through points, shape (k, 3)."""
+        coordinates = points[:, self.columns]
+        self.axes.plot(*coordinates.T, **style)
+
+    def markers(self, points: FloatArray, **style: Any) -> None:
+        """Mark points, shape (k, 3)."""
+        self.line(points, linestyle="none", **style)
+
+    def legend_entry(self, label: str | None, **style: Any) -> None:
+        """Name something in the legend that no line of its own stands for."""
+        no_points = np.zeros((0, 3))
+        self.line(no_points, label=label, **style)
+
+    def polygon(self, corners: FloatArray, colour: str) -> None:
+        """Fill a polygon, shape (k, 3)."""
+        if self.plane is not None:
+            self.axes.fill(*corners[:, self.plane].T, color=colour, alpha=0.25)
+            return
+        from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+        self.axes.add_collection3d(Poly3DCollection([corners], facecolors=colour, alpha=0.25))
+
+    def arrow(self, start: FloatArray, vector: FloatArray, *, colour: str, width: float, label: str | None) -> None:
+        """Draw an arrow from a point, shapes (3,), m."""
+        if self.plane is None:
+            style = {"color": colour, "linewidth": width, "label": label}
+            self.axes.quiver(*start, *vector, arrow_length_ratio=0.25, **style)
+            return
+        tail = self.projected(start)
+        head = self.projected(start + vector)
+        shape = {"arrowstyle": "-|>", "color": colour, "linewidth": width, "mutation_scale": 14}
+        self.axes.annotate("", xy=head, xytext=tail, arrowprops=shape)
+        # An annotation neither enters the legend nor widens the axes by itself.
+        self.legend_entry(label, color=colour, linewidth=width)
+        self.axes.update_datalim([tail, head])
+        self.axes.autoscale_view()
+
+    def turning_sign(self, point: FloatArray, moment: FloatArray, colour: str) -> None:
+        """Show a moment across the plane, which has no arrow in it, at its section; nothing in space.
+
+        Args:
+            point: of the section, shape (3,), m.
+            moment: shape (3,); its component across the plane gives the sense.
+            colour: of the sign.
+        """
+        if self.plane is None:
+            return
+        (across,) = set(SPACE) - set(self.plane)
+        counter_clockwise = bool(moment[across] > 0)
+        if self.plane == (0, 2):
+            # World y points away from the reader of the x–z plane, so the turn is seen reversed.
+            counter_clockwise = not counter_clockwise
+        sign = {True: "↺", False: "↻"}[counter_clockwise]
+        # Text of a fixed size: a moment has no length that the scale of the axes could give it.
+        style = {"fontsize": 20, "color": colour, "ha": "center", "va": "center"}
+        self.axes.annotate(sign, self.projected(point), **style)
+
+    def projected(self, point: FloatArray) -> FloatArray:
+        """Coordinates of a point in the axes, shape (2,) or (3,)."""
+        return point[list(self.columns)]
+
+    def label_axes(self) -> None:
+        """Name the axes that are shown, with their unit."""
+        right, up, *rest = self.columns
+        self.axes.set_xlabel(f"{AXIS_NAMES[right]}, m")
+        self.axes.set_ylabel(f"{AXIS_NAMES[up]}, m")
+        if rest:
+            self.axes.set_zlabel("z, m")
+
+    def equalise(self, points: FloatArray) -> None:
+        """Give all axes one scale, about the points, shape (k, 3)."""
+        if self.plane is not None:
+            self.axes.set_aspect("equal", adjustable="datalim")
+            self.axes.grid(alpha=0.3)
+            return
+        # matplotlib has no equal aspect in space: a cube about the middle of the points takes its part.
+        highest = points.max(axis=0)
+        lowest = points.min(axis=0)
+        centre = (highest + lowest) / 2
+        half_width = 0.55 * max(float((highest - lowest).max()), 0.2 * self.size)
+        limits = np.stack([centre - half_width, centre + half_width], axis=1)
+        self.axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
+        self.axes.set_box_aspect((1, 1, 1))
+        self.axes.view_init(elev=22, azim=-58)

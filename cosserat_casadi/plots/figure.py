@@ -1,0 +1,89 @@
+"""What all figures share: the class, the titles, and writing a file.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
+from cosserat_casadi.files import write_atomically
+
+FORMATS = (".png", ".pdf", ".svg")
+"""Suffixes that a figure may have."""
+
+# A date or a version in a file would make two drawings of one thing differ.
+_METADATA: dict[str, dict[str, None]] = {
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Producer": None},
+    "svg": {"Date": None},
+}
+
+
+class PlotUnavailableError(CosseratError):
+    """Matplotlib is not installed."""
+
+    def __init__(self) -> None:
+        super().__init__("figures need matplotlib: install it with  pip install 'cosserat-casadi[plot]'")
+
+
+def figure_class() -> Any:
+    """The class matplotlib.figure.Figure, which draws without a display and without pyplot's global state.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as missing:
+        raise PlotUnavailableError from missing
+    return Figure
+
+
+def check_plot_path(path: str | Path) -> None:
+    """Refuse a figure that cannot be made, before any work is done for it.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    if Path(path).suffix.lower() not in FORMATS:
+        remedy = f"use one of {', '.join(FORMATS)}"
+        raise SceneError(Problem("--plot", f"{path} has no suffix of a figure that can be drawn", remedy))
+    figure_class()
+
+
+def save_figure(draw: Callable[[], Any], path: str | Path) -> None:
+    """Draw a figure into a file, whole or not at all; the same figure gives the same bytes.
+
+    Args:
+        draw: makes the matplotlib.figure.Figure.
+        path: the file; its suffix is one of FORMATS.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    check_plot_path(path)
+    write_figure(draw(), Path(path))
+
+
+def write_figure(figure: Any, path: Path, dpi: int = 150) -> None:
+    """Write a figure into a file of one of FORMATS, whole or not at all; the same figure gives the same bytes."""
+    import matplotlib as mpl
+
+    suffix = path.suffix.lower()[1:]
+    content = io.BytesIO()
+    # SVG names its parts by random numbers, unless a salt is given.
+    with mpl.rc_context({"svg.hashsalt": "cosserat"}):
+        figure.savefig(content, format=suffix, dpi=dpi, metadata=_METADATA[suffix])
+    write_atomically(path, content.getvalue())
+
+
+def add_title(figure: Any, title: str | None) -> None:
+    """Write the title of a scene over its figure."""
+    figure.suptitle(title or "Untitled scene", fontsize=14, fontweight="bold")

@@ -1,0 +1,141 @@
+"""Strain, internal moment and internal force of a solution along X, in section axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.colours import AXES, rod_colour
+from cosserat_casadi.plots.shapes import SAMPLES
+
+STROKES = ("-", "--", "-.")
+"""Strokes of the components x, y, z where colours tell the rods apart."""
+
+ZERO = 1e-9
+"""Share of the largest component below which a component is not drawn."""
+
+SMALLEST = 1e-300
+"""Keeps the scale of a quantity that is zero away from zero."""
+
+LEVEL = 1e-3
+"""Share of its value below which the variation of a curve is taken for rounding."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a panel shows.
+
+    Attributes:
+        name: strain, moment or force.
+        labels: of its components; beyond the third they are linear strains.
+        axis_label: with the unit.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    axis_label: str
+
+
+QUANTITIES = (
+    Quantity("strain", ("K_x", "K_y", "K_z", "Γ_x", "Γ_y", "Γ_z − 1"), "curvature, 1/m"),
+    Quantity("moment", ("M_x", "M_y", "M_z"), "moment, N m"),
+    Quantity("force", ("N_x", "N_y", "N_z"), "force, N"),
+)
+
+
+def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
+    """Draw the components of a quantity that are not zero, of all rods."""
+    rods = solution.model.discrete.rods
+    values = {name: _values(solution, name, quantity.name) for name in rods}
+    panel.set_ylabel(quantity.axis_label)
+    shown = [panel]
+    linear_axes = panel
+    if quantity.name == "strain" and any(np.any(of_rod[:, 3:]) for of_rod in values.values()):
+        # Shear and stretch have no unit and are small beside curvatures: an axis of their own, on the right.
+        linear_axes = panel.twinx()
+        shown.append(linear_axes)
+
+    labelled: set[str] = set()
+    for index, (name, discrete_rod) in enumerate(rods.items()):
+        for component, label in enumerate(quantity.labels):
+            curve = values[name][:, component]
+            # A component that rounding alone has filled would take a colour and a line of the legend.
+            largest = max(np.abs(values[name]).max(), SMALLEST)
+            if np.abs(curve).max() <= ZERO * largest:
+                continue
+            axes = linear_axes if component >= 3 else panel
+            style = _curve_style(len(rods), index, component)
+            axes.plot(SAMPLES, curve, label=_curve_label(len(rods), name, label, labelled), **style)
+        # Fields may jump where one element ends and the next begins.
+        for element_end in discrete_rod.grid.breaks[1:-1]:
+            panel.axvline(element_end, color="0.6", linewidth=0.8)
+
+    panel.set_xlim(-0.01, 1.01)
+    panel.grid(alpha=0.3)
+    _finish_panel(shown)
+
+
+def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, str]:
+    """Colours tell the components of one rod, else the rods, as in the picture beside; strokes tell the rest."""
+    style = {"color": AXES[component % 3], "linestyle": "-"}
+    if rod_count > 1:
+        style["color"] = rod_colour(rod_index)
+    if rod_count > 2:
+        style["linestyle"] = STROKES[component % 3]
+    if component >= 3:
+        style["linestyle"] = ":"
+    return style
+
+
+def _curve_label(rod_count: int, rod: str, label: str, labelled: set[str]) -> str | None:
+    """Label of a curve; with many rods each component is named once, and the set of named ones grows."""
+    if rod_count == 1:
+        return label
+    if rod_count == 2:
+        return f"{rod} {label}"
+    if label in labelled:
+        return None
+    labelled.add(label)
+    return label
+
+
+def _finish_panel(shown: list[Any]) -> None:
+    """Legend and limits of the axes of one panel, the one on the right last."""
+    handles = [handle for axes in shown for handle in axes.get_legend_handles_labels()[0]]
+    if not handles:
+        panel = shown[0]
+        panel.text(0.5, 0.5, "zero", ha="center", va="center", color="0.5", transform=panel.transAxes)
+        panel.set_yticks([])
+        return
+    shown[-1].legend(handles=handles, fontsize=9, ncols=3, framealpha=0.9)
+    for axes in shown:
+        _hide_rounding(axes)
+    if len(shown) > 1:
+        shown[1].set_ylabel("shear, stretch (dotted)")
+
+
+def _hide_rounding(axes: Any) -> None:
+    """Widen the limits about a constant, which is then a level line and not its rounding errors."""
+    low, high = axes.get_ylim()
+    largest = max(abs(low), abs(high))
+    if high - low >= LEVEL * largest:
+        return
+    middle = (low + high) / 2
+    margin = 0.1 * largest
+    axes.set_ylim(middle - margin, middle + margin)
+
+
+def _values(solution: Solution, name: str, quantity: str) -> FloatArray:
+    """Components at SAMPLES, shape (len(SAMPLES), 6) for the strain, else (len(SAMPLES), 3)."""
+    if quantity == "strain":
+        strain = solution.strain(SAMPLES, name)
+        # The stretch is 1 in the unloaded rod: what is left is the extension.
+        strain[:, 5] -= 1.0
+        return strain
+    wrench = solution.internal_wrench(SAMPLES, name)
+    # Angular part first: [M; N].
+    return {"moment": wrench[:, :3], "force": wrench[:, 3:]}[quantity]

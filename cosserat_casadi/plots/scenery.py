@@ -1,0 +1,190 @@
+"""Rods, supports, actuators, bodies and targets of a solved scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_colour
+from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
+from cosserat_casadi.scene import CurveTarget
+
+SLACK = 1e-6
+"""Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
+
+AXES_SECTIONS = np.linspace(0.0, 1.0, 9)
+"""Abscissae of the sections whose axes are drawn."""
+
+AXES_LENGTH = 0.06
+"""Length of their axes, relative to the scene."""
+
+CLAMP: dict[str, Any] = {"color": "0.2", "marker": "s", "markersize": 9}
+
+JOINTS: dict[str, dict[str, Any]] = {
+    "fixed": {"marker": "s", "markersize": 7, "color": "0.35"},
+    "spherical": {"marker": "o", "markersize": 8, "markerfacecolor": "white", "markeredgecolor": "0.2"},
+    "revolute": {"marker": "o", "markersize": 7, "color": "0.35"},
+    "prismatic": {"marker": "D", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": "0.2"},
+}
+"""How joints are marked; rods that start on rods are fixed there."""
+
+UNKNOWN_JOINT: dict[str, Any] = {"marker": "X", "markersize": 8, "color": "0.35"}
+
+SUPPORT_MARKERS = {"clamped": "s", "pinned": "^"}
+UNKNOWN_SUPPORT_MARKER = "X"
+
+TARGET_STYLE: dict[str, Any] = {
+    "marker": "+",
+    "markersize": 13,
+    "markeredgewidth": 2.0,
+    "color": TARGETS,
+    "zorder": 10,
+}
+
+Labelled = tuple[str, dict[str, Any]]
+"""A label for the legend, and the style of a line."""
+
+
+def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
+    """Draw rods, unloaded dashed and deformed thick, with their bases and section axes."""
+    several = len(shapes.deformed) > 1
+    unloaded_label: str | None = "unloaded"
+    unloaded = solution.model.discrete.unloaded
+    for index, (name, deformed) in enumerate(shapes.deformed.items()):
+        unloaded_style = {"color": "0.55", "linestyle": "--", "linewidth": 1.2}
+        canvas.line(shapes.unloaded[name], label=unloaded_label, **unloaded_style)
+        # The legend names the unloaded rods once.
+        unloaded_label = None
+        label = "deformed"
+        if several:
+            label = name
+        canvas.line(deformed, color=rod_colour(index), linewidth=3.5, label=label)
+        base_style = JOINTS["fixed"]
+        if unloaded.floating_base(name) is None:
+            base_style = CLAMP
+        canvas.markers(deformed[:1], **base_style)
+        _draw_section_axes(canvas, solution, name)
+
+
+def _draw_section_axes(canvas: Canvas, solution: Solution, name: str) -> None:
+    pose = solution.pose(AXES_SECTIONS, name)
+    length = AXES_LENGTH * canvas.size
+    for position, rotation in zip(pose.position, pose.rotation, strict=True):
+        for axis, colour in enumerate(AXES):
+            direction = rotation[:, axis]
+            ends = np.array([position, position + length * direction])
+            canvas.line(ends, color=colour, linewidth=1.1)
+
+
+def draw_supports(canvas: Canvas, solution: Solution) -> None:
+    """Mark the points at which tips are held."""
+    for support in solution.model.scene.supports:
+        marker = SUPPORT_MARKERS.get(support.kind, UNKNOWN_SUPPORT_MARKER)
+        position = np.array([support.position])
+        label = f"{support.kind} tip"
+        canvas.markers(position, marker=marker, markersize=10, color="0.2", label=label)
+
+
+def draw_actuators(canvas: Canvas, solution: Solution) -> None:
+    """Draw the routing of every actuator, with its effort in the legend."""
+    for index, actuator in enumerate(solution.model.scene.actuators):
+        colour = actuator_colour(index)
+        describe = ACTUATOR_STYLES.get(actuator.kind)
+        if describe is None:
+            canvas.legend_entry(f"{actuator.name}: {actuator.kind}, not drawn", linestyle="none")
+            continue
+        label, style = describe(solution, actuator)
+        routing = actuator_routing(solution, actuator)
+        canvas.line(routing, color=colour, label=label, **style)
+        if actuator.kind == "tendon":
+            # Where the tendon is fixed to its section.
+            canvas.markers(routing[-1:], marker="o", markersize=4, color=colour)
+
+
+def _tendon_style(solution: Solution, actuator: Any) -> Labelled:
+    tension = solution.actuator(actuator.name)["tension"]
+    smallest_taut = SLACK * solution.model.discrete.tension_unit(actuator.rod)
+    limp = bool(tension <= smallest_taut)
+    effort = f"{tension:.3g} N"
+    if limp and actuator.slack:
+        effort = "slack"
+    stroke = {True: ":", False: "-"}[limp]
+    return f"{actuator.name}: {effort}", {"linewidth": 1.4, "linestyle": stroke}
+
+
+def _chamber_style(solution: Solution, actuator: Any) -> Labelled:
+    pressure = solution.actuator(actuator.name)["pressure"]
+    return f"{actuator.name}: {pressure:.3g} Pa", {"linewidth": 4.0, "alpha": 0.5}
+
+
+ACTUATOR_STYLES: dict[str, Callable[[Solution, Any], Labelled]] = {"tendon": _tendon_style, "chamber": _chamber_style}
+"""How each kind of actuator is drawn."""
+
+
+def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
+    """Points of an actuator's routing in world axes, shape (len(SAMPLES), 3), m: r + R D."""
+    start, end = actuator.span
+    X = start + (end - start) * SAMPLES
+    pose = solution.pose(X, actuator.rod)
+    offset = offset_at(actuator, X)[0]
+    # A routing is given by two offsets, along the axes x and y of its sections.
+    across = pose.rotation[:, :, :2]
+    return np.asarray(pose.position + np.einsum("kij,jk->ki", across, offset))
+
+
+def draw_bodies(canvas: Canvas, solution: Solution) -> None:
+    """Draw every body as the polygon through its joints, or the line to its centre of mass from a joint alone."""
+    for body in solution.model.scene.bodies:
+        _draw_body(canvas, solution, body)
+
+
+def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
+    pose = solution.body(body.name)
+    scene = solution.model.scene
+    joints = [joint for joint in scene.joints if joint.body == body.name]
+    points_in_body = np.array([joint.position for joint in joints])
+    points = in_world(pose, points_in_body)
+    corners = points[_order_around_mean(points)]
+    # A body on one joint has no extent but that between the joint and its centre of mass.
+    if len(corners) < 2:
+        centre_of_mass = in_world(pose, np.array([body.centre_of_mass]))
+        corners = np.concatenate([corners, centre_of_mass])
+    canvas.polygon(corners, BODIES)
+    outline = np.concatenate([corners, corners[:1]])
+    canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
+    for joint, point in zip(joints, points, strict=True):
+        canvas.markers(point[None], **JOINTS.get(joint.kind, UNKNOWN_JOINT))
+
+
+def _order_around_mean(points: FloatArray) -> Indices:
+    """Order in which a polygon goes through points, shape (k, 3), without crossing itself.
+
+    The angles about their mean are taken in the two directions in which the points spread most.
+    """
+    arms = points - points.mean(axis=0)
+    # Fewer than three points have fewer than three singular vectors, unless the basis is completed.
+    _, _, directions = np.linalg.svd(arms, full_matrices=len(points) < 3)
+    # Singular vectors come in the order of their spread, the largest first.
+    across = arms @ directions[0]
+    up = arms @ directions[1]
+    angles = np.arctan2(up, across)
+    return np.argsort(angles, kind="stable").astype(np.int64)
+
+
+def draw_targets(canvas: Canvas, solution: Solution) -> None:
+    """Mark the points that an inverse problem wants to reach."""
+    points: list[tuple[float, float, float]] = []
+    for target in solution.model.scene.targets:
+        if isinstance(target, CurveTarget):
+            points += target.points
+        else:
+            points.append(target.position)
+    if points:
+        canvas.markers(np.array(points), label="targets", **TARGET_STYLE)

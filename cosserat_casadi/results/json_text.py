@@ -1,0 +1,46 @@
+"""Numbers, arrays and discretisations as plain data, and plain data as the text of a file."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.model.build import Model
+
+SCHEMA = 1
+"""Version of the result files."""
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can hold it: arrays as lists, numbers as Python's own, what is not finite as None."""
+    if isinstance(value, dict):
+        return {key: plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    # JSON has no word for infinity and NaN.
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def json_text(data: dict[str, Any]) -> str:
+    """Plain data as the text of a file."""
+    return json.dumps(data, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def discretisation_entries(model: Model) -> dict[str, dict[str, Any]]:
+    """Modes, nodes, breaks and integrator of every rod."""
+    entries = {}
+    for name, d in model.discretisation.items():
+        entries[name] = {
+            "modes": list(d.modes),
+            "nodes": d.nodes,
+            "breaks": list(d.breaks),
+            "transport": d.transport,
+        }
+    return entries

@@ -1,0 +1,165 @@
+"""Pages work when pasted: their commands, their Python, their C; what they link to and name is there."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command, run_python
+
+ELSEWHERE = {"guide.md": "test_guide.py", "control.md": "test_control_page.py", "sweeps.md": "sweep/test_page.py"}
+"""Pages that a test of their own runs."""
+
+ONE_PROGRAM = ("extending.md",)
+"""Pages whose blocks of Python go on from each other."""
+
+RUN_HERE = [page for page in PAGES if page.name not in ELSEWHERE]
+
+SLOW_TO_RUN = ("cosserat bench", "make ", "pip ")
+"""What begins a line that no test runs: it takes minutes, or installs something."""
+
+LANGUAGES = {"python", "sh", "toml", "c", "csv", "text"}
+
+
+def name_of(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def of_all(language_or_commands: str) -> list[object]:
+    """Every block or command of the pages that are run here, with its page as the name of the test."""
+    found = []
+    for page in RUN_HERE:
+        texts = commands(page) if language_or_commands == "commands" else blocks(page, language_or_commands)
+        if page.name in ONE_PROGRAM:
+            texts = ["\n".join(texts)] if texts else []
+        found += [pytest.param(text, id=f"{name_of(page)}-{i}") for i, text in enumerate(texts)]
+    return found
+
+
+@pytest.mark.parametrize("code", of_all("python"))
+def test_python_runs(code: str) -> None:
+    run_python(code)
+
+
+@pytest.mark.parametrize(
+    "line", [case for case in of_all("commands") if not case.values[0].startswith(SLOW_TO_RUN)]
+)  # fmt: skip
+def test_commands_run(line: str, tmp_path: Path) -> None:
+    run_command(line, tmp_path)
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/c-interface.md"])
+def test_exported_folder_is_compiled_as_the_page_says(page: str, tmp_path: Path) -> None:
+    (line,) = [line for text in blocks(ROOT / page, "sh") for line in text.splitlines() if "gcc" in line]
+    shutil.copytree(ROOT / "generated" / "nitinol_wire", tmp_path / "wire")
+    assert line.startswith("(cd wire && ")
+    done = subprocess.run(line, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["status"] == "converged"
+
+
+@pytest.mark.parametrize("page", RUN_HERE, ids=name_of)
+def test_every_line_of_sh_is_run_or_known_to_be_slow(page: Path) -> None:
+    for text in blocks(page, "sh"):
+        for line in text.replace("\\\n", " ").splitlines():
+            assert line.startswith(("cosserat ", "(cd wire && gcc ", *SLOW_TO_RUN)), line
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_blocks_have_a_language_that_is_run_or_is_no_code(page: Path) -> None:
+    for language, text in BLOCK.findall(page.read_text()):
+        assert language in LANGUAGES, text
+
+
+def test_pages_that_are_run_elsewhere_are_there() -> None:
+    for page, test in ELSEWHERE.items():
+        assert f'"{page}"' in (ROOT / "tests" / test).read_text()
+
+
+# Links and names
+
+
+def anchors(page: Path) -> set[str]:
+    """Anchors of the headings of a page, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", prose(page), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+WRITTEN_ELSEWHERE = {"scene.md"}
+"""Pages made by a generator, which may not have been run."""
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(page)):
+        if target.startswith("https://"):
+            continue
+        file, _, anchor = target.partition("#")
+        aim = (page.parent / file).resolve() if file else page
+        if aim.name in WRITTEN_ELSEWHERE and not aim.exists():
+            continue
+        assert aim.exists(), target
+        if anchor:
+            assert anchor in anchors(aim), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_files_that_a_page_names_exist(page: Path) -> None:
+    """Sources by their path in the package or in the repository."""
+    for name in re.findall(r"`([\w/]+/[\w/]*(?:\.py|\.toml|\.json|/))`", prose(page)):
+        assert any((root / name).exists() for root in (ROOT, ROOT / "cosserat_casadi")), name
+
+
+def test_version_is_the_same_everywhere() -> None:
+    released = version("cosserat-casadi")
+    citation = (ROOT / "CITATION.cff").read_text()
+    assert f"\nversion: {released}\n" in citation
+    assert f"\n## [{released}]\n" in (ROOT / "CHANGELOG.md").read_text()
+
+
+def test_citation_is_valid_yaml_with_what_the_format_asks_for() -> None:
+    yaml = pytest.importorskip("yaml")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert {"cff-version", "message", "title", "authors"} <= set(citation)
+    assert citation["authors"] == [{"name": "cosserat_casadi developers"}]
+
+
+def test_every_page_is_in_the_table_of_contents() -> None:
+    contents = (DOCS / "index.md").read_text()
+    for page in DOCS.glob("*.md"):
+        assert page.name == "index.md" or f"({page.name})" in contents, page.name
+
+
+def test_every_load_actuator_and_support_is_on_the_page_of_robots() -> None:
+    from cosserat_casadi.constraints.held_directions import SUPPORTS
+    from cosserat_casadi.model.registry import EFFECTS
+    from cosserat_casadi.scene.constraints import JOINTS
+
+    page = (DOCS / "robots.md").read_text()
+    for kind in (*EFFECTS, *SUPPORTS, *JOINTS.records):
+        assert f"`{kind}`" in page
+
+
+def test_every_command_is_on_the_page_of_the_command_line() -> None:
+    from cosserat_casadi.cli.main import app
+
+    page = (DOCS / "command-line.md").read_text()
+    names = [command.callback.__name__ for command in app.registered_commands if command.callback]
+    assert len(names) == 8
+    for name in names:
+        assert f"| `{name}` |" in page
+
+
+def test_every_test_that_the_theory_names_exists() -> None:
+    tests = "\n".join(path.read_text() for path in (ROOT / "tests").rglob("test_*.py"))
+    named = re.findall(r"`(?:tests/[\w/]+\.py::)?(test_\w+)`", (DOCS / "theory.md").read_text())
+    assert len(named) > 20
+    for name in named:
+        assert f"def {name}(" in tests, name
