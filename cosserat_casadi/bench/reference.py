@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.metrics import prolong
 from cosserat_casadi.accuracy.preview import watched
-from cosserat_casadi.accuracy.refine import prolong, solve_scene
+from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve

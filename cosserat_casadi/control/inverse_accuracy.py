@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import ceil
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import largest_turn, prolong, with_estimate
+from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import fixed, refine, unfixed
+from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -89,7 +89,7 @@ def choose(found: Variants, values: FloatArray, samples: int, told: Told) -> Cho
     alone = [solved(*case) for case in cases]
     kept = [i for i, solution in enumerate(alone) if solution.converged]
     used = kept or list(range(len(cases)))
-    chosen, together = refine([cases[i] for i in used], [alone[i] for i in used], solved)  # type: ignore[arg-type]
+    chosen, together = common_discretisation([cases[i] for i in used], [alone[i] for i in used], solved)  # type: ignore[arg-type]
     reached = [solution for solution in together if solution.converged]
     estimates = [s.error_estimate for s in reached if s.error_estimate is not None]
     return Choice(chosen, tuple(rows), len(reached), max(estimates, default=None))
