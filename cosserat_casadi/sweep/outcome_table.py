@@ -64,11 +64,14 @@ class Sweep:
         if not self.record:
             return False
         tolerance = self.record["tolerance"]
-        chosen = self.record["chosen"]["error_estimate"]
-        looked_at = [0.0 if chosen is None else chosen]
-        for one in self.record["checked"]:
-            looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
-        return bool(self.converged.any()) and all(error <= tolerance for error in looked_at)
+        # Where the scene fixes its discretisation nothing was estimated beforehand; the checked rows decide.
+        errors = [self.record["chosen"]["error_estimate"] or 0.0]
+        for row in self.record["checked"]:
+            errors += [row["error_estimate"], row["difference"]]
+        # A row without an equilibrium in Python has no error, and so cannot be within the tolerance.
+        errors = [np.inf if error is None else error for error in errors]
+        within_tolerance = all(error <= tolerance for error in errors)
+        return within_tolerance and bool(self.converged.any())
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).
