@@ -117,12 +117,14 @@ def assess(solution: Solution, tolerance: float) -> Verdict:
 
 def _uniform(solution: Solution) -> tuple[int, int]:
     """Modes and intervals of a uniform discretisation."""
-    first = next(iter(solution.model.discretisation.values()))
+    discretisations = solution.model.discretisation.values()
+    first = next(iter(discretisations))
     return first.modes[0], first.nodes
 
 
 def _resolving_nodes(solution: Solution, nodes: int) -> int:
     """Intervals that should resolve a rod too bent for its grid."""
-    resolution_index = float(solution.model.coarseness(solution.x, solution.inputs))
-    factor = min(MOST_REFINED, NODES_MARGIN * resolution_index)
-    return ceil(nodes * factor)
+    # Beyond 1 by the factor by which an interval turns too far.
+    resolution_index = solution.model.coarseness(solution.x, solution.inputs)
+    factor = NODES_MARGIN * float(resolution_index)
+    return ceil(nodes * min(MOST_REFINED, factor))

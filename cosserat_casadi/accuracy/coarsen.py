@@ -103,7 +103,8 @@ class Coarsening:
         """Foreseen time of one rod, µs."""
         model = self.preview.model
         rod = model.discrete.rods[name].properties
-        return foreseen_time(rod, discretisation, spread_on(model.scene, name))
+        spread = spread_on(model.scene, name)
+        return foreseen_time(rod, discretisation, spread)
 
     @cached_property
     def alike(self) -> list[tuple[str, ...]]:
@@ -258,7 +259,8 @@ class _GridSearch:
 
     def _candidate_transports(self) -> tuple[str, ...]:
         """Rotation integrators to compare; all are one where a rod turns about one axis."""
-        transports = next(names for least, names in TRANSPORTS if self.coarsening.bound >= least)
+        suitable = (names for least, names in TRANSPORTS if self.coarsening.bound >= least)
+        transports = next(suitable)
         rod = self._preview.model.discrete.rods[self.name].properties
         if len(rod.turning_axes) > 1:
             return transports
@@ -311,6 +313,7 @@ class _GridSearch:
             ratio = self._excess(transport, nearest) / excess
             slope = np.log(ratio) / np.log(nodes / nearest)
             power = float(np.clip(slope, FLATTEST, STEEPEST))
+        # The excess falls with this power; it is to come down to the aim.
         factor = (excess / AIM) ** (1 / power)
         # A tenth of an interval too many is not worth a whole one.
         return int(np.ceil(nodes * factor - 0.1))
@@ -321,7 +324,8 @@ class _GridSearch:
         mode_shift = self._preview.mode_shift(self.modes)
         excess = self._excess(transport, nodes)
         # Grids alone too: a change that happens to cancel that of the modes would be luck.
-        excess_together = _size(grid_shift + mode_shift) / self.coarsening.bound
+        together = grid_shift + mode_shift
+        excess_together = _size(together) / self.coarsening.bound
         return max(excess, excess_together) <= 1
 
     def _excess(self, transport: str, nodes: int) -> float:
@@ -349,9 +353,12 @@ class _GridSearch:
     def _fewest_resolving(self) -> int:
         """Intervals below which one would turn too far, from the turns of the reference."""
         reference = self._preview.reference
-        nodes = reference.model.discretisation[self.name].nodes
-        resolution_index = float(reference.model.coarseness(reference.x, reference.inputs))
-        return max(FEWEST, ceil(NODES_MARGIN * (resolution_index * nodes)))
+        model = reference.model
+        nodes = model.discretisation[self.name].nodes
+        # The turn of an interval is inverse to their number.
+        resolution_index = float(model.coarseness(reference.x, reference.inputs))
+        resolving = resolution_index * nodes
+        return max(FEWEST, ceil(NODES_MARGIN * resolving))
 
     @cached_property
     def _unknowns(self) -> FloatArray:
@@ -374,9 +381,11 @@ class _GridSearch:
 
 def _one_less(modes: Modes, names: tuple[str, ...], component: int) -> dict[str, tuple[int, ...]]:
     """The same modes but for one less of a component of some rods."""
+    # Rods that are discretised alike have the same modes.
     counts = list(modes[names[0]])
     counts[component] -= 1
-    return {**modes, **dict.fromkeys(names, tuple(counts))}
+    changed = dict.fromkeys(names, tuple(counts))
+    return {**modes, **changed}
 
 
 def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
@@ -388,8 +397,10 @@ def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
 
 
 def _most(modes: Modes) -> int:
-    return max(max(counts) for counts in modes.values())
+    most_of_rods = [max(counts) for counts in modes.values()]
+    return max(most_of_rods)
 
 
 def _size(shift: FloatArray) -> float:
-    return float(np.abs(shift).max())
+    sizes = np.abs(shift)
+    return float(sizes.max())

@@ -146,9 +146,15 @@ def foreseen_time(
     operations = foreseen_operations(rod, chosen, spread)
     if operations.instructions <= STRAIGHT:
         constant, in_functions, in_kernel = _STRAIGHT_TIME
-        return constant + in_functions * operations.intervals + in_kernel * operations.instructions
+        time = constant + in_functions * operations.intervals
+        return time + in_kernel * operations.instructions
     per_interval, *factors = _LOOPS_TIME
-    counts = (operations.intervals, operations.structure, operations.follower, operations.couple)
+    counts = (
+        operations.intervals,
+        operations.structure,
+        operations.follower,
+        operations.couple,
+    )
     looped = sum(factor * count for factor, count in zip(factors, counts, strict=True))
     return per_interval * chosen.elements * chosen.nodes + looped
 

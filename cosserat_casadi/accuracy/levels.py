@@ -98,11 +98,13 @@ class Level:
         Returns:
             None where no level has so many.
         """
-        sufficient = (i for i, available in enumerate(REFERENCE_MODES) if available >= modes)
-        lowest = next(sufficient, len(REFERENCE_MODES))
+        count = len(REFERENCE_MODES)
+        sufficient = (i for i in range(count) if REFERENCE_MODES[i] >= modes)
+        lowest = next(sufficient, count)
+        # Always one up: a level that was just found too coarse is not solved again.
         above = max(lowest, self.index + 1)
         index = min(above, self.index + most_levels)
-        if index >= len(REFERENCE_MODES):
+        if index >= count:
             return None
         return replace(self, index=index)
 

@@ -100,14 +100,18 @@ def _distance(first: Pose, second: Pose, length: float) -> float:
     position_change = np.abs(first.position - second.position)
     rotation_change = np.abs(first.rotation - second.rotation)
     position_distance = float(position_change.max()) / length
-    return max(position_distance, float(rotation_change.max()))
+    rotation_distance = float(rotation_change.max())
+    return max(position_distance, rotation_distance)
 
 
 def _element_turn(discrete_rod: DiscreteRod, solution: Solution) -> float:
     """Largest of ℓ ∫ |K| dX over the elements of a rod, rad."""
     grid = discrete_rod.grid
     rod = discrete_rod.properties
-    curvature = solution.strain(grid.nodes, rod.name)[:, :3]
-    turns = grid.weights * np.linalg.norm(curvature, axis=1) * rod.length
-    element_turns = turns.reshape(grid.elements, -1).sum(axis=1)
+    strain = solution.strain(grid.nodes, rod.name)
+    curvature = np.linalg.norm(strain[:, :3], axis=1)
+    # Weights of the quadrature run over all nodes, element after element.
+    turns = grid.weights * curvature * rod.length
+    by_element = turns.reshape(grid.elements, -1)
+    element_turns = by_element.sum(axis=1)
     return float(element_turns.max())

@@ -132,8 +132,10 @@ class Preview:
         if key not in self._shifts:
             # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
             with np.errstate(all="ignore"):
-                shift = self._tips(self.with_modes(modes)) - self.tips
-            self._shifts[key] = np.where(np.isfinite(shift), shift, np.inf)
+                x = self.with_modes(modes)
+                shift = self._tips(x) - self.tips
+            finite = np.isfinite(shift)
+            self._shifts[key] = np.where(finite, shift, np.inf)
         return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
@@ -147,6 +149,7 @@ class Preview:
         kept = self.kept(modes)
         regridded = self._regridded(x, grids)
         residual = _numbers(regridded.residual)[kept, 0]
+        # One Newton step with the Jacobian of the reference's grid.
         corrected = x.copy()
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
         # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
@@ -166,8 +169,11 @@ class Preview:
         discretisation = {}
         for name, reference in self.model.discretisation.items():
             discretisation[name] = replace(grids[name], modes=reference.modes)
-        discrete = discrete_scene(self.model.scene, self.model.inputs, discretisation)
-        return System(discrete, Arguments(ca.DM(x), ca.DM(self._inputs)))
+        model = self.model
+        discrete = discrete_scene(model.scene, model.inputs, discretisation)
+        # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
+        arguments = Arguments(ca.DM(x), ca.DM(self._inputs))
+        return System(discrete, arguments)
 
     def _tips(self, x: FloatArray) -> FloatArray:
         """Watched poses on the reference's grid, by the model's functions."""
@@ -212,9 +218,10 @@ def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
     """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
     quaternions = _numbers(quaternion).T
     # Interpolated quaternions are not of unit length.
-    unit = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+    norms = np.linalg.norm(quaternions, axis=1, keepdims=True)
+    matrices = rotations(quaternions / norms)
     positions = _numbers(position).ravel() / length
-    entries: FloatArray = np.concatenate([positions, rotations(unit).ravel()])
+    entries: FloatArray = np.concatenate([positions, matrices.ravel()])
     return entries
 
 

@@ -98,6 +98,7 @@ def solve_scene(
         SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
     """
     if stable:
+        # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
     solver = _SceneSolver(scene, values, stable, progress, report)
@@ -291,6 +292,7 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     most_finer_modes = max(most_modes + FINER_MODES, visible_from)
     resolving_nodes = nodes_for_turn(most_finer_modes, max(turn, solver.unloaded_turn))
     finer_nodes = max(nodes + FINER_NODES, resolving_nodes)
+    # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
     finer = discretise(solver.scene, finer_modes, finer_nodes, solver.reference_transport)
     reference = solver.solve(finer, solution)
     if not reference.converged:

@@ -94,12 +94,15 @@ class Resolution:
 
     def _shift_without(self, count: int) -> float:
         """Largest change of the watched poses with so many modes less of every component."""
-        joined = self.preview.model.discrete.couplings.ties
-        least = CLOSING if joined else 1
+        joints = self.preview.model.discrete.couplings.ties
+        least = CLOSING if joints else 1
         fewer = {}
         for name, discretisation in self._discretisation.items():
-            fewer[name] = tuple(max(min(m, least), m - count) for m in discretisation.modes)
-        return _size(self.preview.mode_shift(fewer))
+            # No component loses its last mode, and none gains one.
+            kept = [max(min(m, least), m - count) for m in discretisation.modes]
+            fewer[name] = tuple(kept)
+        shift = self.preview.mode_shift(fewer)
+        return _size(shift)
 
 
 def _size(shift: FloatArray) -> float:

@@ -163,6 +163,8 @@ def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
 def _with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
     """The scene read again with other entries of its accuracy; None leaves one out."""
     tables = scene_tables(scene)
-    entries = tables.get("accuracy", {}) | changes
+    entries = tables.get("accuracy", {})
+    entries = {**entries, **changes}
     tables["accuracy"] = {key: value for key, value in entries.items() if value is not None}
+    # Read again, so that what the scene format refuses is refused here too.
     return scenes.scene_from_dict(tables)

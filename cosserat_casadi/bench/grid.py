@@ -91,7 +91,11 @@ def candidates(methods: Sequence[str], points: int | None = None) -> list[Candid
 
 def _sizes() -> list[tuple[int, int]]:
     """Pairs of modes and intervals, the cheapest first."""
-    sizes = {(modes, max(2, round(modes * ratio))) for modes in MODES for ratio in RATIOS}
+    sizes = set()
+    for modes in MODES:
+        for ratio in RATIOS:
+            nodes = max(2, round(modes * ratio))
+            sizes.add((modes, nodes))
     # The cost grows about like their product.
     return sorted(sizes, key=lambda size: (size[0] * size[1], size))
 

@@ -90,7 +90,8 @@ class Measurement:
     @property
     def in_plane(self) -> bool:
         """Whether it is a point in the plane of error and compiled cold solve: both were measured."""
-        return isfinite(self.pose_error) and isfinite(self.cold_us)
+        coordinates = (self.pose_error, self.cold_us)
+        return all(map(isfinite, coordinates))
 
 
 class Trial:
@@ -218,7 +219,8 @@ def _described(discretisation: dict[str, Discretisation]) -> dict[str, Any]:
 
 
 def _is_literal(model: Model) -> bool:
-    return any(d.transport == "permuted" for d in model.discretisation.values())
+    transports = {d.transport for d in model.discretisation.values()}
+    return "permuted" in transports
 
 
 def _operations(model: Model) -> tuple[float, float]:

@@ -39,7 +39,12 @@ def fingerprint(scene: scenes.Scene) -> str:
     """What tells rows of one scene and version from those of another: the beginning of a hash."""
     # Rows do not depend on the title, nor on an accuracy that every candidate brings itself.
     plain = scene.model_copy(update={"title": "", "accuracy": scenes.Accuracy()})
-    text = "\0".join([scene_text(plain), version("cosserat-casadi"), ca.CasadiMeta.version()])
+    words = [
+        scene_text(plain),
+        version("cosserat-casadi"),
+        ca.CasadiMeta.version(),
+    ]
+    text = "\0".join(words)
     digest = hashlib.sha256(text.encode())
     return digest.hexdigest()[:16]
 
@@ -141,7 +146,8 @@ def _parsed(name: str, cell: str) -> Any:
 
 def _plain(row: Measurement) -> dict[str, Any]:
     """The row as data of a JSON file."""
-    return {name: _finite(value) for name, value in asdict(row).items()}
+    values = asdict(row)
+    return {name: _finite(value) for name, value in values.items()}
 
 
 def _finite(value: Any) -> Any:

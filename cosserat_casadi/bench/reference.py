@@ -123,14 +123,16 @@ def distance(truth: dict[str, RodState], approximation: dict[str, RodState]) -> 
 
 
 def _position_distance(truth: RodState, approximation: RodState) -> float:
-    differences = np.linalg.norm(truth.position - approximation.position, axis=1)
-    return float(differences.max()) / truth.length
+    differences = truth.position - approximation.position
+    distances = np.linalg.norm(differences, axis=1)
+    return float(distances.max()) / truth.length
 
 
 def _rotation_distance(truth: RodState, approximation: RodState) -> float:
     """The chord 2 sin(θ/2), which keeps its digits for small angles: √2 less than the norm of the difference."""
-    differences = np.linalg.norm(truth.rotation - approximation.rotation, axis=(1, 2))
-    return float(differences.max()) / 2**0.5
+    differences = truth.rotation - approximation.rotation
+    norms = np.linalg.norm(differences, axis=(1, 2))
+    return float(norms.max()) / 2**0.5
 
 
 def _wrench_distance(truth: RodState, approximation: RodState) -> float:

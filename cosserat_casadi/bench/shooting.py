@@ -24,8 +24,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.properties import RodProperties
 
-RELATIVE, ABSOLUTE = 1e-13, 1e-14
-"""Tolerances of the integrator, on variables without unit."""
+RELATIVE = 1e-13
+"""Relative tolerance of the integrator, and of Newton's last correction."""
+
+ABSOLUTE = 1e-14
+"""Absolute tolerance of the integrator, on variables without unit."""
 
 STEP = 1e-30
 """Imaginary step of a derivative."""
@@ -138,7 +141,10 @@ class _State:
         )
 
     def flat(self) -> Batch:
-        return np.concatenate([self.r, self.R.reshape(-1, 9), self.n, self.m], axis=1).ravel()
+        """All numbers in a row, section after section."""
+        matrices = self.R.reshape(-1, 9)
+        rows = np.concatenate([self.r, matrices, self.n, self.m], axis=1)
+        return rows.ravel()
 
 
 @dataclass(frozen=True)
@@ -157,11 +163,14 @@ class _Problem:
     @cached_property
     def units(self) -> FloatArray:
         """N and N m for each unit of the six unknowns."""
-        return self.rod.bending_stiffness / self.rod.length ** np.array([2.0, 2, 2, 1, 1, 1])
+        # EI/ℓ² for forces, EI/ℓ for moments.
+        powers = np.array([2.0, 2, 2, 1, 1, 1])
+        return self.rod.bending_stiffness / self.rod.length**powers
 
     @cached_property
     def _record(self) -> scenes.Rod:
-        return next(rod for rod in self.scene.rods if rod.name == self.rod.name)
+        named = (rod for rod in self.scene.rods if rod.name == self.rod.name)
+        return next(named)
 
     @property
     def origin(self) -> FloatArray:
@@ -171,12 +180,14 @@ class _Problem:
     @cached_property
     def turn(self) -> FloatArray:
         """world_R_section of the base."""
-        return _matrix(base_pose(self._record)[1])
+        _, quaternion = base_pose(self._record)
+        return _matrix(quaternion)
 
     @cached_property
     def support(self) -> Any:
         """What holds the tip; None where it is free."""
-        return next((support for support in self.scene.supports if support.rod == self.rod.name), None)
+        supports = (support for support in self.scene.supports if support.rod == self.rod.name)
+        return next(supports, None)
 
     @cached_property
     def points(self) -> list[Any]:
@@ -242,10 +253,13 @@ class _Problem:
         force, moment = self.line_wrench(X, state.R)
         # r' = R Γ, R' = R K̂, n' = −l, m' = −r' × n − c, here without unit (docs/theory.md, sections 4 to 6).
         r_rate = (state.R @ G[:, :, None])[:, :, 0]
+        # Rows of R crossed with K are rows of R K̂.
         R_rate = np.cross(state.R, K[:, None, :])
-        n_rate = -self.rod.length * force / self.units[:3]
-        m_rate = -np.cross(r_rate, state.n) - self.rod.length * moment / self.units[3:]
-        return _State(r_rate, R_rate, n_rate, m_rate).flat()
+        length = self.rod.length
+        n_rate = -length * force / self.units[:3]
+        m_rate = -np.cross(r_rate, state.n) - length * moment / self.units[3:]
+        rates = _State(r_rate, R_rate, n_rate, m_rate)
+        return rates.flat()
 
     def march(self, unknown: Batch, stops: Sequence[float]) -> list[_State]:
         """States of a batch of base wrenches at ascending stops, point loads there taken off."""

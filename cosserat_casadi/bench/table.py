@@ -47,12 +47,14 @@ ROOM = 178
 def print_bench(console: Console, title: str, reference: Reference, rows: Sequence[Measurement]) -> None:
     """The table with its front marked, what errors are measured against, and why what is missing is missing."""
     console.print(f"[bold]{escape(title or 'Untitled scene')}[/]", highlight=False)
-    console.print(_table(rows, WIDE if console.width >= ROOM else NARROW))
+    columns = WIDE if console.width >= ROOM else NARROW
+    console.print(_table(rows, columns))
     console.print("● on the front: nothing measured is both more exact and faster. Times are of compiled C.")
     console.print(f"Errors are against {escape(reference_words(reference))}.", highlight=False)
     for row in rows:
         if row.note:
-            console.print(f"[dim]{escape(f'{row.name}: {row.note}')}[/]", highlight=False)
+            note = escape(f"{row.name}: {row.note}")
+            console.print(f"[dim]{note}[/]", highlight=False)
 
 
 def reference_words(reference: Reference) -> str:
@@ -84,7 +86,8 @@ def _table(rows: Sequence[Measurement], columns: Sequence[str]) -> Table:
 
 def _order(row: Measurement) -> tuple[str, bool, float]:
     """The scene's own strain model first, then the largest error; what has none stands last."""
-    return row.strain, not isfinite(row.pose_error), -row.pose_error
+    unknown = not isfinite(row.pose_error)
+    return row.strain, unknown, -row.pose_error
 
 
 def _cells(row: Measurement, best: bool) -> dict[str, str]:
@@ -112,7 +115,9 @@ def _cells(row: Measurement, best: bool) -> dict[str, str]:
 
 
 def _power(value: float) -> str:
-    return f"{value:.1e}" if isfinite(value) else "–"
+    if not isfinite(value):
+        return "–"
+    return f"{value:.1e}"
 
 
 def _digits(value: float) -> str:

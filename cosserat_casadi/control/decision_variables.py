@@ -36,7 +36,8 @@ class DecisionVariables:
     def clipped(self, inputs: FloatArray) -> FloatArray:
         """Stacked inputs with the decision variables brought into their ranges."""
         inside = inputs.copy()
-        inside[self.indices] = np.clip(inputs[self.indices], self.lower, self.upper)
+        current = inputs[self.indices]
+        inside[self.indices] = np.clip(current, self.lower, self.upper)
         return inside
 
 
@@ -56,6 +57,7 @@ def decision_variables(model: Model) -> DecisionVariables:
     lower = _physical_lower(model)
     upper = np.full(layout.size, np.inf)
     for bound in model.scene.bounds:
+        # A bound is of all entries of a vector alike.
         entries = layout.slices[bound.input]
         if bound.lower is not None:
             lower[entries] = np.maximum(lower[entries], bound.lower)

@@ -65,7 +65,8 @@ class Inverse:
     @property
     def values(self) -> dict[str, FloatArray]:
         """The inputs found, by name."""
-        return self.solution.model.inputs.unpack(self.solution.inputs)
+        layout = self.solution.model.inputs
+        return layout.unpack(self.solution.inputs)
 
 
 def inverse(model: Model, *, start: Solution | None = None, stable: bool = False) -> Inverse:
@@ -107,6 +108,7 @@ def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
     relaxed = solve(problem.model, result.values, start=result.solution, stable=True)
     if not relaxed.stable:
         return result
+    # Damped about the relaxed inputs now, so that the search stays near the stable branch.
     second = replace(problem, origin=relaxed.inputs).solve(relaxed.x)
     if second.solution.stable:
         return second
@@ -213,7 +215,8 @@ class _LiftedProblem:
         inputs[self.variables.indices] += self.scale * change
         # Rounding may leave a range by the last digit.
         inputs = self.variables.clipped(inputs)
-        solution = solve(self.model, self.model.inputs.unpack(inputs), start=x)
+        values = self.model.inputs.unpack(inputs)
+        solution = solve(self.model, values, start=x)
         errors = target_errors(solution)
         met = solution.converged and all(_met(solution, errors))
         return Inverse(solution, errors, met, rounds)

@@ -67,7 +67,8 @@ def _report(model: Model, report: Report | None) -> None:
 
 
 def _most_modes(model: Model) -> int:
-    return max(max(d.modes) for d in model.discretisation.values())
+    discretisations = model.discretisation.values()
+    return max(max(d.modes) for d in discretisations)
 
 
 def _with_estimate(result: Inverse, reference: Solution) -> Inverse:

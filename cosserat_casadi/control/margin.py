@@ -76,7 +76,8 @@ def _refuse_slack(model: Model) -> None:
 def _energy_units(model: Model) -> FloatArray:
     """Energy unit of each free unknown relative to the largest, shape (n,)."""
     units = variations(model).units
-    return np.asarray(units / units.max(initial=0.0))
+    largest = units.max(initial=0.0)
+    return np.asarray(units / largest)
 
 
 def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
@@ -111,10 +112,12 @@ def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
 
 def _elastic(model: Model) -> FloatArray:
     """Second variation of the elastic energy of the unloaded rods, n×n; zero for floating frames."""
+    # At load factor 0 the loads are gone and constraints yield: on the rods' own blocks only elasticity is left.
     jacobian = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
     elastic = np.zeros_like(jacobian)
     for rod_slice in model.discrete.rod_slices.values():
         elastic[rod_slice, rod_slice] = jacobian[rod_slice, rod_slice]
     free = variations(model).free
-    scaled = _energy_units(model)[:, None] * elastic[np.ix_(free, free)]
+    units = _energy_units(model)
+    scaled = units[:, None] * elastic[np.ix_(free, free)]
     return np.asarray((scaled + scaled.T) / 2)

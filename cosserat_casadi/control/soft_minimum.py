@@ -110,8 +110,9 @@ class _Value(_SpectralFunction):
         changes = ca.MX.sym("change", self._side_by_side(nfwd))
         # Each change of the matrix as one column: the rate is ⟨gradient, change⟩.
         columns = ca.reshape(changes, self.spectra.size**2, nfwd)
-        rates = ca.vec(self.gradient(matrix)).T @ columns
-        return ca.Function(name, [matrix, value, changes], [rates], inames, onames, opts)
+        gradient = ca.vec(self.gradient(matrix))
+        arguments = [matrix, value, changes]
+        return ca.Function(name, arguments, [gradient.T @ columns], inames, onames, opts)
 
     def has_reverse(self, nadj: int) -> bool:
         return True
@@ -121,7 +122,8 @@ class _Value(_SpectralFunction):
         seeds = ca.MX.sym("seeds", 1, nadj)
         # The gradient times each seed, side by side.
         adjoints = ca.kron(seeds, self.gradient(matrix))
-        return ca.Function(name, [matrix, value, seeds], [adjoints], inames, onames, opts)
+        arguments = [matrix, value, seeds]
+        return ca.Function(name, arguments, [adjoints], inames, onames, opts)
 
     def _symbols(self) -> tuple[ca.MX, ca.MX]:
         """Arguments that CasADi gives every derivative: the input and the output."""
@@ -146,12 +148,15 @@ class _Gradient(_SpectralFunction):
         return True
 
     def get_forward(self, nfwd: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
-        matrix = ca.MX.sym("matrix", self._side_by_side(1))
-        gradient = ca.MX.sym("gradient", self._side_by_side(1))
+        square = self._side_by_side(1)
+        matrix = ca.MX.sym("matrix", square)
+        gradient = ca.MX.sym("gradient", square)
         changes = ca.MX.sym("changes", self._side_by_side(nfwd))
+        # CasADi asks for so many directions at once; each number has a callback of its own.
         curvature = _curvature(self.spectra, nfwd)
         changes_of_gradient = curvature(matrix, changes)
-        return ca.Function(name, [matrix, gradient, changes], [changes_of_gradient], inames, onames, opts)
+        arguments = [matrix, gradient, changes]
+        return ca.Function(name, arguments, [changes_of_gradient], inames, onames, opts)
 
     def has_reverse(self, nadj: int) -> bool:
         return True

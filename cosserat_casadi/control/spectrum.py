@@ -64,8 +64,9 @@ class Spectrum:
     @cached_property
     def soft_minimum(self) -> float:
         """−w log Σ exp(−λ/w)."""
+        smallest = self.values[0]
         total = np.sum(self._decays)
-        return float(self.values[0] - self.width * np.log(total))
+        return float(smallest - self.width * np.log(total))
 
     @cached_property
     def gradient(self) -> FloatArray:
@@ -97,13 +98,16 @@ class Spectrum:
     @cached_property
     def _shares(self) -> FloatArray:
         """Derivative of the soft minimum with each eigenvalue, p; they add up to one."""
-        return np.asarray(self._decays / np.sum(self._decays))
+        decays = self._decays
+        return np.asarray(decays / np.sum(decays))
 
     @cached_property
     def _divided(self) -> FloatArray:
         """Divided differences (pᵢ − pⱼ)/(λᵢ − λⱼ), k×k; the derivative −p/w where both are equal."""
-        distance = np.abs(self.values[:, None] - self.values) / self.width
-        larger = np.maximum(self._shares[:, None], self._shares)
+        differences = self.values[:, None] - self.values
+        distance = np.abs(differences) / self.width
+        shares = self._shares
+        larger = np.maximum(shares[:, None], shares)
         equal = distance == 0.0
         divisor = np.where(equal, 1.0, distance)
         # expm1 keeps all digits where two eigenvalues nearly meet.
@@ -124,5 +128,6 @@ def _on_the_null_space(
     # M = L Lᵀ on the null space: its vectors times L⁻ᵀ are M-orthonormal.
     cholesky = np.linalg.cholesky(null_space.T @ measure @ null_space)
     orthonormal = null_space @ np.linalg.inv(cholesky).T
-    values, vectors = np.linalg.eigh(orthonormal.T @ stiffness @ orthonormal)
+    reduced = orthonormal.T @ stiffness @ orthonormal
+    values, vectors = np.linalg.eigh(reduced)
     return np.asarray(values), np.asarray(orthonormal @ vectors)

@@ -65,7 +65,8 @@ def _error(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> ca
     """Error of one target without its weight: 3 numbers, 6 with an orientation, 3k for k points of a curve."""
     length = length_of(model, target)
     if isinstance(target, scenes.CurveTarget):
-        return _curve_error(model, target, x, inputs) / (length * np.sqrt(len(target.at)))
+        error = _curve_error(model, target, x, inputs)
+        return error / (length * np.sqrt(len(target.at)))
     position, quaternion = _pose(model, target, x, inputs)
     position_error = (position - ca.DM(target.position)) / length
     if isinstance(target, scenes.PositionTarget):
@@ -102,10 +103,12 @@ def _pose(
 
 def _half_rotation(target: scenes.PoseTarget, quaternion: Matrix) -> ca.MX:
     """Vector part of the rotation from the target's orientation to the actual one: sin(θ/2) times its axis."""
-    w, *vector = target.quaternion
-    conjugate = ca.MX(ca.DM([w, *(-v for v in vector)]))
+    w, x, y, z = target.quaternion
+    conjugate = ca.MX(ca.DM([w, -x, -y, -z]))
+    # A planar rod leaves entries of its quaternion structurally zero.
     actual = ca.densify(ca.MX(quaternion))
-    return quaternion_product(conjugate, actual)[1:]
+    difference = quaternion_product(conjugate, actual)
+    return difference[1:]
 
 
 def _gap(solution: Solution, target: scenes.Target) -> Gap:
@@ -127,8 +130,8 @@ def _gap(solution: Solution, target: scenes.Target) -> Gap:
 
 
 def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
-    actual = solution.pose(np.array(target.at), target.rod).position
-    differences = actual - np.array(target.points)
+    pose = solution.pose(np.array(target.at), target.rod)
+    differences = pose.position - np.array(target.points)
     distances = np.linalg.norm(differences, axis=1)
     what = f"{len(target.at)} points along {target.rod}"
     return Gap(what, float(distances.max()), None)
@@ -137,7 +140,10 @@ def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
 def _angle(first: FloatArray, second: FloatArray) -> float:
     """Angle of the rotation between two unit quaternions, rad, in [0, π]."""
     scalar = first @ second
-    vector = first[0] * second[1:] - second[0] * first[1:] - np.cross(first[1:], second[1:])
+    # The conjugate of the first times the second.
+    vector = first[0] * second[1:] - second[0] * first[1:]
+    vector = vector - np.cross(first[1:], second[1:])
     # The arc tangent is exact near 0 and near π, where arc cosine and arc sine are not; q and −q are one rotation.
-    half_angle = np.arctan2(np.linalg.norm(vector), abs(scalar))
+    sine = np.linalg.norm(vector)
+    half_angle = np.arctan2(sine, abs(scalar))
     return float(2 * half_angle)

@@ -218,8 +218,8 @@ def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int) 
 
 def _number(value: Any) -> float:
     # A boolean is an integer in Python, and what is not a number fails the comparison.
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not abs(value) <= sys.float_info.max:
+    is_number = isinstance(value, int | float)
+    if isinstance(value, bool) or not is_number or not abs(value) <= sys.float_info.max:
         raise _Refused(f"must be a finite number, got {shown(value)}", REMEDY)
     return float(value)
 

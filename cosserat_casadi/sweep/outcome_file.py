@@ -108,7 +108,12 @@ def _is_parquet(path: Path) -> bool:
 
 def _numbers(column: Sequence[Any]) -> FloatArray:
     """Numbers of a column; NaN where the cell is empty."""
-    return np.array([np.nan if cell in ("", None) else float(cell) for cell in column])
+    numbers = []
+    for cell in column:
+        # CSV leaves an empty text, Parquet nothing.
+        missing = cell is None or cell == ""
+        numbers.append(np.nan if missing else float(cell))
+    return np.array(numbers)
 
 
 def _write_csv(sweep: Sweep, path: Path) -> None:

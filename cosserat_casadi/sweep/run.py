@@ -77,6 +77,7 @@ class Plan:
     def columns(self) -> tuple[str, ...]:
         """Columns of numbers that the results will have."""
         # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
+        # The outcome, which comes first, is no number.
         names = row_results(self.scene)[1:]
         results = [name for name in names if name not in self.table.columns]
         return (*self.table.columns, *results)
@@ -273,7 +274,9 @@ def _modelled_parts(variants: Variants, choice: Choice, chunk: Chunk) -> list[Pa
     parts: list[Part] = []
     for variant, rows in chunk.pieces:
         scene = choice.scene(variants.entries[variant].scene)
-        parts.append((RowModel(scene_text(scene)), variants.inputs[rows]))
+        # Text, since models of CasADi do not travel to other processes.
+        model = RowModel(scene_text(scene))
+        parts.append((model, variants.inputs[rows]))
     return parts
 
 

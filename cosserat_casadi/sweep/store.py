@@ -41,7 +41,9 @@ class Store:
     def start(self, head: Mapping[str, Any]) -> None:
         """Begin a sweep, over whatever the file held."""
         self._file = self.path.open("wb")
-        self._file.write(json.dumps(head).encode() + b"\n")
+        line = json.dumps(head).encode() + b"\n"
+        self._file.write(line)
+        # Out of this process at once, so that a kill does not lose it.
         self._file.flush()
 
     def resume(self, width: int) -> dict[int, FloatArray]:
@@ -89,6 +91,7 @@ def _entries(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
     """Whole entries; what follows a damaged one is not trusted."""
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)
+        # A damaged size may be negative, which would read all that follows.
         content = file.read(size) if size > 0 else b""
         # No chunk is empty: zeros are what a file system may leave after a failure of power.
         if not content or len(content) != size or zlib.crc32(content) != checksum:

@@ -64,7 +64,8 @@ class Variants:
 
     def of_row(self, row: int) -> Variant:
         """The scene that a row belongs to."""
-        return next(entry for entry in self.entries if row in entry.rows)
+        holders = (entry for entry in self.entries if row in entry.rows)
+        return next(holders)
 
     def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
         """Inputs of a row by name."""
@@ -221,8 +222,10 @@ def _groups(values: FloatArray) -> Iterator[tuple[FloatArray, npt.NDArray[np.int
 
 def _of_table(problem: Problem, table: Table, row: int) -> Problem:
     """A fault of an override as one of the table."""
-    where = problem.where.removeprefix("--set ")
-    return Problem(f"{table.where_of(row)}, {where}", problem.problem, problem.remedy)
+    # Parameters are set as overrides, which a reader of the table has not written.
+    column = problem.where.removeprefix("--set ")
+    where = f"{table.where_of(row)}, {column}"
+    return Problem(where, problem.problem, problem.remedy)
 
 
 def _refused_inputs(

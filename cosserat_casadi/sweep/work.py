@@ -55,7 +55,8 @@ class Chunk:
     @property
     def rows(self) -> npt.NDArray[np.int64]:
         """Rows in the table, in the order in which they are solved."""
-        return np.concatenate([rows for _, rows in self.pieces])
+        pieces = [rows for _, rows in self.pieces]
+        return np.concatenate(pieces)
 
 
 def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk]:
@@ -82,7 +83,8 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk
 
 def solve_parts(parts: Sequence[Part]) -> FloatArray:
     """Results of all rows of a chunk; they depend on these arguments alone."""
-    return np.vstack([answer.solve(inputs) for answer, inputs in parts])
+    results = [answer.solve(inputs) for answer, inputs in parts]
+    return np.vstack(results)
 
 
 def _pieces(rows: Sequence[tuple[int, int]]) -> Iterator[tuple[int, npt.NDArray[np.int64]]]:
