@@ -85,12 +85,12 @@ def solve_scene(
     The discretisation suits these inputs: a strain that they do not excite has one mode. Where
     the scene fixes modes or nodes they are used as they are, and only the error is estimated.
 
-    A held rod whose load path ends at an unstable equilibrium, or at none, is let settle to a stable one.
+    A held rod whose load path ends at an unstable equilibrium, or at none, is relaxed to a stable one.
 
     Args:
         scene: a validated scene.
         values: inputs by name; those not named keep the scene's values.
-        stable: whether a free rod is let settle too; under loads that have a potential.
+        stable: whether a free rod is relaxed too; under loads that have a potential.
         progress: told the share of the load path that is done.
         report: told the discretisation being solved.
 

@@ -91,8 +91,8 @@ def _chosen_names(model: Model) -> list[str]:
     """Names of the decision variables, in the order of the stacked inputs."""
     scene = model.scene
     bounded = tuple(bound.input for bound in scene.bounds)
-    wanted = bounded if scene.inputs is None else scene.inputs
-    return [name for name in model.inputs.names if name in wanted]
+    changeable = bounded if scene.inputs is None else scene.inputs
+    return [name for name in model.inputs.names if name in changeable]
 
 
 def _physical_lower(model: Model) -> FloatArray:

@@ -78,8 +78,8 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
     Args:
         model: of a scene with targets, and with inputs that it lists or bounds.
         start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
-        stable: whether a stable equilibrium is wanted: from an unstable one the rod is let settle and the search goes
-            on from there, once. For loads that have a potential.
+        stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
+            once. For loads that have a potential.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads

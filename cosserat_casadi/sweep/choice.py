@@ -42,11 +42,11 @@ class Choice:
     converged: int = 0
     error_estimate: float | None = None
 
-    def scene(self, given: Scene) -> Scene:
-        """A scene on this discretisation."""
+    def scene(self, variant: Scene) -> Scene:
+        """The scene of a variant on this discretisation."""
         if self.discretisation is None:
-            return given
-        return fixed(given, self.discretisation)
+            return variant
+        return fixed(variant, self.discretisation)
 
     def plain(self) -> dict[str, Any]:
         """The choice as data of a JSON file."""

@@ -293,11 +293,11 @@ def _sweep(
     for chunk in work:
         results[chunk.rows] = done[chunk.number]
     checked = check(plan.variants, choice, results, progress)
-    found = plan.columns[len(plan.table.columns) :]
-    result_columns = [names.index(name) for name in found]
+    result_names = plan.columns[len(plan.table.columns) :]
+    result_columns = [names.index(name) for name in result_names]
     sweep = Sweep(
         swept=plan.table.columns,
-        found=found,
+        found=result_names,
         values=np.hstack([plan.table.values, results[:, result_columns]]),
         outcomes=results[:, 0].astype(np.int64),
         record={},
