@@ -27,8 +27,8 @@ from rows import append, read
 
 from cosserat_casadi import Solution, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
+from cosserat_casadi.accuracy.metrics import largest_turn, prolong
 from cosserat_casadi.accuracy.preview import Preview
-from cosserat_casadi.accuracy.refine import largest_turn, prolong
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiled import find_compiler
@@ -158,7 +158,7 @@ def true_tip(near: Solution) -> tuple[np.ndarray, str]:
 
 
 def far_finer(near: Solution) -> Solution:
-    """Far finer than the witness of the tightest tolerance.
+    """Far finer than the reference solution of the tightest tolerance.
 
     Raises:
         RuntimeError: it does not converge.
@@ -252,7 +252,7 @@ class Brute:
             for order in [None, *[rng.permutation(len(start)) for _ in range(DESCENTS)]]:
                 modes = self.greedy(start, shift) if order is None else self.in_turn(start, shift, order)
                 found.add(replace(self.near, modes=modes, nodes=nodes, transport=transport))
-        return sorted(found, key=lambda d: cost_of(self.preview.witness, d))
+        return sorted(found, key=lambda d: cost_of(self.preview.reference, d))
 
     def grids(self) -> Iterator[tuple[str, int, np.ndarray]]:
         """Integrator, intervals and change of the tip that they make."""

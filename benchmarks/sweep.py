@@ -25,7 +25,7 @@ from cosserat_casadi.scene import Scene
 from cosserat_casadi.sweep import run
 from cosserat_casadi.sweep.run import plan_sweep, run_sweep
 from cosserat_casadi.sweep.table import table_of
-from cosserat_casadi.sweep.variants import variants
+from cosserat_casadi.sweep.variants import variants_of
 
 SCENE = Path(__file__).parents[1] / "examples" / "nitinol_wire.toml"
 DISCRETISATION = ["accuracy.modes=[6,5,1]", "accuracy.nodes=8", 'accuracy.rotation="magnus6"']
@@ -67,7 +67,7 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=3)
     options = parser.parse_args()
     scene = read_scene(SCENE, DISCRETISATION)
-    swept = variants(scene, table_of(pushes(1))).entries[0].scene
+    swept = variants_of(scene, table_of(pushes(1))).entries[0].scene
     library = row_library(build(swept))
     run.row_library = lambda model: library
     run.check = lambda *given: []

@@ -1,4 +1,4 @@
-"""The cheapest discretisation whose tips stay within a bound of those of a witness.
+"""The cheapest discretisation whose tips stay within a bound of those of a reference solution.
 
 Modes go first: each strain component of each rod keeps as few as its effect on the tips allows, which a tail of
 coefficients does not tell. Then every rod gets the cheapest grid: intervals and order of the rotation integrator
@@ -23,17 +23,26 @@ from cosserat_casadi.rod.discretisation import Discretisation
 MODES_SHARE = 0.6
 """Share of the bound that modes may use before grids are chosen."""
 
-ORDERS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magnus6", "magnus8")))
+TRANSPORTS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magnus6", "magnus8")))
 """Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
-LOOKS = 4
-"""Most grids looked at for one rod and one integrator: each costs about a third of building a model."""
+MOST_TRIALS = 4
+"""Most grids previewed for one rod and one integrator: each costs about a third of building a model."""
 
-LIKELY, LEAST_LIKELY = 1.35, 1.15
-"""Intervals for each mode of the component that has most: where a search begins, and below what a second is not."""
+LIKELY = 1.35
+"""Intervals for each mode of the component that has most, where a search begins."""
+
+LEAST_LIKELY = 1.15
+"""Intervals for each mode below which a second integrator is not tried."""
 
 POWERS = {"magnus4": 4.5, "magnus6": 7.0, "magnus8": 9.0}
 """Powers of the intervals with which the change of the tips falls where only one grid is known."""
+
+STEEPEST = 30.0
+"""Largest power that is believed where two grids are known."""
+
+FLATTEST = 4.0
+"""Smallest power that is believed where two grids are known."""
 
 AIM = 0.7
 """Share of the bound that the next grid is aimed at."""
@@ -41,16 +50,19 @@ AIM = 0.7
 FEWEST = 2
 """Chebyshev intervals below which nothing is tried."""
 
-MORE = 1.1
-"""Factor on the intervals that would just resolve the witness: the trimmed rod may turn a little more somewhere."""
+NODES_MARGIN = 1.1
+"""Factor on the intervals that would just resolve the reference: a coarser rod may turn a little more somewhere."""
 
 UNBOUNDED = 1e9
 """Excess of a grid that does not resolve the rod at all, so that its tips may be anything, no numbers too."""
 
+ROUNDING = 1e-9
+"""Smallest excess of a grid that is told from rounding."""
+
 
 @dataclass(frozen=True)
-class Trimmed:
-    """What a trim found.
+class Coarsened:
+    """A coarser discretisation of every rod, and where its equilibrium is.
 
     Attributes:
         discretisation: one for every rod.
@@ -62,119 +74,147 @@ class Trimmed:
 
 
 @dataclass
-class Trim:
-    """One search below a witness.
+class Coarsening:
+    """One search below a reference solution.
 
     Attributes:
-        preview: the witness, and what it foresees.
+        preview: the reference, and what it foresees.
         bound: largest change of a tip pose: position over length, rotation entries.
     """
 
     preview: Preview
     bound: float
 
-    def run(self) -> Trimmed:
+    def run(self) -> Coarsened:
         """The cheapest discretisation found."""
-        modes = self._fewer(self._uniform(), np.zeros_like(self.preview.tips), MODES_SHARE * self.bound)
-        grids, shift = self._grids(modes)
-        trials = [self._fewer(start, shift, self.bound) for start in self._starts(modes, shift)]
-        modes = min(trials, key=lambda trial: self._time(grids, trial))
-        chosen = {name: replace(grids[name], modes=modes[name]) for name in grids}
-        return Trimmed(chosen, self.preview.with_modes(modes)[self.preview.kept(modes)])
+        no_shift = np.zeros_like(self.preview.tips)
+        uniform_modes = self._uniform_modes()
+        first_modes = self._drop_modes(uniform_modes, no_shift, MODES_SHARE * self.bound)
+        grids, shift = self._coarsen_grids(first_modes)
+        starts = self._starting_modes(first_modes, shift)
+        trials = [self._drop_modes(start, shift, self.bound) for start in starts]
+        modes = min(trials, key=lambda trial: self._scene_time(grids, trial))
+        chosen = {name: replace(grid, modes=modes[name]) for name, grid in grids.items()}
+        unknowns = self.preview.with_modes(modes)
+        kept = self.preview.kept(modes)
+        return Coarsened(chosen, unknowns[kept])
+
+    def rod_time(self, name: str, discretisation: Discretisation) -> float:
+        """Foreseen time of one rod, µs."""
+        model = self.preview.model
+        rod = model.discrete.rods[name].properties
+        spread = spread_on(model.scene, name)
+        return foreseen_time(rod, discretisation, spread)
+
+    @cached_property
+    def alike(self) -> list[tuple[str, ...]]:
+        """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
+        discrete = self.preview.model.discrete
+        if not discrete.is_assembly:
+            return [(name,) for name in discrete.rods]
+        groups: dict[object, tuple[str, ...]] = {}
+        for name, discrete_rod in discrete.rods.items():
+            # One choice for all: their kernels can then be shared in generated code.
+            key = (discrete_rod.properties.admitted, discrete_rod.grid.elements)
+            group = groups.get(key, ())
+            groups[key] = (*group, name)
+        return list(groups.values())
+
+    def _scene_time(self, grids: Mapping[str, Discretisation], modes: Modes) -> float:
+        """Foreseen time of all rods together, µs."""
+        time = 0.0
+        for name, grid in grids.items():
+            discretisation = replace(grid, modes=modes[name])
+            time += self.rod_time(name, discretisation)
+        return time
 
     # Modes
 
-    @property
-    def _full(self) -> dict[str, tuple[int, ...]]:
-        return {name: d.modes for name, d in self.preview.model.discretisation.items()}
-
-    def _uniform(self) -> dict[str, tuple[int, ...]]:
+    def _uniform_modes(self) -> dict[str, tuple[int, ...]]:
         """Fewest modes, the same number everywhere, within the share of the modes."""
-        best = self._full
-        for most in range(max(map(max, best.values())) - 1, 0, -1):
-            trial = {name: tuple(min(m, most) for m in modes) for name, modes in best.items()}
-            if _size(self.preview.mode_shift(trial)) > MODES_SHARE * self.bound:
+        discretisation = self.preview.model.discretisation
+        best = {name: d.modes for name, d in discretisation.items()}
+        for ceiling in range(_most(best) - 1, 0, -1):
+            trial = _below_ceiling(best, ceiling)
+            shift = self.preview.mode_shift(trial)
+            if _size(shift) > MODES_SHARE * self.bound:
                 break
             best = trial
         return best
 
-    def _starts(self, modes: Modes, shift: FloatArray) -> list[Modes]:
+    def _starting_modes(self, modes: Modes, grid_shift: FloatArray) -> list[Modes]:
         """Modes to drop more from: those given, and all that are left below lower ceilings within the bound.
 
         Changes of the components may make up for each other: fewer modes everywhere may do where one less does not.
         """
         starts: list[Modes] = [modes]
-        for ceiling in range(max(map(max, modes.values())) - 1, 0, -1):
-            trial = {name: tuple(min(m, ceiling) for m in counts) for name, counts in modes.items()}
-            change = self.preview.mode_shift(trial)
-            if max(_size(change), _size(change + shift)) > self.bound:
+        for ceiling in range(_most(modes) - 1, 0, -1):
+            trial = _below_ceiling(modes, ceiling)
+            # Lower ceilings leave out what this one leaves out, and more.
+            if self._largest_shift(trial, grid_shift) > self.bound:
                 break
             starts.append(trial)
         return starts
 
-    def _time(self, grids: Mapping[str, Discretisation], modes: Modes) -> float:
-        """Foreseen time of all rods together, µs."""
-        return sum(self.time(name, replace(grid, modes=modes[name])) for name, grid in grids.items())
-
-    def time(self, name: str, discretisation: Discretisation) -> float:
-        """Foreseen time of one rod, µs."""
-        model = self.preview.model
-        return foreseen_time(model.discrete.rods[name].properties, discretisation, spread_on(model.scene, name))
-
-    def _fewer(self, modes: Modes, shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
+    def _drop_modes(self, modes: Modes, grid_shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
         """Modes dropped one by one, each time where most cost goes for the least change of the tips.
 
         Args:
             modes: where to begin.
-            shift: change of the tips that the grids make.
+            grid_shift: change of the tips that the grids make.
             bound: on the change of the tips that modes alone make, and on that which both make together.
         """
-        here = dict(modes)
-        open_places = {(names, place) for names in self._alike for place in range(len(here[names[0]]))}
-        while open_places:
-            trials = []
-            for names, place in sorted(open_places):
-                if here[names[0]][place] == 1:
-                    open_places.discard((names, place))
+        current = dict(modes)
+        droppable: set[tuple[tuple[str, ...], int]] = set()
+        for names in self.alike:
+            components = range(len(current[names[0]]))
+            droppable.update((names, component) for component in components)
+        while droppable:
+            best_rate = np.inf
+            best_trial = None
+            for names, component in sorted(droppable):
+                if current[names[0]][component] == 1:
+                    droppable.discard((names, component))
                     continue
-                trial = _less(here, names, place)
-                change = self.preview.mode_shift(trial)
-                size = max(_size(change), _size(change + shift))
-                if size <= bound:
-                    trials.append((size / self._saving(names[0], place), trial))
-                else:
+                trial = _one_less(current, names, component)
+                shift = self._largest_shift(trial, grid_shift)
+                if not shift <= bound:
                     # What a component gives up grows with what others have: it stays closed.
-                    open_places.discard((names, place))
-            if trials:
-                here = min(trials, key=lambda trial: trial[0])[1]
-        return here
+                    droppable.discard((names, component))
+                    continue
+                rate = shift / self._mode_weight(names[0], component)
+                if best_trial is None or rate < best_rate:
+                    best_rate = rate
+                    best_trial = trial
+            if best_trial is not None:
+                current = best_trial
+        return current
 
-    @cached_property
-    def _alike(self) -> list[tuple[str, ...]]:
-        """Rods that are discretised alike: in an assembly those that admit the same strains, else each for itself."""
-        discrete = self.preview.model.discrete
-        if not discrete.is_assembly:
-            return [(name,) for name in discrete.rods]
-        found: dict[object, tuple[str, ...]] = {}
-        for name, discrete_rod in discrete.rods.items():
-            key = (discrete_rod.properties.admitted, discrete_rod.grid.elements)
-            found[key] = (*found.get(key, ()), name)
-        return list(found.values())
+    def _largest_shift(self, modes: Modes, grid_shift: FloatArray) -> float:
+        """Largest change of the tips by modes alone, or by modes and grids together."""
+        mode_shift = self.preview.mode_shift(modes)
+        together = mode_shift + grid_shift
+        return max(_size(mode_shift), _size(together))
 
-    def _saving(self, name: str, place: int) -> float:
+    def _mode_weight(self, name: str, component: int) -> float:
         """Weight of a mode: those of bending and torsion cost about twice those of shear and extension."""
-        return 2.0 if self.preview.model.discrete.rods[name].properties.admitted[place] < 3 else 1.0
+        rod = self.preview.model.discrete.rods[name].properties
+        turns_sections = rod.admitted[component] < 3
+        return 2.0 if turns_sections else 1.0
 
     # Grids
 
-    def _grids(self, modes: Modes) -> tuple[dict[str, Discretisation], FloatArray]:
+    def _coarsen_grids(self, modes: Modes) -> tuple[dict[str, Discretisation], FloatArray]:
         """The cheapest grid of every rod within the bound, and the change of the tips that all make together."""
-        grids = {n: replace(d, modes=modes[n]) for n, d in self.preview.model.discretisation.items()}
+        grids = {}
+        for name, discretisation in self.preview.model.discretisation.items():
+            grids[name] = replace(discretisation, modes=modes[name])
         shift = np.zeros_like(self.preview.tips)
-        for names in self._alike:
+        for names in self.alike:
             search = _GridSearch(self, modes, grids, names, shift)
-            found, shift = search.cheapest()
-            grids.update({name: replace(grids[name], nodes=found.nodes, transport=found.transport) for name in names})
+            cheapest, shift = search.cheapest()
+            for name in names:
+                grids[name] = replace(grids[name], nodes=cheapest.nodes, transport=cheapest.transport)
         return grids, shift
 
 
@@ -183,113 +223,184 @@ class _GridSearch:
     """Search for the grid of rods that are discretised alike, those of the others kept.
 
     Attributes:
-        trim: bound and preview.
+        coarsening: bound and preview.
         modes: modes of every rod.
         grids: discretisations of every rod.
         names: the rods.
-        before: change of the tips that the grids make now.
+        shift_before: change of the tips that the grids make now.
     """
 
-    trim: Trim
+    coarsening: Coarsening
     modes: Modes
     grids: dict[str, Discretisation]
     names: tuple[str, ...]
-    before: FloatArray
-    _seen: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
+    shift_before: FloatArray
+    _shifts: dict[tuple[str, int], FloatArray] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
-        """One of the rods."""
+        """The first of the rods, which stands for all."""
         return self.names[0]
 
     def cheapest(self) -> tuple[Discretisation, FloatArray]:
         """The cheapest grid within the bound and the change of the tips with it."""
+        # The grid of the reference is known to do, if nothing cheaper is found.
         start = self.grids[self.name]
-        best, cost = (start.transport, start.nodes), np.inf  # a grid that is known to do
-        turning = len(self.trim.preview.model.discrete.rods[self.name].properties.turning_axes)
-        orders = next(names for least, names in ORDERS if self.trim.bound >= least)
-        for order in orders if turning > 1 else orders[:1]:
-            most = self._affordable(order, cost, start.nodes)
-            found = self._fewest(order, most, first=cost == np.inf)
-            if found is not None:
-                best, cost = (order, found), self._cost(order, found)
-        return self._grid(*best), self._seen.get(best, self.before)
+        best = start
+        best_time = np.inf
+        for transport in self._candidate_transports():
+            most = self._affordable(transport, best_time, start.nodes)
+            nodes = self._fewest(transport, most, first=best_time == np.inf)
+            if nodes is not None:
+                best = self._grid(transport, nodes)
+                best_time = self._time(transport, nodes)
+        shift = self._shifts.get((best.transport, best.nodes), self.shift_before)
+        return best, shift
 
-    def _fewest(self, order: str, most: int, first: bool) -> int | None:
-        """Fewest intervals, at most ``most``, with which an integrator stays within the bound; None if none do."""
+    def _candidate_transports(self) -> tuple[str, ...]:
+        """Rotation integrators to compare; all are one where a rod turns about one axis."""
+        suitable = (names for least, names in TRANSPORTS if self.coarsening.bound >= least)
+        transports = next(suitable)
+        rod = self._preview.model.discrete.rods[self.name].properties
+        if len(rod.turning_axes) > 1:
+            return transports
+        return transports[:1]
+
+    def _fewest(self, transport: str, most: int, first: bool) -> int | None:
+        """Fewest intervals with which an integrator stays within the bound, by bisection with aimed guesses.
+
+        Args:
+            transport: the integrator.
+            most: number of intervals beyond which it is too expensive.
+            first: whether no integrator is known to do yet.
+
+        Returns:
+            None if none do.
+        """
         likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
-        if most < (self._fewest_resolving if first else LEAST_LIKELY / LIKELY * likely):
+        sufficient = most + 1
+        insufficient = min(most, self._fewest_resolving) - 1
+        if first:
+            least_promising: float = self._fewest_resolving
+            guess = min(most, max(likely, insufficient + 1))
+        else:
+            # Only where all that is affordable does, fewer intervals are of interest.
+            least_promising = LEAST_LIKELY / LIKELY * likely
+            guess = most
+        if most < least_promising:
             return None
-        enough, short = most + 1, min(most, self._fewest_resolving) - 1
-        guess = min(most, max(likely, short + 1)) if first else most
-        for _ in range(LOOKS):
-            if self._within(order, guess):
-                enough = guess
+        # The bracket (insufficient, sufficient] closes from both ends.
+        for _ in range(MOST_TRIALS):
+            if self._within(transport, guess):
+                sufficient = guess
             else:
-                short = guess
-            if enough - short <= 1:
+                insufficient = guess
+            if sufficient - insufficient <= 1:
                 break
-            guess = min(max(self._next(order, guess), short + 1), enough - 1)
-        return enough if enough <= most else None
+            aimed = self._aimed(transport, guess)
+            guess = min(max(aimed, insufficient + 1), sufficient - 1)
+        if sufficient > most:
+            return None
+        return sufficient
 
-    def _next(self, order: str, here: int) -> int:
+    def _aimed(self, transport: str, nodes: int) -> int:
         """Intervals that should just do: the change by the grid alone falls like a power of them, a high one."""
-        power, excess = POWERS[order], self._excess(order, here)
-        known = [n for o, n in self._seen if o == order and n != here]
-        if known:
-            near = min(known, key=lambda n: abs(n - here))
-            slope = np.log(self._excess(order, near) / excess) / np.log(here / near)
-            power = float(np.clip(slope, 4.0, 30.0))
-        return int(np.ceil(here * (excess / AIM) ** (1 / power) - 0.1))
+        power = POWERS[transport]
+        excess = self._excess(transport, nodes)
+        compared = [n for name, n in self._shifts if name == transport and n != nodes]
+        if compared:
+            nearest = min(compared, key=lambda n: abs(n - nodes))
+            ratio = self._excess(transport, nearest) / excess
+            slope = np.log(ratio) / np.log(nodes / nearest)
+            power = float(np.clip(slope, FLATTEST, STEEPEST))
+        # The excess falls with this power; it is to come down to the aim.
+        factor = (excess / AIM) ** (1 / power)
+        # A tenth of an interval too many is not worth a whole one.
+        return int(np.ceil(nodes * factor - 0.1))
 
-    def _within(self, order: str, nodes: int) -> bool:
+    def _within(self, transport: str, nodes: int) -> bool:
         """Whether grids alone, and grids and modes together, change the tips by less than the bound."""
-        together = self._shift(order, nodes) + self.trim.preview.mode_shift(self.modes)
-        return max(self._excess(order, nodes), _size(together) / self.trim.bound) <= 1
+        grid_shift = self._shift(transport, nodes)
+        mode_shift = self._preview.mode_shift(self.modes)
+        excess = self._excess(transport, nodes)
+        # Grids alone too: a change that happens to cancel that of the modes would be luck.
+        together = grid_shift + mode_shift
+        excess_together = _size(together) / self.coarsening.bound
+        return max(excess, excess_together) <= 1
 
-    def _excess(self, order: str, nodes: int) -> float:
+    def _excess(self, transport: str, nodes: int) -> float:
         """Change of the tips by grids alone over the bound; rounding apart, and bounded where nothing is resolved."""
-        excess = _size(self._shift(order, nodes)) / self.trim.bound
-        return max(excess, 1e-9) if excess < UNBOUNDED else UNBOUNDED
+        excess = _size(self._shift(transport, nodes)) / self.coarsening.bound
+        if excess < UNBOUNDED:
+            return max(excess, ROUNDING)
+        return UNBOUNDED
 
-    def _shift(self, order: str, nodes: int) -> FloatArray:
-        if (order, nodes) not in self._seen:
-            trial = self.grids | {n: replace(self.grids[n], nodes=nodes, transport=order) for n in self.names}
-            self._seen[order, nodes] = self.trim.preview.grid_shift(self._unknowns, self.modes, trial)
-        return self._seen[order, nodes]
+    def _shift(self, transport: str, nodes: int) -> FloatArray:
+        """Change of the tips with this grid on the rods that are discretised alike."""
+        key = (transport, nodes)
+        if key not in self._shifts:
+            trial = dict(self.grids)
+            for name in self.names:
+                trial[name] = replace(self.grids[name], nodes=nodes, transport=transport)
+            self._shifts[key] = self._preview.grid_shift(self._unknowns, self.modes, trial)
+        return self._shifts[key]
+
+    @property
+    def _preview(self) -> Preview:
+        return self.coarsening.preview
 
     @cached_property
     def _fewest_resolving(self) -> int:
-        """Intervals below which one would turn too far, from the turns of the witness."""
-        witness = self.trim.preview.witness
-        turning = (
-            float(witness.model.coarseness(witness.x, witness.inputs)) * witness.model.discretisation[self.name].nodes
-        )
-        return max(FEWEST, ceil(MORE * turning))
+        """Intervals below which one would turn too far, from the turns of the reference."""
+        reference = self._preview.reference
+        model = reference.model
+        nodes = model.discretisation[self.name].nodes
+        # The turn of an interval is inverse to their number.
+        resolution_index = float(model.coarseness(reference.x, reference.inputs))
+        resolving = resolution_index * nodes
+        return max(FEWEST, ceil(NODES_MARGIN * resolving))
 
     @cached_property
     def _unknowns(self) -> FloatArray:
-        return self.trim.preview.with_modes(self.modes)
+        return self._preview.with_modes(self.modes)
 
-    def _affordable(self, order: str, cost: float, most: int) -> int:
+    def _affordable(self, transport: str, time: float, most: int) -> int:
         """Most intervals with which an integrator is cheaper than what is known."""
-        while most >= FEWEST and self._cost(order, most) >= cost:
+        while most >= FEWEST and self._time(transport, most) >= time:
             most -= 1
         return most
 
-    def _cost(self, order: str, nodes: int) -> float:
-        return self.trim.time(self.name, self._grid(order, nodes))
+    def _time(self, transport: str, nodes: int) -> float:
+        grid = self._grid(transport, nodes)
+        return self.coarsening.rod_time(self.name, grid)
 
-    def _grid(self, order: str, nodes: int) -> Discretisation:
-        return replace(self.grids[self.name], nodes=nodes, transport=order)
+    def _grid(self, transport: str, nodes: int) -> Discretisation:
+        current = self.grids[self.name]
+        return replace(current, nodes=nodes, transport=transport)
 
 
-def _less(modes: Modes, names: tuple[str, ...], place: int) -> dict[str, tuple[int, ...]]:
-    """The same modes but for one less in a place of some rods."""
+def _one_less(modes: Modes, names: tuple[str, ...], component: int) -> dict[str, tuple[int, ...]]:
+    """The same modes but for one less of a component of some rods."""
+    # Rods that are discretised alike have the same modes.
     counts = list(modes[names[0]])
-    counts[place] -= 1
-    return {**modes, **dict.fromkeys(names, tuple(counts))}
+    counts[component] -= 1
+    changed = dict.fromkeys(names, tuple(counts))
+    return {**modes, **changed}
+
+
+def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
+    """The same modes, but no component with more than a ceiling."""
+    lowered = {}
+    for name, counts in modes.items():
+        lowered[name] = tuple(min(m, ceiling) for m in counts)
+    return lowered
+
+
+def _most(modes: Modes) -> int:
+    most_of_rods = [max(counts) for counts in modes.values()]
+    return max(most_of_rods)
 
 
 def _size(shift: FloatArray) -> float:
-    return float(np.abs(shift).max())
+    sizes = np.abs(shift)
+    return float(sizes.max())

@@ -79,14 +79,22 @@ class Operations:
 
 def spread_on(scene: scenes.Scene, rod: str) -> Spread:
     """What the scene spreads along a rod."""
-    loads = [load for load in scene.loads if load.kind == "distributed_wrench" and load.rod == rod]
-    return Spread(
-        follower=any("force" in load.model_fields_set and load.frame == "body" for load in loads),
-        couple=any("moment" in load.model_fields_set for load in loads),
-    )
+    follower = False
+    couple = False
+    for load in scene.loads:
+        if load.kind != "distributed_wrench" or load.rod != rod:
+            continue
+        given = load.model_fields_set
+        follower = follower or ("force" in given and load.frame == "body")
+        couple = couple or "moment" in given
+    return Spread(follower, couple)
 
 
-def foreseen_operations(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> Operations:
+def foreseen_operations(
+    rod: RodProperties,
+    chosen: Discretisation,
+    spread: Spread = Spread(),
+) -> Operations:
     """Scalar operations of one rod's residual and Jacobian, approximately.
 
     Args:
@@ -94,19 +102,40 @@ def foreseen_operations(rod: RodProperties, chosen: Discretisation, spread: Spre
         chosen: a candidate; its transport is one of the Magnus methods.
         spread: loads along the rod.
     """
-    function, linear, square = _PLANAR if len(rod.turning_axes) < 2 else _LAWS[chosen.transport]
-    elements, nodes, intervals = chosen.elements, chosen.elements * (chosen.nodes + 1), chosen.elements * chosen.nodes
+    planar = len(rod.turning_axes) < 2
+    function, linear, square = _PLANAR if planar else _LAWS[chosen.transport]
+    elements = chosen.elements
+    nodes = elements * (chosen.nodes + 1)
+    intervals = elements * chosen.nodes
     turning, stretching = _coordinates(rod, chosen)
-    # A coordinate moves the elements beyond its own only: these are shares of all pairs.
-    once, twice = (elements + 1) / (2 * elements), (elements + 1) * (2 * elements + 1) / (6 * elements**2)
+    # A coordinate moves the elements beyond its own only: these are shares of all pairs, and of all triples.
+    once = (elements + 1) / (2 * elements)
+    twice = (elements + 1) * (2 * elements + 1) / (6 * elements**2)
     structure = linear * once * turning + square * (once * turning) ** 2
     structure += 32 * once * stretching + 0.6 * once**2 * turning * stretching
-    follower = turning * (6 * once * nodes**2 + 9 * nodes + 6 * once * nodes * (turning + stretching))
-    couple = 3 * twice * nodes * turning**2 + 9 * nodes * turning if len(rod.turning_axes) > 1 else 0.0
-    return Operations(intervals * function, intervals * structure, spread.follower * follower, spread.couple * couple)
+    follower = 0.0
+    if spread.follower:
+        # The product with S that dead forces do without (docs/theory.md, section 6).
+        products = 6 * once * nodes**2
+        variations = 6 * once * nodes * (turning + stretching)
+        follower = turning * (products + 9 * nodes + variations)
+    couple = 0.0
+    # About one axis rotations commute, and a moment per length leaves the Jacobian as it is.
+    if spread.couple and not planar:
+        couple = 3 * twice * nodes * turning**2 + 9 * nodes * turning
+    return Operations(
+        intervals=intervals * function,
+        structure=intervals * structure,
+        follower=follower,
+        couple=couple,
+    )
 
 
-def foreseen_time(rod: RodProperties, chosen: Discretisation, spread: Spread = Spread()) -> float:
+def foreseen_time(
+    rod: RodProperties,
+    chosen: Discretisation,
+    spread: Spread = Spread(),
+) -> float:
     """Time of one rod's residual and Jacobian compiled with ``gcc -O2``, µs on the machine that the law was fitted on.
 
     Args:
@@ -116,16 +145,27 @@ def foreseen_time(rod: RodProperties, chosen: Discretisation, spread: Spread = S
     """
     operations = foreseen_operations(rod, chosen, spread)
     if operations.instructions <= STRAIGHT:
-        constant, function, other = _STRAIGHT_TIME
-        return constant + function * operations.intervals + other * operations.instructions
-    interval, *factors = _LOOPS_TIME
-    parts = (operations.intervals, operations.structure, operations.follower, operations.couple)
-    looped = sum(factor * part for factor, part in zip(factors, parts, strict=True))
-    return interval * chosen.elements * chosen.nodes + looped
+        constant, in_functions, in_kernel = _STRAIGHT_TIME
+        time = constant + in_functions * operations.intervals
+        return time + in_kernel * operations.instructions
+    per_interval, *factors = _LOOPS_TIME
+    counts = (
+        operations.intervals,
+        operations.structure,
+        operations.follower,
+        operations.couple,
+    )
+    looped = sum(factor * count for factor, count in zip(factors, counts, strict=True))
+    return per_interval * chosen.elements * chosen.nodes + looped
 
 
 def _coordinates(rod: RodProperties, chosen: Discretisation) -> tuple[float, float]:
     """Coordinates of a rod that turn sections, and those that stretch or shear."""
-    pairs = list(zip(chosen.modes, rod.admitted, strict=True))
-    turning, stretching = (sum(m for m, c in pairs if (c < 3) is angular) for angular in (True, False))
+    turning = 0
+    stretching = 0
+    for modes, component in zip(chosen.modes, rod.admitted, strict=True):
+        if component < 3:
+            turning += modes
+        else:
+            stretching += modes
     return chosen.elements * turning, chosen.elements * stretching

@@ -21,16 +21,22 @@ def node_residual(solution: Solution) -> float:
     """Largest strain by which stress and internal wrench differ at the nodes; curvatures times the length."""
     largest = 0.0
     for name, discrete_rod in solution.model.discrete.rods.items():
-        X, rod = discrete_rod.grid.nodes, discrete_rod.properties
-        wrench = solution.model.fields[name](solution.x, solution.inputs)[2].full().T
+        X = discrete_rod.grid.nodes
+        rod = discrete_rod.properties
+        fields = solution.model.fields[name](solution.x, solution.inputs)
+        wrench = fields[2].full().T
+        hooke = rod.hooke(X)
         strain = solution.strain(X, name) - rod.intrinsic_strain(X)
-        for c in rod.admitted:
-            missing = wrench[:, c] / rod.hooke(X)[:, c] - strain[:, c]
-            largest = max(largest, float(np.abs(missing).max()) * (rod.length if c < 3 else 1.0))
+        for component in rod.admitted:
+            stress_strain = wrench[:, component] / hooke[:, component]
+            difference = stress_strain - strain[:, component]
+            # Components 0 to 2 are curvatures, in 1/m; the others have no unit.
+            unit = rod.length if component < 3 else 1.0
+            largest = max(largest, float(np.abs(difference).max()) * unit)
     return largest
 
 
-def modes_to_see(solution: Solution, turn: float, tolerance: float) -> int:
+def min_modes(solution: Solution, turn: float, tolerance: float) -> int:
     """Modes for each strain from which on the last coefficients tell how well a rod is resolved; 0 where any do.
 
     Args:
@@ -38,6 +44,11 @@ def modes_to_see(solution: Solution, turn: float, tolerance: float) -> int:
         turn: largest turn of an element, rad.
         tolerance: strain that does not matter.
     """
-    wanted = ceil(turn / 2) + BEYOND
+    needed = ceil(turn / 2) + BEYOND
     fewest = min(min(d.modes) for d in solution.model.discretisation.values())
-    return wanted if fewest < wanted and turn > 2 * np.pi and node_residual(solution) > tolerance else 0
+    # Within one turn there is no whole wave to miss.
+    if fewest >= needed or turn <= 2 * np.pi:
+        return 0
+    if node_residual(solution) <= tolerance:
+        return 0
+    return needed

@@ -1,6 +1,6 @@
 """Poses that a coarser discretisation would give, from a converged finer one and without building a model.
 
-A fine solution, the witness, knows the equilibrium, its Jacobian, and by the order of its polynomials every coarser
+A fine solution, the reference, knows the equilibrium, its Jacobian, and by the order of its polynomials every coarser
 set of modes: dropping a mode is dropping a row and a column. So the equilibrium with fewer modes is a few corrections
 in a subspace, and that on another grid is one correction with the residual of that grid. Both are solutions to within
 the square of what is neglected, so the superconvergence of the tip is in them: an error estimated from the tail of
@@ -34,7 +34,7 @@ Modes = Mapping[str, tuple[int, ...]]
 """Modes of every admitted strain and element, for each rod."""
 
 CORRECTIONS = 2
-"""Corrections with the witness's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
+"""Corrections with the reference's Jacobian after dropping modes; each reduces the error by about the tail dropped."""
 
 BETWEEN = (0.25, 0.5, 0.75, 1.0)
 """Sections at which a held rod is watched."""
@@ -48,64 +48,83 @@ def watched(model: Model, rod: str) -> FloatArray:
     scene = model.scene
     if scene.accuracy.shape:
         return SAMPLES[1:]
-    held = any(holder.rod == rod for holder in (*scene.supports, *scene.joints))
-    return np.array(BETWEEN if held else (1.0,))
+    holders = (*scene.supports, *scene.joints)
+    held = any(holder.rod == rod for holder in holders)
+    if held:
+        return np.array(BETWEEN)
+    return np.array([1.0])
 
 
 @dataclass(frozen=True)
 class Preview:
-    """A witness that is asked what coarser discretisations would give.
+    """A reference solution that foresees what coarser discretisations would give.
 
     Attributes:
-        witness: a converged solution.
+        reference: a converged solution.
     """
 
-    witness: Solution
+    reference: Solution
     _shifts: dict[tuple[tuple[str, tuple[int, ...]], ...], FloatArray] = field(default_factory=dict, repr=False)
 
     @property
     def model(self) -> Model:
-        """The witness's model."""
-        return self.witness.model
+        """The reference's model."""
+        return self.reference.model
 
     @cached_property
     def jacobian(self) -> FloatArray:
-        """Jacobian at the witness, shape (n, n)."""
-        return _numbers(self.model.path_jacobian(self.witness.x, self._inputs, 1.0))
+        """Jacobian at the reference, shape (n, n)."""
+        jacobian = self.model.path_jacobian(self.reference.x, self._inputs, 1.0)
+        return _numbers(jacobian)
 
     @cached_property
-    def _held(self) -> FloatArray:
+    def _regular_jacobian(self) -> FloatArray:
         """The Jacobian with a stiffness against what symmetry leaves neutral, so that no correction moves along it."""
         left, singular, right = np.linalg.svd(self.jacobian)
         largest = float(singular.max(initial=0.0))
         neutral = singular <= SINGULAR * largest
-        return np.asarray(self.jacobian + largest * left[:, neutral] @ right[neutral])
+        neutral_left = left[:, neutral]
+        neutral_right = right[neutral]
+        added = largest * neutral_left @ neutral_right
+        return np.asarray(self.jacobian + added)
 
     @cached_property
     def tips(self) -> FloatArray:
-        """Watched poses of the witness: positions over length and rotation entries, 12 for each section."""
-        return self._tips(self.witness.x)
+        """Watched poses of the reference: positions over length and rotation entries, 12 for each section."""
+        return self._tips(self.reference.x)
 
     def kept(self, modes: Modes) -> Mask:
-        """Unknowns of the witness that exist with these modes, shape (n,); multipliers always do."""
+        """Unknowns of the reference that exist with these modes, shape (n,); multipliers always do."""
+        discrete = self.model.discrete
         mask = np.ones(self.model.size, dtype=bool)
-        for name, discrete_rod in self.model.discrete.rods.items():
-            first = self.model.discrete.unknowns.strain(name).start
-            for columns, full, count in zip(
-                discrete_rod.columns.values(), discrete_rod.discretisation.modes, modes[name], strict=True
-            ):
-                inside = np.tile(np.arange(full) < count, discrete_rod.grid.elements)
-                mask[first + columns.start : first + columns.stop] = inside
+        for name, discrete_rod in discrete.rods.items():
+            first = discrete.unknowns.strain(name).start
+            counts = zip(
+                discrete_rod.columns.values(),
+                discrete_rod.discretisation.modes,
+                modes[name],
+                strict=True,
+            )
+            for columns, available, kept_count in counts:
+                # Polynomials are sorted by degree, element after element.
+                kept = np.arange(available) < kept_count
+                start = first + columns.start
+                stop = first + columns.stop
+                mask[start:stop] = np.tile(kept, discrete_rod.grid.elements)
         return mask
 
     def with_modes(self, modes: Modes) -> FloatArray:
-        """Unknowns of the equilibrium with fewer modes on the witness's grid, shape (n,), zero where dropped."""
+        """Unknowns of the equilibrium with fewer modes on the reference's grid, shape (n,), zero where dropped."""
         kept = self.kept(modes)
-        inverse = _inverse(self._held[np.ix_(kept, kept)])
-        x = np.where(kept, self.witness.x, 0.0)
-        x[kept] += inverse @ (self.jacobian[np.ix_(kept, ~kept)] @ self.witness.x[~kept])
+        inverse = self._inverse_of_kept(kept)
+        x = np.where(kept, self.reference.x, 0.0)
+        # To first order the kept unknowns take over the residual that the dropped ones leave: J_kk δx_k = J_kd x_d.
+        coupling = self.jacobian[np.ix_(kept, ~kept)]
+        dropped = self.reference.x[~kept]
+        x[kept] += inverse @ (coupling @ dropped)
         for _ in range(CORRECTIONS):
-            x[kept] -= inverse @ self.model.residual(x, self._inputs).full()[kept, 0]
+            residual = self.model.residual(x, self._inputs).full()
+            x[kept] -= inverse @ residual[kept, 0]
         return x
 
     def mode_shift(self, modes: Modes) -> FloatArray:
@@ -114,74 +133,106 @@ class Preview:
         if key not in self._shifts:
             # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
             with np.errstate(all="ignore"):
-                shift = self._tips(self.with_modes(modes)) - self.tips
-            self._shifts[key] = np.where(np.isfinite(shift), shift, np.inf)
+                x = self.with_modes(modes)
+                shift = self._tips(x) - self.tips
+            finite = np.isfinite(shift)
+            self._shifts[key] = np.where(finite, shift, np.inf)
         return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
-        """Change of the watched poses from the witness's grid to others, 12 entries for each section.
+        """Change of the watched poses from the reference's grid to others, 12 entries for each section.
 
         Args:
-            x: equilibrium with the given modes on the witness's grid, from :meth:`with_modes`.
+            x: equilibrium with the given modes on the reference's grid, from :meth:`with_modes`.
             modes: modes of every rod.
             grids: nodes and transport of every rod; their modes are not read.
         """
         kept = self.kept(modes)
-        full = {n: replace(grids[n], modes=d.modes) for n, d in self.model.discretisation.items()}
-        other = System(
-            discrete_scene(self.model.scene, self.model.inputs, full), Arguments(ca.DM(x), ca.DM(self._inputs))
-        )
-        moved = x.copy()
-        moved[kept] -= _inverse(self._held[np.ix_(kept, kept)]) @ _numbers(other.residual)[kept, 0]
-        # The unknowns move by far less than the tips can tell apart on two grids: the witness's grid serves.
-        return self._tips_of(other) - self._tips(x) + self._tips(moved) - self._tips(x)
+        regridded = self._regridded(x, grids)
+        residual = _numbers(regridded.residual)[kept, 0]
+        # One Newton step with the Jacobian of the reference's grid.
+        corrected = x.copy()
+        corrected[kept] -= self._inverse_of_kept(kept) @ residual
+        # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
+        tips = self._tips(x)
+        return self._tips_of(regridded) - tips + self._tips(corrected) - tips
 
     @property
     def _inputs(self) -> FloatArray:
-        return self.witness.inputs
+        return self.reference.inputs
+
+    def _inverse_of_kept(self, kept: Mask) -> FloatArray:
+        rows_and_columns = np.ix_(kept, kept)
+        return _inverse(self._regular_jacobian[rows_and_columns])
+
+    def _regridded(self, x: FloatArray, grids: Mapping[str, Discretisation]) -> System:
+        """The equations at x with all modes of the reference, on another grid."""
+        discretisation = {}
+        for name, reference in self.model.discretisation.items():
+            discretisation[name] = replace(grids[name], modes=reference.modes)
+        model = self.model
+        discrete = discrete_scene(model.scene, model.inputs, discretisation)
+        # Numbers for arguments: CasADi evaluates while it builds, so that no function is compiled for one look.
+        arguments = Arguments(ca.DM(x), ca.DM(self._inputs))
+        return System(discrete, arguments)
 
     def _tips(self, x: FloatArray) -> FloatArray:
-        found = []
+        """Watched poses on the reference's grid, by the model's functions."""
+        poses = []
         for name, discrete_rod in self.model.discrete.rods.items():
             X = watched(self.model, name)
+            # The tip alone costs a fraction of all fields.
             if len(X) == 1:
                 position, quaternion, _ = self.model.tip[name](x, self._inputs)
             else:
-                nodal = self.model.fields[name](x, self._inputs)
-                matrix = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
-                position, quaternion = nodal[0] @ matrix, nodal[1] @ matrix
-            found.append(_entries(position, quaternion, discrete_rod.properties.length))
-        return np.concatenate(found)
+                fields = self.model.fields[name](x, self._inputs)
+                interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
+                position = fields[0] @ interpolation
+                quaternion = fields[1] @ interpolation
+            poses.append(_entries(position, quaternion, discrete_rod.properties.length))
+        return np.concatenate(poses)
 
     def _tips_of(self, system: System) -> FloatArray:
-        found = []
+        """Watched poses of a system that has numbers for its arguments."""
+        poses = []
         for name, discrete_rod in system.discrete.rods.items():
-            X, shape, base = watched(self.model, name), system.rods[name].shape, system.base(name)
+            X = watched(self.model, name)
+            shape = system.rods[name].shape
             if len(X) == 1:
-                position, quaternion = shape.position_at(-1), shape.quaternion[:, -1]
+                position = shape.position_at(-1)
+                quaternion = shape.quaternion[:, -1]
             else:
-                matrix = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
-                position, quaternion = shape.position @ matrix, shape.quaternion @ matrix
-            place = ca.repmat(base.position, 1, len(X)) + quaternion_to_matrix(base.quaternion) @ position
-            turn = quaternion_product(ca.repmat(base.quaternion, 1, len(X)), ca.densify(quaternion))
-            found.append(_entries(place, turn, discrete_rod.properties.length))
-        return np.concatenate(found)
+                interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
+                position = shape.position @ interpolation
+                quaternion = shape.quaternion @ interpolation
+            # The shape is that in the frame of the base section (docs/theory.md, section 1).
+            base = system.base(name)
+            base_position = ca.repmat(base.position, 1, len(X))
+            base_quaternion = ca.repmat(base.quaternion, 1, len(X))
+            world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
+            world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
+            poses.append(_entries(world_position, world_quaternion, discrete_rod.properties.length))
+        return np.concatenate(poses)
 
 
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
     """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
-    columns = _numbers(quaternion).T
-    turns = rotations(columns / np.linalg.norm(columns, axis=1, keepdims=True))
-    entries: FloatArray = np.concatenate([_numbers(position).ravel() / length, turns.ravel()])
+    quaternions = _numbers(quaternion).T
+    # Interpolated quaternions are not of unit length.
+    norms = np.linalg.norm(quaternions, axis=1, keepdims=True)
+    matrices = rotations(quaternions / norms)
+    positions = _numbers(position).ravel() / length
+    entries: FloatArray = np.concatenate([positions, matrices.ravel()])
     return entries
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:
     """The inverse; of a singular matrix the pseudo-inverse."""
     try:
-        return np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+        inverse = np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.pinv(matrix), dtype=np.float64)
+        inverse = np.linalg.pinv(matrix)
+    return np.asarray(inverse, dtype=np.float64)
 
 
 def _numbers(matrix: Matrix) -> FloatArray:

@@ -1,4 +1,4 @@
-"""How well a solution is resolved, told by itself: no finer model is built.
+"""How well a solution is resolved, from itself: no finer model is built.
 
 Its modes: drop the last two and the last four of every component and see the tips move. Two at a time, since
 symmetry may empty every other one. Geometric extrapolation of the two changes is the error that the modes it has
@@ -17,17 +17,23 @@ from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
 
-CAREFUL, CAREFUL_GRID = 2.0, 1.5
-"""Factors on the extrapolated error of the modes, and on the distance to a finer grid, which is not exact either."""
+MODES_SAFETY = 2.0
+"""Factor on the extrapolated error of the modes."""
 
-FASTEST, SLOWEST = 0.02, 0.7
-"""Ratios of the errors with two modes more and without that are believed."""
+GRID_SAFETY = 1.5
+"""Factor on the distance to a finer grid, which is not exact either."""
+
+FASTEST = 0.02
+"""Smallest ratio of the errors with and without two more modes that is believed."""
+
+SLOWEST = 0.7
+"""Largest ratio of the errors with and without two more modes that is believed."""
 
 UNKNOWN = 4
 """Further modes where the error is beyond all bounds and tells nothing."""
 
 CLOSING = 3
-"""Modes of an assembly below which nothing is told: with fewer its rods may not reach each other."""
+"""Modes of an assembly that are always kept: with fewer its rods may not reach each other."""
 
 
 @dataclass(frozen=True)
@@ -43,40 +49,64 @@ class Resolution:
     @cached_property
     def ratio(self) -> float:
         """Share of the error that two modes more leave."""
-        two, four = self._without(2), self._without(4)
-        if not np.isfinite(two + four):
+        two_less = self._shift_without(2)
+        four_less = self._shift_without(4)
+        if not np.isfinite(two_less + four_less):
             return SLOWEST
-        return float(np.clip(two / four, FASTEST, SLOWEST)) if four > 0 else FASTEST
+        if four_less <= 0:
+            # Not even four modes are felt, as in an unloaded rod.
+            return FASTEST
+        return float(np.clip(two_less / four_less, FASTEST, SLOWEST))
 
     @cached_property
     def modes_error(self) -> float:
-        """Error that the number of modes leaves."""
-        return CAREFUL * self._without(2) * self.ratio / (1 - self.ratio)
+        """Error that the number of modes leaves: the rest of a geometric series after the last two modes."""
+        two_less = self._shift_without(2)
+        # The last two modes carry e; all that would follow r e + r² e + … = e r / (1 − r).
+        return MODES_SAFETY * two_less * self.ratio / (1 - self.ratio)
 
     @cached_property
     def grid_error(self) -> float:
         """Error that the intervals and the rotation integrator leave."""
-        modes = {name: d.modes for name, d in self._discretisation.items()}
-        finer = {name: replace(d, nodes=d.nodes + d.nodes // 3 + 2) for name, d in self._discretisation.items()}
-        return CAREFUL_GRID * _size(self.preview.grid_shift(self.preview.witness.x, modes, finer))
+        modes = {}
+        finer = {}
+        for name, discretisation in self._discretisation.items():
+            nodes = discretisation.nodes
+            modes[name] = discretisation.modes
+            finer[name] = replace(discretisation, nodes=nodes + nodes // 3 + 2)
+        shift = self.preview.grid_shift(self.preview.reference.x, modes, finer)
+        return GRID_SAFETY * _size(shift)
 
-    def modes_lacking(self, bound: float) -> int:
+    def missing_modes(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
         error = self.modes_error
         if not np.isfinite(error):
             return UNKNOWN
-        return 2 * ceil(log(bound / error) / log(self.ratio)) if error > bound else 0
+        if error <= bound:
+            return 0
+        # Every two modes leave the share ``ratio`` of the error: ratioⁿ error = bound.
+        pairs = log(bound / error) / log(self.ratio)
+        return 2 * ceil(pairs)
 
     @property
     def _discretisation(self) -> dict[str, Discretisation]:
         return self.preview.model.discretisation
 
-    def _without(self, count: int) -> float:
-        least = CLOSING if self.preview.model.discrete.is_assembly else 1
-        fewer = {n: tuple(max(min(m, least), m - count) for m in d.modes) for n, d in self._discretisation.items()}
-        return _size(self.preview.mode_shift(fewer))
+    def _shift_without(self, count: int) -> float:
+        """Largest change of the watched poses with so many modes less of every component."""
+        assembly = self.preview.model.discrete.is_assembly
+        least = CLOSING if assembly else 1
+        fewer = {}
+        for name, discretisation in self._discretisation.items():
+            # No component loses its last mode, and none gains one.
+            kept = [max(min(m, least), m - count) for m in discretisation.modes]
+            fewer[name] = tuple(kept)
+        shift = self.preview.mode_shift(fewer)
+        return _size(shift)
 
 
 def _size(shift: FloatArray) -> float:
     """Largest change; infinite where a coarser model was so far off that it could not be foreseen."""
-    return float(np.abs(shift).max()) if np.all(np.isfinite(shift)) else float("inf")
+    if not np.all(np.isfinite(shift)):
+        return float("inf")
+    return float(np.abs(shift).max())

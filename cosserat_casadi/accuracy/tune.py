@@ -38,11 +38,15 @@ class Tuning:
     @property
     def worst(self) -> int:
         """Index of the case with the largest error estimate; of the first that did not converge where one did not."""
-        return max(range(len(self.solutions)), key=lambda i: _error(self.solutions[i]))
+        errors = [_error(solution) for solution in self.solutions]
+        return errors.index(max(errors))
 
 
 def tune(
-    scene: scenes.Scene, cases: Sequence[Values], tolerance: float | None = None, progress: Progress | None = None
+    scene: scenes.Scene,
+    cases: Sequence[Values],
+    tolerance: float | None = None,
+    progress: Progress | None = None,
 ) -> Tuning:
     """The smallest discretisation found that meets a tolerance at every load case.
 
@@ -57,46 +61,57 @@ def tune(
     Raises:
         SceneError: a value or the tolerance is refused.
     """
-    wanted = scene.accuracy.tolerance if tolerance is None else tolerance
-    free = unfixed(scene, wanted)
-    done, total = 0, 2 * len(cases)
+    if tolerance is None:
+        tolerance = scene.accuracy.tolerance
+    free = unfixed(scene, tolerance)
+    solved_cases = 0
+    # Each case once by itself and once on the union, which may have to be refined.
+    expected = 2 * len(cases)
 
-    def told(one: scenes.Scene, values: Values) -> Solution:
-        nonlocal done
-        solution = solve_scene(one, values)
-        done += 1
+    def solve_reporting(variant: scenes.Scene, values: Values) -> Solution:
+        nonlocal solved_cases
+        solution = solve_scene(variant, values)
+        solved_cases += 1
         if progress is not None:
-            progress(done, max(done, total))
+            progress(solved_cases, max(solved_cases, expected))
         return solution
 
-    alone = [told(free, values) for values in cases]
-    chosen, together = refine([(free, values) for values in cases], alone, told)
-    met = all(_error(solution) <= wanted for solution in together)
+    alone = [solve_reporting(free, values) for values in cases]
+    chosen, together = common_discretisation(
+        [(free, values) for values in cases],
+        alone,
+        solve_reporting,
+    )
+    met = all(_error(solution) <= tolerance for solution in together)
     return Tuning(fixed(free, chosen), tuple(together), met)
 
 
-def refine(
+def common_discretisation(
     cases: Sequence[tuple[scenes.Scene, Values]],
     alone: Sequence[Solution],
-    solved: Callable[[scenes.Scene, Values], Solution] = solve_scene,
+    solve_case: Callable[[scenes.Scene, Values], Solution] = solve_scene,
 ) -> tuple[Discretisation, list[Solution]]:
     """One discretisation for many cases: the union of what each chose alone, refined while a case misses.
 
     Args:
         cases: scenes that leave modes and nodes open, of one tolerance, each with inputs by name.
         alone: solution of each case on a discretisation of its own.
-        solved: solves a scene whose discretisation is fixed.
+        solve_case: solves a scene whose discretisation is fixed.
 
     Returns:
         the discretisation, and the solution of every case on it.
     """
-    chosen = _union([d for s in alone for d in s.model.discretisation.values()])
+    chosen = _union([d for solution in alone for d in solution.model.discretisation.values()])
     for _ in range(ROUNDS):
-        together = [solved(fixed(free, chosen), values) for free, values in cases]
-        met = all(_error(s) <= free.accuracy.tolerance for (free, _), s in zip(cases, together, strict=True))
+        together = [solve_case(fixed(free, chosen), values) for free, values in cases]
+        met = True
+        for (free, _), solution in zip(cases, together, strict=True):
+            met = met and _error(solution) <= free.accuracy.tolerance
+        # More modes do not help a case that has no equilibrium.
         if met or not all(solution.converged for solution in together):
             break
-        chosen = Discretisation(tuple(m + 1 for m in chosen.modes), chosen.nodes + 2, transport=chosen.transport)
+        more_modes = tuple(m + 1 for m in chosen.modes)
+        chosen = Discretisation(more_modes, chosen.nodes + 2, transport=chosen.transport)
     return chosen, together
 
 
@@ -110,27 +125,46 @@ def _union(chosen: Sequence[Discretisation]) -> Discretisation:
     """The least discretisation with all the modes and nodes of these; one number of modes where rods differ."""
     counts = {len(d.modes) for d in chosen}
     if len(counts) == 1:
-        modes = tuple(max(column) for column in zip(*[d.modes for d in chosen], strict=True))
+        by_component = zip(*[d.modes for d in chosen], strict=True)
+        modes = tuple(max(component) for component in by_component)
     else:
         modes = (max(max(d.modes) for d in chosen),)
-    order = max(d.transport for d in chosen)
-    return Discretisation(modes, max(d.nodes for d in chosen), transport=order)
+    nodes = max(d.nodes for d in chosen)
+    # Names of the Magnus methods sort by their order.
+    transport = max(d.transport for d in chosen)
+    return Discretisation(modes, nodes, transport=transport)
 
 
 def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
     """The scene with its discretisation to be chosen for a tolerance."""
-    return _with_accuracy(scene, tolerance=tolerance, modes=None, nodes=None, rotation=None)
+    return _with_accuracy(
+        scene,
+        tolerance=tolerance,
+        modes=None,
+        nodes=None,
+        rotation=None,
+    )
 
 
 def fixed(scene: scenes.Scene, chosen: Discretisation) -> scenes.Scene:
     """The scene with all rods on one discretisation."""
-    modes = chosen.modes[0] if len(set(chosen.modes)) == 1 else chosen.modes
-    return _with_accuracy(scene, modes=modes, nodes=chosen.nodes, rotation=chosen.transport)
+    modes: int | tuple[int, ...] = chosen.modes
+    # One number suits rods that admit different strains too.
+    if len(set(chosen.modes)) == 1:
+        modes = chosen.modes[0]
+    return _with_accuracy(
+        scene,
+        modes=modes,
+        nodes=chosen.nodes,
+        rotation=chosen.transport,
+    )
 
 
 def _with_accuracy(scene: scenes.Scene, **changes: object) -> scenes.Scene:
     """The scene read again with other entries of its accuracy; None leaves one out."""
     tables = scene_tables(scene)
-    entries = tables.get("accuracy", {}) | changes
+    entries = tables.get("accuracy", {})
+    entries = {**entries, **changes}
     tables["accuracy"] = {key: value for key, value in entries.items() if value is not None}
+    # Read again, so that what the scene format refuses is refused here too.
     return scenes.scene_from_dict(tables)

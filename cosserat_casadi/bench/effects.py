@@ -18,12 +18,14 @@ def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[
         compiler: path of a C compiler.
     """
     with ExitStack() as stack:
-        whole = stack.enter_context(closing(Program(build(scene), compiler)))
         # The compiler works on all of them at once; nothing is timed until it is done.
-        parts = {
-            cause.name: stack.enter_context(closing(Program(build(without_load(scene, cause.name)), compiler)))
-            for cause in scene.causes
-        }
-        for program in (whole, *parts.values()):
-            program.wait()
-        return whole.times(), {name: program.times() for name, program in parts.items()}
+        whole = stack.enter_context(closing(Program(build(scene), compiler)))
+        without = {}
+        for cause in scene.causes:
+            model = build(without_load(scene, cause.name))
+            program = closing(Program(model, compiler))
+            without[cause.name] = stack.enter_context(program)
+        for compiled in (whole, *without.values()):
+            compiled.wait()
+        times_without = {name: compiled.times() for name, compiled in without.items()}
+        return whole.times(), times_without

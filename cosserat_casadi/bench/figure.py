@@ -34,10 +34,10 @@ def write_figures(folder: Path, title: str, reference: Reference, rows: Sequence
     Raises:
         PlotUnavailableError: matplotlib is not installed.
     """
-    placed = [row for row in rows if row.placed and not row.strain]
-    if not placed:
+    points = [row for row in rows if row.in_plane and not row.strain]
+    if not points:
         return []
-    figure = _diagram(title, reference, placed)
+    figure = _diagram(title, reference, points)
     for name in FIGURES:
         write_figure(figure, folder / name, dpi=130)
     return [folder / name for name in FIGURES]
@@ -49,8 +49,11 @@ def _diagram(title: str, reference: Reference, rows: Sequence[Measurement]) -> A
     axes.set_xscale("log")
     axes.set_yscale("log")
     _draw_front(axes, rows)
-    for method in (*(m for m in STYLES if m != DIAL), DIAL):
-        _draw_method(axes, method, [row for row in rows if row.method == method])
+    # The dial last, so that its points lie above those that it was to pick from.
+    others = [method for method in STYLES if method != DIAL]
+    for method in (*others, DIAL):
+        of_method = [row for row in rows if row.method == method]
+        _draw_method(axes, method, of_method)
     axes.set_xlabel("cold solve in compiled C, µs")
     axes.set_ylabel("pose error at the tip: position/ℓ or angle in rad, the larger")
     axes.margins(0.08)
@@ -63,9 +66,17 @@ def _diagram(title: str, reference: Reference, rows: Sequence[Measurement]) -> A
 
 
 def _draw_front(axes: Any, rows: Sequence[Measurement]) -> None:
-    best = front(rows)
-    x, y = [row.cold_us for row in best], [row.pose_error for row in best]
-    axes.step(x, y, where="post", color="0.82", linewidth=6, solid_joinstyle="round", label="Pareto front", zorder=1)
+    times, errors = _coordinates(front(rows))
+    axes.step(
+        times,
+        errors,
+        where="post",
+        color="0.82",
+        linewidth=6,
+        solid_joinstyle="round",
+        label="Pareto front",
+        zorder=1,
+    )
 
 
 def _draw_method(axes: Any, method: str, rows: Sequence[Measurement]) -> None:
@@ -74,18 +85,43 @@ def _draw_method(axes: Any, method: str, rows: Sequence[Measurement]) -> None:
         return
     colour, marker, words = STYLES[method]
     size = 11 if method == DIAL else 5
-    axes.plot(*_places(rows), marker, color=colour, markersize=size * 0.7, alpha=0.35, markeredgewidth=0, zorder=2)
-    axes.plot(*_places(front(rows)), marker=marker, color=colour, markersize=size, linewidth=1.5, label=words, zorder=3)
+    axes.plot(
+        *_coordinates(rows),
+        marker,
+        color=colour,
+        markersize=size * 0.7,
+        alpha=0.35,
+        markeredgewidth=0,
+        zorder=2,
+    )
+    axes.plot(
+        *_coordinates(front(rows)),
+        marker=marker,
+        color=colour,
+        markersize=size,
+        linewidth=1.5,
+        label=words,
+        zorder=3,
+    )
     if method == DIAL:
         _name_tolerances(axes, rows, colour)
 
 
 def _name_tolerances(axes: Any, rows: Sequence[Measurement], colour: str) -> None:
     for row in rows:
-        place, offset = (row.cold_us, row.pose_error), (7, 5)
         text = f"{row.tolerance:.0e}".replace("e-0", "e-")
-        axes.annotate(text, place, offset, textcoords="offset points", fontsize=7.5, color=colour)
+        axes.annotate(
+            text,
+            (row.cold_us, row.pose_error),
+            (7, 5),
+            textcoords="offset points",
+            fontsize=7.5,
+            color=colour,
+        )
 
 
-def _places(rows: Sequence[Measurement]) -> tuple[list[float], list[float]]:
-    return [row.cold_us for row in rows], [row.pose_error for row in rows]
+def _coordinates(rows: Sequence[Measurement]) -> tuple[list[float], list[float]]:
+    """Times (µs) and pose errors of rows."""
+    times = [row.cold_us for row in rows]
+    errors = [row.pose_error for row in rows]
+    return times, errors

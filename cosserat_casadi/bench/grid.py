@@ -56,8 +56,11 @@ class Candidate:
     @property
     def name(self) -> str:
         """Its name, unlike that of any other point."""
-        setting = f"{self.modes}/{self.nodes}" if self.tolerance is None else f"{self.tolerance:g}"
-        return " ".join(word for word in (self.strain, self.method, setting) if word)
+        setting = f"{self.modes}/{self.nodes}"
+        if self.tolerance is not None:
+            setting = f"{self.tolerance:g}"
+        words = (self.strain, self.method, setting)
+        return " ".join(word for word in words if word)
 
     def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
         """Modes and intervals of every rod; not for a point of the dial."""
@@ -71,29 +74,44 @@ def candidates(methods: Sequence[str], points: int | None = None) -> list[Candid
         methods: out of METHODS.
         points: most points for each method, spread over the grid; all by default.
     """
-    sizes = sorted({(m, max(2, round(m * ratio))) for m in MODES for ratio in RATIOS}, key=lambda s: (s[0] * s[1], s))
     columns = []
     for method in methods:
         if method == DIAL:
-            columns.append([Candidate(DIAL, tolerance=tolerance) for tolerance in _spread(TOLERANCES, points)])
+            tolerances = _spread(TOLERANCES, points)
+            columns.append([Candidate(DIAL, tolerance=tolerance) for tolerance in tolerances])
         else:
-            columns.append([Candidate(method, *size) for size in _spread(sizes, points)])
+            sizes = _spread(_sizes(), points)
+            columns.append([Candidate(method, modes, nodes) for modes, nodes in sizes])
     longest = max(map(len, columns), default=0)
-    return [column[i] for i in range(longest) for column in columns if i < len(column)]
+    in_turns = []
+    for i in range(longest):
+        in_turns += [column[i] for column in columns if i < len(column)]
+    return in_turns
+
+
+def _sizes() -> list[tuple[int, int]]:
+    """Pairs of modes and intervals, the cheapest first."""
+    sizes = set()
+    for modes in MODES:
+        for ratio in RATIOS:
+            nodes = max(2, round(modes * ratio))
+            sizes.add((modes, nodes))
+    # The cost grows about like their product.
+    return sorted(sizes, key=lambda size: (size[0] * size[1], size))
 
 
 def _spread(items: Sequence[Item], count: int | None) -> list[Item]:
     if count is None or count >= len(items):
         return list(items)
-    return [items[round(i)] for i in np.linspace(0, len(items) - 1, count)]
+    indices = np.linspace(0, len(items) - 1, count)
+    return [items[round(index)] for index in indices]
 
 
 def method_problems(names: Sequence[str], points: int | None) -> list[Problem]:
     """What is wrong with the wanted methods and the number of points."""
     known = ", ".join(METHODS)
-    problems = [
-        Problem("--methods", f"{name!r} is no method", f"out of {known}") for name in names if name not in METHODS
-    ]
+    unknown = [name for name in names if name not in METHODS]
+    problems = [Problem("--methods", f"{name!r} is no method", f"out of {known}") for name in unknown]
     if not names:
         problems.append(Problem("--methods", "must name at least one method", f"out of {known}"))
     if points is not None and points < 1:
@@ -104,7 +122,10 @@ def method_problems(names: Sequence[str], points: int | None) -> list[Problem]:
 def distinct_methods(scene: scenes.Scene, methods: Sequence[str]) -> list[str]:
     """Methods without repetition; one Magnus method where every rod turns about one axis, as all are one there."""
     chosen = list(dict.fromkeys(methods))
-    if any(len(rod_properties(rod).turning_axes) > 1 for rod in scene.rods):
+    axes = [len(rod_properties(rod).turning_axes) for rod in scene.rods]
+    if max(axes) > 1:
         return chosen
+    # Rotations about one axis commute, so that no method needs a commutator (docs/theory.md, section 4).
     magnus = [method for method in chosen if method.startswith("magnus")]
-    return [method for method in chosen if method not in magnus[1:]]
+    repeated = magnus[1:]
+    return [method for method in chosen if method not in repeated]

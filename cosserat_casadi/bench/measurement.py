@@ -88,9 +88,10 @@ class Measurement:
         return max(self.position_error, self.rotation_error)
 
     @property
-    def placed(self) -> bool:
-        """Whether it has a place in the plane of error and compiled cold solve."""
-        return isfinite(self.pose_error) and isfinite(self.cold_us)
+    def in_plane(self) -> bool:
+        """Whether it is a point in the plane of error and compiled cold solve: both were measured."""
+        coordinates = (self.pose_error, self.cold_us)
+        return all(map(isfinite, coordinates))
 
 
 class Trial:
@@ -104,36 +105,48 @@ class Trial:
     """
 
     def __init__(self, candidate: Candidate, scene: scenes.Scene, reference: Reference, compiler: str) -> None:
-        self.candidate, self.reference = candidate, reference
+        self.candidate = candidate
+        self.reference = reference
         self.solution = _solved(candidate, scene)
+        # Built once more, to be timed from nothing.
         self.model, self.build_s = _built(scene, self.solution.model.discretisation)
-        self.note = "" if self.solution.converged else self.solution.message
-        self.note = self.note or _too_large(self.model)
-        self.operations = (nan, nan) if self.note else _operations(self.model)
-        self.program = None if self.note else Program(self.model, compiler)
+        self.note = ""
+        if not self.solution.converged:
+            self.note = self.solution.message
+        if not self.note:
+            self.note = _too_large(self.model)
+        self.igm_operations = nan
+        self.jacobian_operations = nan
+        self.program: Program | None = None
+        if not self.note:
+            self.igm_operations, self.jacobian_operations = _operations(self.model)
+            self.program = Program(self.model, compiler)
 
     def finish(self) -> Measurement:
         """The row, with all that takes a quiet machine to measure."""
-        found, note = self._times()
-        errors = self.reference.errors(self.solution) if self.solution.converged else Errors(nan, nan, nan)
+        times, note = self._times()
+        errors = Errors(nan, nan, nan)
+        if self.solution.converged:
+            errors = self.reference.errors(self.solution)
+        tolerance = self.candidate.tolerance
         return Measurement(
             name=self.candidate.name,
             method=self.candidate.method,
             strain=self.candidate.strain,
-            tolerance=nan if self.candidate.tolerance is None else self.candidate.tolerance,
+            tolerance=nan if tolerance is None else tolerance,
             **_described(self.model.discretisation),
             position_error=errors.position,
             rotation_error=errors.rotation,
             wrench_error=errors.wrench,
             unknowns=self.model.size,
-            igm_operations=self.operations[0],
-            jacobian_operations=self.operations[1],
+            igm_operations=self.igm_operations,
+            jacobian_operations=self.jacobian_operations,
             build_s=self.build_s,
             **self._virtual_times(),
-            igm_us=found.igm,
-            jacobian_us=found.jacobian,
-            warm_us=found.warm,
-            cold_us=found.cold,
+            igm_us=times.igm,
+            jacobian_us=times.jacobian,
+            warm_us=times.warm,
+            cold_us=times.cold,
             note=note,
         )
 
@@ -148,19 +161,31 @@ class Trial:
             self.program.close()
 
     def _times(self) -> tuple[Times, str]:
-        found = self.note if self.program is None else self.program.times()
-        return (found, "") if isinstance(found, Times) else (Times(nan, nan, nan, nan), found)
+        """Times of the program, and why there are none."""
+        untimed = Times(nan, nan, nan, nan)
+        if self.program is None:
+            return untimed, self.note
+        times = self.program.times()
+        if isinstance(times, Times):
+            return times, ""
+        return untimed, times
 
     def _virtual_times(self) -> dict[str, Any]:
-        x, inputs = self.solution.x, self.solution.inputs
+        """Times in CasADi's virtual machine, as attributes of the measurement."""
+        x = self.solution.x
+        inputs = self.solution.inputs
         rod = self.model.scene.rods[0]
-        arguments = (x[self.model.discrete.unknowns.strain(rod.name)], *base_pose(rod), inputs)
+        q = x[self.model.discrete.unknowns.strain(rod.name)]
         igm = self.model.igm[rod.name]
-        return {
+        arguments = (q, *base_pose(rod), inputs)
+        times = {
             "vm_igm_us": _best(lambda: igm(*arguments)),
             "vm_jacobian_us": _best(lambda: self.model.jacobian(x, inputs)),
-            "vm_cold_us": _best(lambda: solve(self.solution.model)) if self.solution.converged else nan,
+            "vm_cold_us": nan,
         }
+        if self.solution.converged:
+            times["vm_cold_us"] = _best(lambda: solve(self.solution.model))
+        return times
 
 
 def _solved(candidate: Candidate, scene: scenes.Scene) -> Solution:
@@ -173,23 +198,29 @@ def _built(scene: scenes.Scene, discretisation: dict[str, Discretisation]) -> tu
     """A model and the time that its functions took, s."""
     start = time.perf_counter()
     model = build(scene, discretisation)
+    # Functions are built when they are first asked for.
     for function in (model.residual, model.jacobian, *model.igm.values()):
         assert function.n_in() > 1
-    return model, time.perf_counter() - start
+    seconds = time.perf_counter() - start
+    return model, seconds
 
 
 def _described(discretisation: dict[str, Discretisation]) -> dict[str, Any]:
     """Modes, intervals and integrators, rods parted by a bar."""
     rods = discretisation.values()
+    modes = [" ".join(map(str, d.modes)) for d in rods]
+    intervals = [str(d.nodes) for d in rods]
+    transports = [d.transport for d in rods]
     return {
-        "modes": " | ".join(" ".join(map(str, d.modes)) for d in rods),
-        "intervals": " | ".join(str(d.nodes) for d in rods),
-        "transport": " | ".join(d.transport for d in rods),
+        "modes": " | ".join(modes),
+        "intervals": " | ".join(intervals),
+        "transport": " | ".join(transports),
     }
 
 
 def _is_literal(model: Model) -> bool:
-    return any(d.transport == "permuted" for d in model.discretisation.values())
+    transports = {d.transport for d in model.discretisation.values()}
+    return "permuted" in transports
 
 
 def _operations(model: Model) -> tuple[float, float]:
@@ -207,20 +238,27 @@ def _too_large(model: Model) -> str:
     """Why neither operations are counted nor the compiler is asked; empty where they are."""
     intervals = max(d.nodes for d in model.discretisation.values())
     if _is_literal(model):
-        return f"not compiled: literal system of {intervals} intervals" if intervals > LARGEST_LITERAL else ""
-    bases = model.discrete.rods.values()
-    operations = sum(
-        foreseen_operations(discrete_rod.properties, discrete_rod.discretisation).all for discrete_rod in bases
-    )
-    return f"not compiled: about {operations:,.0f} operations" if operations > LARGEST else ""
+        if intervals <= LARGEST_LITERAL:
+            return ""
+        return f"not compiled: literal system of {intervals} intervals"
+    operations = 0.0
+    for discrete_rod in model.discrete.rods.values():
+        foreseen = foreseen_operations(discrete_rod.properties, discrete_rod.discretisation)
+        operations += foreseen.all
+    if operations <= LARGEST:
+        return ""
+    return f"not compiled: about {operations:,.0f} operations"
 
 
 def _best(task: Callable[[], object]) -> float:
     """Best time of several runs, µs."""
-    task()  # the first run builds functions
-    best, end = inf, time.perf_counter() + PATIENCE
+    # The first run builds functions.
+    task()
+    best = inf
+    end = time.perf_counter() + PATIENCE
     while time.perf_counter() < end or best == inf:
         start = time.perf_counter()
         task()
-        best = min(best, time.perf_counter() - start)
+        seconds = time.perf_counter() - start
+        best = min(best, seconds)
     return 1e6 * best

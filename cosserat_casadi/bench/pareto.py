@@ -13,9 +13,11 @@ def front(rows: Sequence[Measurement]) -> list[Measurement]:
     Rows without a place in that plane, and those of other strain models, which solve another problem, do not count.
     Of equals the first stays.
     """
-    found: list[Measurement] = []
-    placed = [row for row in rows if row.placed and not row.strain]
-    for row in sorted(placed, key=lambda row: (row.cold_us, row.pose_error)):
-        if not found or row.pose_error < found[-1].pose_error:
-            found.append(row)
-    return found
+    unbeaten: list[Measurement] = []
+    comparable = [row for row in rows if row.in_plane and not row.strain]
+    comparable.sort(key=lambda row: (row.cold_us, row.pose_error))
+    for row in comparable:
+        # Dearer than all before: it must be more exact than the most exact of them, which is the last.
+        if not unbeaten or row.pose_error < unbeaten[-1].pose_error:
+            unbeaten.append(row)
+    return unbeaten

@@ -12,7 +12,7 @@ from rich.markup import escape
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.figure import write_figures
-from cosserat_casadi.bench.grid import METHODS, QUICK, Candidate, candidates, distinct_methods, method_problems
+from cosserat_casadi.bench.grid import DIAL, METHODS, QUICK, Candidate, candidates, distinct_methods, method_problems
 from cosserat_casadi.bench.measurement import Measurement
 from cosserat_casadi.bench.program import FLAGS
 from cosserat_casadi.bench.record import CSV, JSON, fingerprint, output_problems, read_rows, write_json, write_rows
@@ -46,7 +46,13 @@ class Plan:
     rows: list[Measurement] = field(default_factory=list)
 
 
-def make_plan(scene: scenes.Scene, output: Path | None, methods: str | None, points: int | None, quick: bool) -> Plan:
+def make_plan(
+    scene: scenes.Scene,
+    output: Path | None,
+    methods: str | None,
+    points: int | None,
+    quick: bool,
+) -> Plan:
     """Check everything before any work; nothing is written.
 
     Args:
@@ -61,7 +67,9 @@ def make_plan(scene: scenes.Scene, output: Path | None, methods: str | None, poi
         CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
     """
     names = _names(methods, quick)
-    problems = method_problems(names, points) + ([] if output is None else output_problems(output))
+    problems = method_problems(names, points)
+    if output is not None:
+        problems += output_problems(output)
     try:
         compiler = find_compiler()
     except ExportError as missing:
@@ -74,10 +82,13 @@ def make_plan(scene: scenes.Scene, output: Path | None, methods: str | None, poi
     if output is not None:
         figure_class()
     rows = [] if output is None else read_rows(output, fingerprint(scene))
-    wanted = candidates(distinct_methods(scene, names), QUICK if quick else points)
-    wanted += [] if quick or "dial" not in names else richer_candidates(scene)
-    known = {row.name for row in rows}
-    return Plan(scene, compiler, [c for c in wanted if c.name not in known], output, rows)
+    points_per_method = QUICK if quick else points
+    every = candidates(distinct_methods(scene, names), points_per_method)
+    if not quick and DIAL in names:
+        every += richer_candidates(scene)
+    measured = {row.name for row in rows}
+    remaining = [candidate for candidate in every if candidate.name not in measured]
+    return Plan(scene, compiler, remaining, output, rows)
 
 
 def run_plan(plan: Plan, console: Console, report: Report) -> bool:
@@ -89,19 +100,25 @@ def run_plan(plan: Plan, console: Console, report: Report) -> bool:
     session = Session.open(plan.scene, plan.compiler)
     interrupted = _measure(plan, session, report)
     for strain in {row.strain for row in plan.rows}:
-        session.problem(strain)  # that of an earlier bench too
+        # Of rows that an earlier bench left too: their reference is shown below.
+        session.problem(strain)
     report("Done", len(plan.candidates), len(plan.candidates))
     print_bench(console, plan.scene.title, session.reference, plan.rows)
-    print_strains(console, session.apart)
+    print_strains(console, session.model_distances)
     if plan.output is not None:
         _write(plan, session, plan.output, console, whole=not interrupted)
     return interrupted
 
 
 def _names(methods: str | None, quick: bool) -> list[str]:
-    if methods is None:
-        return [method for method in METHODS if not (quick and method == "permuted")]
-    return [name.strip() for name in methods.split(",") if name.strip()]
+    """Names of the methods that are asked for."""
+    if methods is not None:
+        names = [name.strip() for name in methods.split(",")]
+        return [name for name in names if name]
+    if quick:
+        # The literal system takes the compiler minutes.
+        return [method for method in METHODS if method != "permuted"]
+    return list(METHODS)
 
 
 def _measure(plan: Plan, session: Session, report: Report) -> bool:
@@ -125,9 +142,12 @@ def _write(plan: Plan, session: Session, folder: Path, console: Console, whole: 
     """The files beside the CSV; of a bench that was stopped only the CSV stays."""
     written = [folder / CSV] if plan.rows else []
     if whole:
-        tools = {"compiler_flags": " ".join(FLAGS), "machine": platform.machine()}
-        write_json(folder, plan.scene, plan.rows, {**session.facts(), **tools})
-        written += [folder / JSON, *write_figures(folder, plan.scene.title, session.reference, plan.rows)]
+        facts = session.facts()
+        facts["compiler_flags"] = " ".join(FLAGS)
+        facts["machine"] = platform.machine()
+        write_json(folder, plan.scene, plan.rows, facts)
+        written.append(folder / JSON)
+        written += write_figures(folder, plan.scene.title, session.reference, plan.rows)
     else:
         console.print("Stopped. Run the same command again to go on from here.", highlight=False)
     for path in written:

@@ -23,27 +23,45 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.scene.writing import scene_text
 
-CSV, JSON = "bench.csv", "bench.json"
+CSV = "bench.csv"
+"""File of the rows."""
+
+JSON = "bench.json"
+"""File of everything."""
+
 COLUMNS = ("scene", *(field.name for field in fields(Measurement)))
+"""Columns of the rows: what tells the scene, and the attributes of a measurement."""
+
 _TYPES = get_type_hints(Measurement)
 
 
 def fingerprint(scene: scenes.Scene) -> str:
     """What tells rows of one scene and version from those of another: the beginning of a hash."""
-    plain = scene_text(scene.model_copy(update={"title": "", "accuracy": scenes.Accuracy()}))
-    text = "\0".join([plain, version("cosserat-casadi"), ca.CasadiMeta.version()])
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    # Rows do not depend on the title, nor on an accuracy that every candidate brings itself.
+    plain = scene.model_copy(update={"title": "", "accuracy": scenes.Accuracy()})
+    words = [
+        scene_text(plain),
+        version("cosserat-casadi"),
+        ca.CasadiMeta.version(),
+    ]
+    text = "\0".join(words)
+    digest = hashlib.sha256(text.encode())
+    return digest.hexdigest()[:16]
 
 
 def output_problems(folder: Path) -> list[Problem]:
     """Why a folder cannot take the files; it need not exist, but its parent must."""
     if folder.is_dir():
-        return [] if os.access(folder, os.W_OK | os.X_OK) else [_problem(f"the folder {folder} cannot be written to")]
+        if os.access(folder, os.W_OK | os.X_OK):
+            return []
+        return [_problem(f"the folder {folder} cannot be written to")]
     if folder.exists():
         return [_problem(f"{folder} is a file", "name a folder")]
     if not folder.parent.is_dir():
         return [_problem(f"the folder {folder.parent} does not exist", "make it first")]
-    return [] if os.access(folder.parent, os.W_OK) else [_problem(f"the folder {folder.parent} cannot be written to")]
+    if os.access(folder.parent, os.W_OK):
+        return []
+    return [_problem(f"the folder {folder.parent} cannot be written to")]
 
 
 def read_rows(folder: Path, mark: str) -> list[Measurement]:
@@ -57,12 +75,13 @@ def read_rows(folder: Path, mark: str) -> list[Measurement]:
         return []
     remedy = "name another folder, or remove the file"
     try:
-        table = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"))))
+        text = path.read_text(encoding="utf-8")
+        table = list(csv.reader(io.StringIO(text)))
         if not table or tuple(table[0]) != COLUMNS:
             raise SceneError(_problem(f"{path} is not the table of a bench of this version", remedy))
         rows = [dict(zip(COLUMNS, cells, strict=True)) for cells in table[1:]]
         marks = {row.pop("scene") for row in rows}
-        read = [Measurement(**{name: _parsed(name, cell) for name, cell in row.items()}) for row in rows]
+        read = [_measurement(row) for row in rows]
     except (OSError, ValueError, csv.Error):
         raise SceneError(_problem(f"{path} cannot be read as the table of a bench", remedy)) from None
     if marks - {mark}:
@@ -75,20 +94,24 @@ def write_rows(folder: Path, mark: str, rows: Sequence[Measurement]) -> None:
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
-    writer.writerows([mark, *(_cell(value) for value in asdict(row).values())] for row in rows)
+    for row in rows:
+        cells = [_cell(value) for value in asdict(row).values()]
+        writer.writerow([mark, *cells])
     write_atomically(folder / CSV, stream.getvalue().encode())
 
 
 def write_json(folder: Path, scene: scenes.Scene, rows: Sequence[Measurement], facts: dict[str, Any]) -> None:
     """Everything as JSON: rows, front, and facts about reference and tools; numbers that are none are null."""
+    plain_rows = [_plain(row) for row in rows]
+    versions = {"cosserat-casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()}
     content = {
         "schema": 1,
         "title": scene.title,
         "scene": fingerprint(scene),
-        "versions": {"cosserat-casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        "versions": versions,
         **facts,
         "front": [row.name for row in front(rows)],
-        "rows": [{name: _finite(value) for name, value in asdict(row).items()} for row in rows],
+        "rows": plain_rows,
     }
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_atomically(folder / JSON, text.encode())
@@ -98,16 +121,37 @@ def _problem(problem: str, remedy: str = "") -> Problem:
     return Problem("--output", problem, remedy)
 
 
+def _measurement(row: dict[str, str]) -> Measurement:
+    """The row that cells of the CSV hold."""
+    values = {name: _parsed(name, cell) for name, cell in row.items()}
+    return Measurement(**values)
+
+
 def _cell(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.6g}" if isfinite(value) else ""
-    return str(value)
+    """A value as a cell; an empty one for what is not a number."""
+    if not isinstance(value, float):
+        return str(value)
+    if not isfinite(value):
+        return ""
+    return f"{value:.6g}"
 
 
 def _parsed(name: str, cell: str) -> Any:
+    """The value that a cell of a column holds."""
     kind = _TYPES[name]
-    return float(cell or "nan") if kind is float else kind(cell)
+    if kind is float:
+        return float(cell or "nan")
+    return kind(cell)
+
+
+def _plain(row: Measurement) -> dict[str, Any]:
+    """The row as data of a JSON file."""
+    values = asdict(row)
+    return {name: _finite(value) for name, value in values.items()}
 
 
 def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not isfinite(value) else value
+    """The value as JSON takes it, which has no NaN."""
+    if isinstance(value, float) and not isfinite(value):
+        return None
+    return value

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.metrics import prolong
 from cosserat_casadi.accuracy.preview import watched
-from cosserat_casadi.accuracy.refine import prolong, solve_scene
+from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.bench.shooting import RodState, ShootingError, shoot
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -22,6 +23,9 @@ FINEST = 1e-10
 
 MORE_MODES = 6
 """Modes that the finest discretisation has more, per component and element."""
+
+MORE_NODES = 8
+"""Intervals that the finest discretisation has more than one and a half times as many."""
 
 AGREEMENT = 1e-6
 """Largest distance of the two references, relative to the length: beyond, neither is believed."""
@@ -85,37 +89,62 @@ def find_reference(scene: scenes.Scene) -> Reference:
         shot = _shot(finest, fine)
     except ShootingError as failed:
         return Reference(f"{_words(finest)}; not shooting: {failed}", fine, None, finest)
-    apart = distance(shot, fine).pose
-    if apart > AGREEMENT:
-        raise NoReferenceError(f"shooting and the finest discretisation are {apart:.1e} apart: neither is believed")
-    return Reference("shooting, DOP853 at 1e-13", shot, apart, finest)
+    disagreement = distance(shot, fine).pose
+    if disagreement > AGREEMENT:
+        message = f"shooting and the finest discretisation are {disagreement:.1e} apart: neither is believed"
+        raise NoReferenceError(message)
+    return Reference("shooting, DOP853 at 1e-13", shot, disagreement, finest)
 
 
 def states(solution: Solution) -> dict[str, RodState]:
     """What is compared of a solution."""
-    found = {}
+    rods = {}
     for name, discrete_rod in solution.model.discrete.rods.items():
-        pose, base = solution.pose(watched(solution.model, name), name), solution.base_wrench(name)
-        wrench = np.concatenate([base.force, base.moment])
-        found[name] = RodState(discrete_rod.properties.length, pose.position, pose.rotation, wrench)
-    return found
+        sections = watched(solution.model, name)
+        pose = solution.pose(sections, name)
+        clamp = solution.base_wrench(name)
+        rods[name] = RodState(
+            length=discrete_rod.properties.length,
+            position=pose.position,
+            rotation=pose.rotation,
+            base_wrench=np.concatenate([clamp.force, clamp.moment]),
+        )
+    return rods
 
 
-def distance(one: dict[str, RodState], other: dict[str, RodState]) -> Errors:
-    """Errors of the other solution if the one is true."""
-    pairs = [(one[name], other[name]) for name in one]
+def distance(truth: dict[str, RodState], approximation: dict[str, RodState]) -> Errors:
+    """Errors of an approximation, the largest over all rods."""
+    pairs = [(truth[name], approximation[name]) for name in truth]
     return Errors(
-        position=max(float(np.linalg.norm(a.position - b.position, axis=1).max()) / a.length for a, b in pairs),
-        # The chord 2 sin(θ/2), which keeps its digits for small angles.
-        rotation=max(float(np.linalg.norm(a.rotation - b.rotation, axis=(1, 2)).max()) / 2**0.5 for a, b in pairs),
+        position=max(_position_distance(a, b) for a, b in pairs),
+        rotation=max(_rotation_distance(a, b) for a, b in pairs),
         wrench=max(_wrench_distance(a, b) for a, b in pairs),
     )
 
 
-def _wrench_distance(a: RodState, b: RodState) -> float:
-    arms = np.repeat([a.length, 1.0], 3)
-    size, apart = (float(np.linalg.norm(arms * wrench)) for wrench in (a.base_wrench, a.base_wrench - b.base_wrench))
-    return apart / size if size > 0 else apart
+def _position_distance(truth: RodState, approximation: RodState) -> float:
+    differences = truth.position - approximation.position
+    distances = np.linalg.norm(differences, axis=1)
+    return float(distances.max()) / truth.length
+
+
+def _rotation_distance(truth: RodState, approximation: RodState) -> float:
+    """The chord 2 sin(θ/2), which keeps its digits for small angles: √2 less than the norm of the difference."""
+    differences = truth.rotation - approximation.rotation
+    norms = np.linalg.norm(differences, axis=(1, 2))
+    return float(norms.max()) / 2**0.5
+
+
+def _wrench_distance(truth: RodState, approximation: RodState) -> float:
+    """Relative to the true wrench; as it is where that is zero."""
+    # Forces times the length are moments.
+    arms = np.repeat([truth.length, 1.0], 3)
+    size = float(np.linalg.norm(arms * truth.base_wrench))
+    difference = truth.base_wrench - approximation.base_wrench
+    error = float(np.linalg.norm(arms * difference))
+    if size > 0:
+        return error / size
+    return error
 
 
 def _finest(scene: scenes.Scene) -> Solution:
@@ -125,8 +154,9 @@ def _finest(scene: scenes.Scene) -> Solution:
     if not near.converged:
         raise NoReferenceError(f"no reference was found: {near.message}")
     chosen = near.model.discretisation.values()
-    modes, nodes = max(max(d.modes) for d in chosen) + MORE_MODES, max(d.nodes for d in chosen)
-    model = build(plain, discretise(plain, modes, 3 * nodes // 2 + 8, "magnus8"))
+    modes = max(max(d.modes) for d in chosen) + MORE_MODES
+    nodes = 3 * max(d.nodes for d in chosen) // 2 + MORE_NODES
+    model = build(plain, discretise(plain, modes, nodes, "magnus8"))
     finest = solve(model, start=prolong(near, model))
     if not finest.converged:
         raise NoReferenceError(f"no reference was found: {finest.message}")
@@ -136,10 +166,13 @@ def _finest(scene: scenes.Scene) -> Solution:
 def _shot(finest: Solution, fine: dict[str, RodState]) -> dict[str, RodState]:
     model = finest.model
     values = load_values(model.scene, model.inputs, finest.inputs)
-    return {
-        name: shoot(model.scene, discrete_rod.properties, values, list(watched(model, name)), fine[name].base_wrench)
-        for name, discrete_rod in model.discrete.rods.items()
-    }
+    rods = {}
+    for name, discrete_rod in model.discrete.rods.items():
+        sections = list(watched(model, name))
+        # Shooting starts from the clamp's wrench, and so stays on the branch.
+        start = fine[name].base_wrench
+        rods[name] = shoot(model.scene, discrete_rod.properties, values, sections, start)
+    return rods
 
 
 def _words(finest: Solution) -> str:

@@ -58,6 +58,7 @@ class Session:
                 trials.append(Trial(candidate, scene, reference, self.compiler))
             for trial in trials:
                 trial.wait()
+            # Only now, on a quiet machine.
             for trial in trials:
                 yield trial.finish()
         finally:
@@ -75,15 +76,19 @@ class Session:
 
     def facts(self) -> dict[str, Any]:
         """What a reader of the rows must know, as data."""
-        return {
-            "reference": {"method": self.reference.method, "distance_to_finest": self.reference.distance},
-            "strain_models": self.apart,
+        reference = {
+            "method": self.reference.method,
+            "distance_to_finest": self.reference.distance,
         }
+        return {"reference": reference, "strain_models": self.model_distances}
 
     @property
-    def apart(self) -> dict[str, float]:
+    def model_distances(self) -> dict[str, float]:
         """Pose distance of richer strain models from that of the scene."""
-        return {name: distance(self.reference.rods, r.rods).pose for name, r in self._references.items()}
+        distances = {}
+        for strain, reference in self._references.items():
+            distances[strain] = distance(self.reference.rods, reference.rods).pose
+        return distances
 
 
 def with_strain(scene: scenes.Scene, strain: str) -> scenes.Scene:
@@ -100,11 +105,14 @@ def with_strain(scene: scenes.Scene, strain: str) -> scenes.Scene:
 
 def richer_candidates(scene: scenes.Scene) -> list[Candidate]:
     """The next richer strain model at the scene's tolerance, where the scene allows it; else none."""
-    names = {rod.strain for rod in scene.rods}
-    richer = RICHER.get(str(names.pop())) if len(names) == 1 else None
+    strains = {str(rod.strain) for rod in scene.rods}
+    if len(strains) != 1:
+        return []
+    richer = RICHER.get(strains.pop())
     if richer is None:
         return []
     try:
+        # A stiffness that the richer model needs may not be given.
         with_strain(scene, richer)
     except SceneError:
         return []

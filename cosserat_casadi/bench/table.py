@@ -47,12 +47,14 @@ ROOM = 178
 def print_bench(console: Console, title: str, reference: Reference, rows: Sequence[Measurement]) -> None:
     """The table with its front marked, what errors are measured against, and why what is missing is missing."""
     console.print(f"[bold]{escape(title or 'Untitled scene')}[/]", highlight=False)
-    console.print(_table(rows, WIDE if console.width >= ROOM else NARROW))
+    columns = WIDE if console.width >= ROOM else NARROW
+    console.print(_table(rows, columns))
     console.print("● on the front: nothing measured is both more exact and faster. Times are of compiled C.")
     console.print(f"Errors are against {escape(reference_words(reference))}.", highlight=False)
     for row in rows:
         if row.note:
-            console.print(f"[dim]{escape(f'{row.name}: {row.note}')}[/]", highlight=False)
+            note = escape(f"{row.name}: {row.note}")
+            console.print(f"[dim]{note}[/]", highlight=False)
 
 
 def reference_words(reference: Reference) -> str:
@@ -62,9 +64,9 @@ def reference_words(reference: Reference) -> str:
     return f"{reference.method}; {reference.distance:.0e} from the finest discretisation"
 
 
-def print_strains(console: Console, apart: dict[str, float]) -> None:
+def print_strains(console: Console, model_distances: dict[str, float]) -> None:
     """How far richer strain models are from that of the scene."""
-    for strain, distance in apart.items():
+    for strain, distance in model_distances.items():
         sentence = f"The tip of the {strain} model is {distance:.1e} from that of the scene's strain model."
         console.print(sentence, highlight=False)
 
@@ -72,32 +74,61 @@ def print_strains(console: Console, apart: dict[str, float]) -> None:
 def _table(rows: Sequence[Measurement], columns: Sequence[str]) -> Table:
     table = Table(box=None, header_style="bold", pad_edge=False)
     for heading in columns:
-        table.add_column(heading, justify="left" if heading in ("", "point", "modes") else "right", no_wrap=True)
+        is_text = heading in ("", "point", "modes")
+        table.add_column(heading, justify="left" if is_text else "right", no_wrap=True)
     best = set(front(rows))
-    for row in sorted(rows, key=lambda row: (row.strain, not isfinite(row.pose_error), -row.pose_error)):
-        cells = dict(zip(COLUMNS, _cells(row, row in best), strict=True))
-        table.add_row(*(cells[heading] for heading in columns), style="bold green" if row in best else "")
+    for row in sorted(rows, key=_order):
+        cells = _cells(row, row in best)
+        shown = [cells[heading] for heading in columns]
+        table.add_row(*shown, style="bold green" if row in best else "")
     return table
 
 
-def _cells(row: Measurement, best: bool) -> list[str]:
-    """Cells in the order of COLUMNS."""
-    size = ["●" if best else "", escape(row.name), row.modes, row.intervals, str(row.unknowns)]
-    errors = [_power(v) for v in (row.pose_error, row.position_error, row.rotation_error, row.wrench_error)]
-    times = [_digits(v) for v in (row.build_s, row.vm_cold_us, row.igm_us, row.jacobian_us, row.warm_us, row.cold_us)]
+def _order(row: Measurement) -> tuple[str, bool, float]:
+    """The scene's own strain model first, then the largest error; what has none stands last."""
+    unknown = not isfinite(row.pose_error)
+    return row.strain, unknown, -row.pose_error
+
+
+def _cells(row: Measurement, best: bool) -> dict[str, str]:
+    """Cells by column."""
     operations = f"{row.jacobian_operations:,.0f}" if isfinite(row.jacobian_operations) else "–"
-    return [*size, *errors, operations, *times]
+    cells = (
+        "●" if best else "",
+        escape(row.name),
+        row.modes,
+        row.intervals,
+        str(row.unknowns),
+        _power(row.pose_error),
+        _power(row.position_error),
+        _power(row.rotation_error),
+        _power(row.wrench_error),
+        operations,
+        _digits(row.build_s),
+        _digits(row.vm_cold_us),
+        _digits(row.igm_us),
+        _digits(row.jacobian_us),
+        _digits(row.warm_us),
+        _digits(row.cold_us),
+    )
+    return dict(zip(COLUMNS, cells, strict=True))
 
 
 def _power(value: float) -> str:
-    return f"{value:.1e}" if isfinite(value) else "–"
+    if not isfinite(value):
+        return "–"
+    return f"{value:.1e}"
 
 
 def _digits(value: float) -> str:
     """Two digits behind the point of what is small, none of what is large."""
     if not isfinite(value):
         return "–"
-    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:,.0f}"
+    if value < 10:
+        return f"{value:.2f}"
+    if value < 100:
+        return f"{value:.1f}"
+    return f"{value:,.0f}"
 
 
 def print_effects(console: Console, whole: Times | str, parts: Mapping[str, Times | str]) -> None:
@@ -108,11 +139,16 @@ def print_effects(console: Console, whole: Times | str, parts: Mapping[str, Time
     if isinstance(whole, str):
         console.print(f"Not timed: {escape(whole)}", highlight=False)
         return
-    table.add_row("the whole scene", *(f"{value:.2f}" for value in (whole.igm, whole.jacobian, whole.cold)))
-    for name, rest in parts.items():
-        if isinstance(rest, str):
-            table.add_row(escape(name), "not timed: without it", escape(rest), "")
+    table.add_row("the whole scene", f"{whole.igm:.2f}", f"{whole.jacobian:.2f}", f"{whole.cold:.2f}")
+    for name, without in parts.items():
+        if isinstance(without, str):
+            table.add_row(escape(name), "not timed: without it", escape(without), "")
             continue
-        added = (whole.igm - rest.igm, whole.jacobian - rest.jacobian, whole.cold - rest.cold)
-        table.add_row(escape(name), *(f"{value:+.2f}" for value in added))
+        # What an effect adds is what is saved without it.
+        table.add_row(
+            escape(name),
+            f"{whole.igm - without.igm:+.2f}",
+            f"{whole.jacobian - without.jacobian:+.2f}",
+            f"{whole.cold - without.cold:+.2f}",
+        )
     console.print(table)

@@ -45,7 +45,8 @@ def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None
         inputs: stacked inputs, any expressions, shape (model.inputs.size,).
         near: an equilibrium to start from; the unloaded rods by default.
     """
-    return Lifted(x, model.residual(x, inputs), model.unloaded() if near is None else near.x)
+    start = model.unloaded() if near is None else near.x
+    return Lifted(x, model.residual(x, inputs), start)
 
 
 def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
@@ -64,6 +65,7 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
     options = {
+        # A decimal below what the excess certifies, so that Newton's last step does not decide.
         "abstol": CERTIFIED / 10,
         "max_iter": iterations,
         "error_on_fail": False,
@@ -73,5 +75,13 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
     inputs = ca.MX.sym("inputs", model.inputs.size)
     x = finder(ca.DM(near.x), inputs)
     residual = model.residual(x, inputs)
+    # Squares, since the norm has no derivative where the residual is zero.
     scale = CERTIFIED**2 * (1 + ca.sumsqr(x))
-    return ca.Function("embedded", [inputs], [x, ca.sumsqr(residual) / scale], ["inputs"], ["x", "excess"])
+    excess = ca.sumsqr(residual) / scale
+    return ca.Function(
+        "embedded",
+        [inputs],
+        [x, excess],
+        ["inputs"],
+        ["x", "excess"],
+    )

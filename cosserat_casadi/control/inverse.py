@@ -1,8 +1,8 @@
 """The inverse problem: values of inputs for which the equilibrium meets the targets of the scene.
 
-The unknowns of the rods and the inputs are sought together, the equilibrium being constraints ("lifted"), by an
-interior-point method with exact derivatives. What the optimiser ends at is only a proposal: the equilibrium at the
-inputs found is computed anew and judged like any other.
+The unknowns of the rods and the decision variables are found together, the equilibrium being constraints ("lifted"),
+by an interior-point method with exact derivatives. What the optimiser ends at is only a proposal: the equilibrium at
+its inputs is computed anew and judged like any other.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.control.goals import Gap, deviations, gaps, length_of
-from cosserat_casadi.control.sought import Sought, scales, sought
+from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
+from cosserat_casadi.control.target_errors import Gap, length_of, target_errors, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -65,7 +65,8 @@ class Inverse:
     @property
     def values(self) -> dict[str, FloatArray]:
         """The inputs found, by name."""
-        return self.solution.model.inputs.unpack(self.solution.inputs)
+        layout = self.solution.model.inputs
+        return layout.unpack(self.solution.inputs)
 
 
 def inverse(model: Model, *, start: Solution | None = None, stable: bool = False) -> Inverse:
@@ -77,8 +78,8 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
     Args:
         model: of a scene with targets, and with inputs that it lists or bounds.
         start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
-        stable: whether a stable equilibrium is wanted: from an unstable one the rod is let settle and the search goes
-            on from there, once. For loads that have a potential.
+        stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
+            once. For loads that have a potential.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
@@ -86,117 +87,183 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
     """
     if not model.scene.targets:
         raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
-    wanted = sought(model)
-    first = start or solve(model, model.inputs.unpack(wanted.clipped(model.pack())))
+    variables = decision_variables(model)
+    if start is None:
+        first_inputs = variables.clipped(model.pack())
+        start = solve(model, model.inputs.unpack(first_inputs))
     if stable:
-        check_potential(model, first.inputs)
-    search = _Search(model, wanted, scales(model, wanted, first), wanted.clipped(first.inputs))
-    found = search.run(first.x if np.all(np.isfinite(first.x)) else model.unloaded())
-    if stable and found.solution.stable is False:
-        found = _from_settled(search, found)
-    return _told(found, stable)
+        check_potential(model, start.inputs)
+    origin = variables.clipped(start.inputs)
+    problem = _LiftedProblem(model, variables, scales(model, variables, start), origin)
+    # A failed first solve may end at no numbers.
+    x = start.x if np.all(np.isfinite(start.x)) else model.unloaded()
+    result = problem.solve(x)
+    if stable and result.solution.stable is False:
+        result = _from_relaxed(problem, result)
+    return _with_verdict(result, stable)
 
 
-def _from_settled(search: _Search, found: Inverse) -> Inverse:
-    """The search once more, from where the rod settles to; what was found where that leads to nothing stable."""
-    settled = solve(search.model, found.values, start=found.solution, stable=True)
-    if not settled.stable:
-        return found
-    again = _Search(search.model, search.wanted, search.scale, settled.inputs).run(settled.x)
-    return again if again.solution.stable else found
+def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
+    """The search once more, from where the rod relaxes to; the first result where that leads to nothing stable."""
+    relaxed = solve(problem.model, result.values, start=result.solution, stable=True)
+    if not relaxed.stable:
+        return result
+    # Damped about the relaxed inputs now, so that the search stays near the stable branch.
+    second = replace(problem, origin=relaxed.inputs).solve(relaxed.x)
+    if second.solution.stable:
+        return second
+    return result
 
 
-def _told(found: Inverse, stable: bool) -> Inverse:
-    """The outcome with a sentence on the targets."""
-    message = found.solution.message
-    if found.solution.converged:
-        missed = [gap for gap, met in zip(found.gaps, _met(found.solution, found.gaps), strict=True) if not met]
-        message += " The targets are met." if not missed else _missed(missed)
-        message += NOT_STABLE if stable and found.solution.stable is False else ""
-    met = found.met and not (stable and found.solution.stable is False)
-    return replace(found, solution=replace(found.solution, message=message), met=met)
-
-
-def _missed(missed: list[Gap]) -> str:
-    told = "; ".join(
-        f"{gap.what} by {gap.position:.3g} m" + ("" if gap.angle is None else f" and {gap.angle:.3g} rad")
-        for gap in missed
+def _with_verdict(result: Inverse, stable: bool) -> Inverse:
+    """The result with a sentence on the targets."""
+    solution = result.solution
+    unstable = stable and solution.stable is False
+    message = solution.message
+    if solution.converged:
+        message += _targets_sentence(result)
+    if solution.converged and unstable:
+        message += NOT_STABLE
+    return replace(
+        result,
+        solution=replace(solution, message=message),
+        met=result.met and not unstable,
     )
-    return f" The targets are not all met; the closest that was found misses {told}."
 
 
-def _met(solution: Solution, missed: tuple[Gap, ...]) -> list[bool]:
+def _targets_sentence(result: Inverse) -> str:
+    verdicts = _met(result.solution, result.gaps)
+    missed = [gap for gap, met in zip(result.gaps, verdicts, strict=True) if not met]
+    if not missed:
+        return " The targets are met."
+    misses = "; ".join(_words(gap) for gap in missed)
+    return f" The targets are not all met; the closest that was found misses {misses}."
+
+
+def _words(gap: Gap) -> str:
+    distance = f"{gap.what} by {gap.position:.3g} m"
+    if gap.angle is None:
+        return distance
+    return f"{distance} and {gap.angle:.3g} rad"
+
+
+def _met(solution: Solution, errors: tuple[Gap, ...]) -> list[bool]:
+    """Whether each target is met."""
     model = solution.model
-    lengths = [length_of(model, target) for target in model.scene.targets]
     tolerance = model.scene.accuracy.tolerance
-    return [gap.within(length, tolerance) for gap, length in zip(missed, lengths, strict=True)]
+    verdicts = []
+    for error, target in zip(errors, model.scene.targets, strict=True):
+        length = length_of(model, target)
+        verdicts.append(error.within(length, tolerance))
+    return verdicts
 
 
 @dataclass(frozen=True)
-class _Search:
-    """The lifted problem of n sought inputs, in their scales from where they start.
+class _LiftedProblem:
+    """Unknowns and n decision variables, these as changes in their scales from an origin.
 
     Attributes:
         model: the model.
-        wanted: the inputs sought.
+        variables: the decision variables.
         scale: a change of each that matters, shape (n,).
         origin: stacked inputs to start from.
     """
 
     model: Model
-    wanted: Sought
+    variables: DecisionVariables
     scale: FloatArray
     origin: FloatArray
 
-    def run(self, x: FloatArray) -> Inverse:
+    def solve(self, x: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
 
         The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
         it makes out of the result.
+
+        Args:
+            x: unknowns to start from, shape (size,).
         """
-        solver, size = self._solver(), self.model.size
-        centre, rounds, moved = np.zeros(len(self.scale)), 0, np.inf
-        while rounds < ROUNDS and moved > SETTLED:
+        optimiser = self._optimiser()
+        bounds = self._bounds()
+        size = self.model.size
+        centre = np.zeros(len(self.scale))
+        rounds = 0
+        largest_change = np.inf
+        while rounds < ROUNDS and largest_change > SETTLED:
             damping = DAMPING[min(rounds, len(DAMPING) - 1)]
-            parameters = np.concatenate([centre, [damping]])
-            found = solver(x0=np.concatenate([x, centre]), p=parameters, lbg=0.0, ubg=0.0, **self._bounds())
-            ended = found["x"].full()[:, 0]
+            result = optimiser(
+                x0=np.concatenate([x, centre]),
+                p=np.concatenate([centre, [damping]]),
+                lbg=0.0,
+                ubg=0.0,
+                **bounds,
+            )
+            optimum = result["x"].full()[:, 0]
             rounds += 1
-            if not np.all(np.isfinite(ended)):
+            if not np.all(np.isfinite(optimum)):
+                # What the round before ended at is still a proposal.
                 break
-            moved = float(np.abs(ended[size:] - centre).max())
-            x, centre = ended[:size], ended[size:]
+            x = optimum[:size]
+            change = optimum[size:]
+            largest_change = float(np.abs(change - centre).max())
+            centre = change
         return self._judged(x, centre, rounds)
 
     def _judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
+        """The equilibrium at the inputs found, solved and judged like any other."""
         inputs = self.origin.copy()
-        inputs[self.wanted.places] += self.scale * change
-        inputs = self.wanted.clipped(inputs)
-        solution = solve(self.model, self.model.inputs.unpack(inputs), start=x)
-        missed = gaps(solution)
-        return Inverse(solution, missed, solution.converged and all(_met(solution, missed)), rounds)
+        inputs[self.variables.indices] += self.scale * change
+        # Rounding may leave a range by the last digit.
+        inputs = self.variables.clipped(inputs)
+        values = self.model.inputs.unpack(inputs)
+        solution = solve(self.model, values, start=x)
+        errors = target_errors(solution)
+        met = solution.converged and all(_met(solution, errors))
+        return Inverse(solution, errors, met, rounds)
 
-    def _solver(self) -> ca.Function:
-        count, places = len(self.scale), self.wanted.places
-        x, change, parameters = (
-            ca.MX.sym("x", self.model.size),
-            ca.MX.sym("change", count),
-            ca.MX.sym("centre_and_damping", count + 1),
-        )
-        into = ca.DM.triplet(places.tolist(), list(range(count)), ca.DM(self.scale), self.model.inputs.size, count)
-        inputs = ca.DM(self.origin) + into @ change
-        damped = parameters[-1] * ca.sumsqr(change - parameters[:-1])
+    def _optimiser(self) -> ca.Function:
+        """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
+        count = len(self.scale)
+        x = ca.MX.sym("x", self.model.size)
+        change = ca.MX.sym("change", count)
+        parameters = ca.MX.sym("centre_and_damping", count + 1)
+        centre = parameters[:-1]
+        damping = parameters[-1]
+        inputs = ca.DM(self.origin) + self._scatter() @ change
+        errors = weighted_errors(self.model, x, inputs)
+        damped = damping * ca.sumsqr(change - centre)
         problem = {
             "x": ca.vertcat(x, change),
             "p": parameters,
-            "f": (ca.sumsqr(deviations(self.model, x, inputs)) + damped) / 2,
+            "f": (ca.sumsqr(errors) + damped) / 2,
             "g": self.model.residual(x, inputs),
         }
-        options = {"print_time": False, "error_on_fail": False, "show_eval_warnings": False, "ipopt": IPOPT}
+        options = {
+            "print_time": False,
+            "error_on_fail": False,
+            "show_eval_warnings": False,
+            "ipopt": IPOPT,
+        }
         return ca.nlpsol("inverse", "ipopt", problem, options)
 
+    def _scatter(self) -> ca.DM:
+        """Matrix from changes of the decision variables to changes of the stacked inputs, shape (inputs, n)."""
+        count = len(self.scale)
+        return ca.DM.triplet(
+            self.variables.indices.tolist(),
+            list(range(count)),
+            ca.DM(self.scale),
+            self.model.inputs.size,
+            count,
+        )
+
     def _bounds(self) -> dict[str, FloatArray]:
-        free = np.full(self.model.size, np.inf)
-        start = self.origin[self.wanted.places]
-        lower, upper = (self.wanted.lower - start) / self.scale, (self.wanted.upper - start) / self.scale
-        return {"lbx": np.concatenate([-free, lower]), "ubx": np.concatenate([free, upper])}
+        """Ranges of the changes; the unknowns have none."""
+        unbounded = np.full(self.model.size, np.inf)
+        start = self.origin[self.variables.indices]
+        lower = (self.variables.lower - start) / self.scale
+        upper = (self.variables.upper - start) / self.scale
+        return {
+            "lbx": np.concatenate([-unbounded, lower]),
+            "ubx": np.concatenate([unbounded, upper]),
+        }

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import ceil
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import largest_turn, prolong, with_estimate
+from cosserat_casadi.accuracy.levels import VERIFIED_MODES, verified_model
+from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.outcome import Outcome
 
-LADDER = (6, 9, 12, 16, 21, 28, 36, 48)
-"""Modes per strain component and element, rung by rung."""
-
-SPARE = 2
-"""Intervals beyond those that the modes of an unbent rod need."""
+FINER_MODES = 4
+"""Modes that are added to those of the user to estimate their error."""
 
 Report = Callable[[str], None]
 """Told the discretisation."""
@@ -40,39 +36,50 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         SceneError: as in :func:`inverse`.
     """
     accuracy = scene.accuracy
-    model, start = (build(scene) if accuracy.fixed else _finer(scene, LADDER[0])), None
-    for modes in LADDER[1:]:
-        if report is not None:
-            report(f"{model.size} unknowns, {max(d.nodes for d in model.discretisation.values())} intervals")
-        found = inverse(model, start=start, stable=stable)
-        if not found.solution.converged and found.solution.outcome is not Outcome.UNRESOLVED:
-            return found
-        fine = _finer(scene, max(modes, _most(model) + 4) if accuracy.fixed else modes, found.solution)
-        start = solve(fine, found.values, start=prolong(found.solution, fine))
-        judged = _estimated(found, start)
+    model = build(scene) if accuracy.fixed else verified_model(scene, VERIFIED_MODES[0], 0.0)
+    start: Solution | None = None
+    for modes in VERIFIED_MODES[1:]:
+        _report(model, report)
+        result = inverse(model, start=start, stable=stable)
+        solution = result.solution
+        if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
+            return result
+        finer_modes = modes
+        if accuracy.fixed:
+            finer_modes = max(modes, _most_modes(model) + FINER_MODES)
+        finer = verified_model(scene, finer_modes, largest_turn(solution))
+        # One solve at the same inputs tells what the modes leave, and is where a next search would start.
+        reference = solve(finer, result.values, start=prolong(solution, finer))
+        judged = _with_estimate(result, reference)
         estimate = judged.solution.error_estimate
         if accuracy.fixed or (estimate is not None and estimate <= accuracy.tolerance):
             return judged
-        model = fine
-    return _unresolved(found)
+        model = finer
+        start = reference
+    return _unresolved(result)
 
 
-def _finer(scene: scenes.Scene, modes: int, below: Solution | None = None) -> Model:
-    """A model with so many modes, and nodes for how far the rods of a solution turn."""
-    turn = 0.0 if below is None else largest_turn(below)
-    return build(scene, discretise(scene, modes, nodes_for(modes) + SPARE + ceil(turn / 2), "magnus8"))
+def _report(model: Model, report: Report | None) -> None:
+    if report is None:
+        return
+    most_nodes = max(d.nodes for d in model.discretisation.values())
+    report(f"{model.size} unknowns, {most_nodes} intervals")
 
 
-def _most(model: Model) -> int:
-    return max(max(d.modes) for d in model.discretisation.values())
+def _most_modes(model: Model) -> int:
+    discretisations = model.discretisation.values()
+    return max(max(d.modes) for d in discretisations)
 
 
-def _estimated(found: Inverse, fine: Solution) -> Inverse:
-    if not (found.solution.converged and fine.converged):
-        return found
-    return replace(found, solution=with_estimate(found.solution, fine))
+def _with_estimate(result: Inverse, reference: Solution) -> Inverse:
+    """The result with the error of its equilibrium, where both are equilibria."""
+    if not result.solution.converged or not reference.converged:
+        return result
+    estimated = with_estimate(result.solution, reference)
+    return replace(result, solution=estimated)
 
 
-def _unresolved(found: Inverse) -> Inverse:
+def _unresolved(result: Inverse) -> Inverse:
     outcome = Outcome.UNRESOLVED
-    return replace(found, solution=replace(found.solution, outcome=outcome, message=outcome.value), met=False)
+    solution = replace(result.solution, outcome=outcome, message=outcome.value)
+    return replace(result, solution=solution, met=False)

@@ -49,57 +49,77 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
         raise ValueError(f"the width of a soft minimum is positive and finite, got {width}")
     check_potential(model, model.pack())
     _refuse_slack(model)
-    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
     bordered = _bordered(model, x, inputs)
-    margin = soft_minimum(_elastic(model).tobytes(), bordered.shape[0], width)(bordered)
-    return ca.Function("stability_margin", [x, inputs], [margin], ["x", "inputs"], ["margin"])
+    measure = _elastic(model).tobytes()
+    margin = soft_minimum(measure, bordered.shape[0], width)(bordered)
+    return ca.Function(
+        "stability_margin",
+        [x, inputs],
+        [margin],
+        ["x", "inputs"],
+        ["margin"],
+    )
 
 
 def _refuse_slack(model: Model) -> None:
     """Refuse cables that hold the rod at times only: the eigenvalues jump where they go slack."""
-    problems = [
-        Problem(f"actuators[{i}].slack", "a cable that may go slack makes eigenvalues jump", "give it slack = false")
-        for i, one in enumerate(model.scene.actuators)
-        if one.kind == "tendon" and one.length is not None and one.slack
-    ]
+    problems = []
+    for i, actuator in enumerate(model.scene.actuators):
+        if actuator.kind == "tendon" and actuator.length is not None and actuator.slack:
+            reason = "a cable that may go slack makes eigenvalues jump"
+            problems.append(Problem(f"actuators[{i}].slack", reason, "give it slack = false"))
     if problems:
         raise SceneError(*problems)
 
 
-def _shares(model: Model) -> FloatArray:
+def _energy_units(model: Model) -> FloatArray:
     """Energy unit of each free unknown relative to the largest, shape (n,)."""
     units = variations(model).units
-    return np.asarray(units / units.max(initial=0.0))
+    largest = units.max(initial=0.0)
+    return np.asarray(units / largest)
 
 
 def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
-    """Second variation bordered by the linearised gaps and the lengths of quaternions, symmetric."""
-    allowed, jacobian = variations(model), model.jacobian(x, inputs)[0]
-    free, held = allowed.free.tolist(), allowed.held.tolist()
-    stiffness = ca.diag(ca.DM(_shares(model))) @ jacobian[free, free]
-    gaps = ca.vertcat(jacobian[held, free], _growth(model, x)[:, free])
-    corner = ca.MX(gaps.shape[0], gaps.shape[0])
-    bordered: Matrix = ca.blockcat([[(stiffness + stiffness.T) / 2, gaps.T], [gaps, corner]])
-    return ca.densify(bordered)
+    """Second variation bordered by the linearised constraints and the lengths of quaternions, symmetric."""
+    admissible = variations(model)
+    jacobian = model.jacobian(x, inputs)[0]
+    free = admissible.free.tolist()
+    held = admissible.held.tolist()
+    # Rows of the residual are without unit, each in that of its own rod: multiplied by their units they are energies.
+    stiffness = ca.diag(ca.DM(_energy_units(model))) @ jacobian[free, free]
+    symmetric = (stiffness + stiffness.T) / 2
+    constraints = ca.vertcat(jacobian[held, free], _quaternion_growth(model, x)[:, free])
+    corner = ca.MX(constraints.shape[0], constraints.shape[0])
+    blocks = [[symmetric, constraints.T], [constraints, corner]]
+    bordered: Matrix = ca.densify(ca.blockcat(blocks))
+    return bordered
 
 
-def _growth(model: Model, x: Matrix) -> Matrix:
-    """Variation of the length of each moving frame's quaternion, which moves nothing and is not admitted, k×size."""
+def _quaternion_growth(model: Model, x: Matrix) -> Matrix:
+    """Variation of the length of each floating frame's quaternion, which moves nothing and is not admitted, k×size."""
     discrete = model.discrete
     rows = []
     for name, frame in discrete.frames.items():
-        place = discrete.deviation(name)
-        quaternion = ca.DM(frame.start.quaternion) + x[place][3:]
-        rows.append(ca.horzcat(ca.MX(1, place.start + 3), quaternion.T, ca.MX(1, model.size - place.stop)))
+        frame_slice = discrete.deviation(name)
+        # A frame has 7 unknowns: three of its position, then what its quaternion differs from that at the start.
+        quaternion = ca.DM(frame.start.quaternion) + x[frame_slice][3:]
+        before = ca.MX(1, frame_slice.start + 3)
+        after = ca.MX(1, model.size - frame_slice.stop)
+        rows.append(ca.horzcat(before, quaternion.T, after))
+    # Zero rows by the number of unknowns where no frame floats.
     return ca.vertcat(ca.MX(0, model.size), *rows)
 
 
 def _elastic(model: Model) -> FloatArray:
-    """Second variation of the elastic energy of the unloaded rods, n×n; zero for moving frames."""
-    whole = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
-    elastic = np.zeros_like(whole)
-    for _, place in model.discrete.unknowns.of_kind(BlockKind.STRAIN):
-        elastic[place, place] = whole[place, place]
+    """Second variation of the elastic energy of the unloaded rods, n×n; zero for floating frames."""
+    # At load factor 0 the loads are gone and constraints yield: on the rods' own blocks only elasticity is left.
+    jacobian = model.path_jacobian(model.unloaded(), model.pack(), 0.0).full()
+    elastic = np.zeros_like(jacobian)
+    for _, rod_slice in model.discrete.unknowns.of_kind(BlockKind.STRAIN):
+        elastic[rod_slice, rod_slice] = jacobian[rod_slice, rod_slice]
     free = variations(model).free
-    scaled = _shares(model)[:, None] * elastic[np.ix_(free, free)]
+    units = _energy_units(model)
+    scaled = units[:, None] * elastic[np.ix_(free, free)]
     return np.asarray((scaled + scaled.T) / 2)

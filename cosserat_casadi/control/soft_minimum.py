@@ -1,4 +1,8 @@
-"""The soft minimum of the eigenvalues of a bordered matrix as a CasADi function with two exact derivatives."""
+"""The soft minimum of the eigenvalues of a bordered matrix as a CasADi function with two exact derivatives.
+
+NumPy finds the eigenvalues, so the functions are callbacks. There are three because CasADi asks each callback for a
+callback of its derivative: the value's is the gradient, the gradient's is the curvature along given directions.
+"""
 
 from __future__ import annotations
 
@@ -25,24 +29,30 @@ def soft_minimum(measure: bytes, size: int, width: float) -> ca.Callback:
     """
     doubles = np.frombuffer(measure)
     rows = round(len(doubles) ** 0.5)
-    return _Value("soft_minimum", _Place(doubles.reshape(rows, rows), size, width))
+    spectra = _SpectrumCache(doubles.reshape(rows, rows), size, width)
+    return _Value("soft_minimum", spectra)
 
 
-class _Place:
+class _SpectrumCache:
     """Spectrum of the matrix asked about last: value, gradient and curvature share one decomposition."""
 
     def __init__(self, measure: FloatArray, size: int, width: float) -> None:
-        self.measure, self.size, self.width = measure, size, width
-        self._last: tuple[bytes, Spectrum | None] = (b"", None)
+        self.measure = measure
+        self.size = size
+        self.width = width
+        self._last_matrix = b""
+        self._last_spectrum: Spectrum | None = None
 
     def spectrum(self, matrix: ca.DM) -> Spectrum | None:
         """The spectrum of a matrix; None where it is not finite or the measure is zero for some variation."""
-        full = matrix.full()
-        if self._last[0] != full.tobytes():
-            self._last = full.tobytes(), self._computed(full)
-        return self._last[1]
+        dense = matrix.full()
+        key = dense.tobytes()
+        if self._last_matrix != key:
+            self._last_spectrum = self._decomposed(dense)
+            self._last_matrix = key
+        return self._last_spectrum
 
-    def _computed(self, matrix: FloatArray) -> Spectrum | None:
+    def _decomposed(self, matrix: FloatArray) -> Spectrum | None:
         if not np.all(np.isfinite(matrix)):
             return None
         try:
@@ -51,12 +61,13 @@ class _Place:
             return None
 
 
-class _Computed(ca.Callback):  # type: ignore[misc]
-    """What Python computes of the spectrum, a function of the matrix and perhaps of changes of it side by side."""
+class _SpectralFunction(ca.Callback):  # type: ignore[misc]
+    """A function of the matrix, and perhaps of changes of it side by side, that is read off the spectrum."""
 
-    def __init__(self, name: str, place: _Place, changes: int = 0) -> None:
+    def __init__(self, name: str, spectra: _SpectrumCache, changes: int = 0) -> None:
         super().__init__()
-        self.place, self.changes = place, changes
+        self.spectra = spectra
+        self.changes = changes
         self.construct(name, {})
 
     def get_n_in(self) -> int:
@@ -66,65 +77,86 @@ class _Computed(ca.Callback):  # type: ignore[misc]
         return 1
 
     def get_sparsity_in(self, i: int) -> ca.Sparsity:
-        return self._square(self.changes if i else 1)
+        if i == 0:
+            return self._side_by_side(1)
+        return self._side_by_side(self.changes)
 
-    def _square(self, count: int) -> ca.Sparsity:
-        return ca.Sparsity.dense(self.place.size, self.place.size * count)
+    def _side_by_side(self, count: int) -> ca.Sparsity:
+        """Sparsity of so many dense matrices side by side."""
+        rows = self.spectra.size
+        return ca.Sparsity.dense(rows, rows * count)
 
 
-class _Value(_Computed):
+class _Value(_SpectralFunction):
     """Matrix ↦ soft minimum."""
 
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
         return ca.Sparsity.dense(1, 1)
 
     def eval(self, arg: list[ca.DM]) -> list[float]:
-        spectrum = self.place.spectrum(arg[0])
-        return [np.nan if spectrum is None else spectrum.soft_minimum]
+        spectrum = self.spectra.spectrum(arg[0])
+        if spectrum is None:
+            return [np.nan]
+        return [spectrum.soft_minimum]
 
     def init(self) -> None:
-        self.gradient = _Gradient("soft_minimum_gradient", self.place)
+        self.gradient = _Gradient("soft_minimum_gradient", self.spectra)
 
     def has_forward(self, nfwd: int) -> bool:
         return True
 
     def get_forward(self, nfwd: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
-        matrix, value, change = self._symbols(nfwd)
-        columns = ca.reshape(change, self.place.size**2, nfwd)
-        rate = ca.vec(self.gradient(matrix)).T @ columns
-        return ca.Function(name, [matrix, value, change], [rate], inames, onames, opts)
+        matrix, value = self._symbols()
+        changes = ca.MX.sym("change", self._side_by_side(nfwd))
+        # Each change of the matrix as one column: the rate is ⟨gradient, change⟩.
+        columns = ca.reshape(changes, self.spectra.size**2, nfwd)
+        gradient = ca.vec(self.gradient(matrix))
+        arguments = [matrix, value, changes]
+        return ca.Function(name, arguments, [gradient.T @ columns], inames, onames, opts)
 
     def has_reverse(self, nadj: int) -> bool:
         return True
 
     def get_reverse(self, nadj: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
-        matrix, value, _ = self._symbols(1)
+        matrix, value = self._symbols()
         seeds = ca.MX.sym("seeds", 1, nadj)
-        return ca.Function(name, [matrix, value, seeds], [ca.kron(seeds, self.gradient(matrix))], inames, onames, opts)
+        # The gradient times each seed, side by side.
+        adjoints = ca.kron(seeds, self.gradient(matrix))
+        arguments = [matrix, value, seeds]
+        return ca.Function(name, arguments, [adjoints], inames, onames, opts)
 
-    def _symbols(self, count: int) -> tuple[ca.MX, ca.MX, ca.MX]:
-        matrix = ca.MX.sym("matrix", self._square(1))
-        return matrix, ca.MX.sym("value"), ca.MX.sym("change", self._square(count))
+    def _symbols(self) -> tuple[ca.MX, ca.MX]:
+        """Arguments that CasADi gives every derivative: the input and the output."""
+        matrix = ca.MX.sym("matrix", self._side_by_side(1))
+        return matrix, ca.MX.sym("value")
 
 
-class _Gradient(_Computed):
+class _Gradient(_SpectralFunction):
     """Matrix ↦ gradient; its derivative is symmetric, so it is its own transpose."""
 
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        return self._square(1)
+        return self._side_by_side(1)
 
     def eval(self, arg: list[ca.DM]) -> list[FloatArray]:
-        spectrum = self.place.spectrum(arg[0])
-        return [np.full((self.place.size,) * 2, np.nan) if spectrum is None else spectrum.gradient]
+        spectrum = self.spectra.spectrum(arg[0])
+        if spectrum is None:
+            rows = self.spectra.size
+            return [np.full((rows, rows), np.nan)]
+        return [spectrum.gradient]
 
     def has_forward(self, nfwd: int) -> bool:
         return True
 
     def get_forward(self, nfwd: int, name: str, inames: list[str], onames: list[str], opts: Any) -> ca.Function:
-        matrix, gradient = (ca.MX.sym(word, self._square(1)) for word in ("matrix", "gradient"))
-        changes = ca.MX.sym("changes", self._square(nfwd))
-        curved = _curvature(self.place, nfwd)(matrix, changes)
-        return ca.Function(name, [matrix, gradient, changes], [curved], inames, onames, opts)
+        square = self._side_by_side(1)
+        matrix = ca.MX.sym("matrix", square)
+        gradient = ca.MX.sym("gradient", square)
+        changes = ca.MX.sym("changes", self._side_by_side(nfwd))
+        # CasADi asks for so many directions at once; each number has a callback of its own.
+        curvature = _curvature(self.spectra, nfwd)
+        changes_of_gradient = curvature(matrix, changes)
+        arguments = [matrix, gradient, changes]
+        return ca.Function(name, arguments, [changes_of_gradient], inames, onames, opts)
 
     def has_reverse(self, nadj: int) -> bool:
         return True
@@ -133,19 +165,23 @@ class _Gradient(_Computed):
         return self.get_forward(nadj, name, inames, onames, opts)
 
 
-class _Curvature(_Computed):
+class _Curvature(_SpectralFunction):
     """Matrix and changes of it ↦ changes of the gradient."""
 
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
-        return self._square(self.changes)
+        return self._side_by_side(self.changes)
 
     def eval(self, arg: list[ca.DM]) -> list[FloatArray]:
-        spectrum, changes = self.place.spectrum(arg[0]), arg[1].full()
+        spectrum = self.spectra.spectrum(arg[0])
+        changes = arg[1].full()
         if spectrum is None:
             return [np.full_like(changes, np.nan)]
-        return [np.hstack([spectrum.curvature(change) for change in np.hsplit(changes, self.changes)])]
+        matrices = np.hsplit(changes, self.changes)
+        curvatures = [spectrum.curvature(matrix) for matrix in matrices]
+        return [np.hstack(curvatures)]
 
 
 @cache
-def _curvature(place: _Place, changes: int) -> _Curvature:
-    return _Curvature("soft_minimum_curvature", place, changes)
+def _curvature(spectra: _SpectrumCache, changes: int) -> _Curvature:
+    # Kept alive by the cache, like the value.
+    return _Curvature("soft_minimum_curvature", spectra, changes)

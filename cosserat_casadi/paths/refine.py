@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.refine import ROUNDING, largest_turn
+from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.numerics.arclength import ArcSettings

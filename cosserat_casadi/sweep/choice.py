@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import solve_scene
-from cosserat_casadi.accuracy.tune import fixed, refine, unfixed
+from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed
 from cosserat_casadi.codegen.rows import JUDGED, POSE
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -22,7 +22,7 @@ from cosserat_casadi.sweep.variants import Variants
 CHECKED = 6
 """Rows that are solved again at the end."""
 
-Told = Callable[[str, int, int], None]
+Progress = Callable[[str, int, int], None]
 """Told what is being done, how much of it is done, and of how much."""
 
 
@@ -42,67 +42,98 @@ class Choice:
     converged: int = 0
     error_estimate: float | None = None
 
-    def scene(self, given: Scene) -> Scene:
-        """A scene on this discretisation."""
-        return given if self.discretisation is None else fixed(given, self.discretisation)
+    def scene(self, variant: Scene) -> Scene:
+        """The scene of a variant on this discretisation."""
+        if self.discretisation is None:
+            return variant
+        return fixed(variant, self.discretisation)
 
     def plain(self) -> dict[str, Any]:
         """The choice as data of a JSON file."""
-        chosen = self.discretisation
-        fixes = chosen and {"modes": list(chosen.modes), "nodes": chosen.nodes, "rotation": chosen.transport}
-        words = {"rows": list(self.rows), "converged": self.converged, "error_estimate": self.error_estimate}
-        return {"discretisation": fixes, **words}
+        return {
+            "discretisation": _plain_discretisation(self.discretisation),
+            "rows": list(self.rows),
+            "converged": self.converged,
+            "error_estimate": self.error_estimate,
+        }
 
     @classmethod
     def read(cls, plain: dict[str, Any]) -> Choice:
         """The choice that data of a JSON file hold."""
-        given = plain["discretisation"]
-        chosen = given and Discretisation(tuple(given["modes"]), given["nodes"], transport=given["rotation"])
-        return cls(chosen, tuple(plain["rows"]), plain["converged"], plain["error_estimate"])
+        entries = plain["discretisation"]
+        discretisation = None
+        if entries:
+            modes = tuple(entries["modes"])
+            discretisation = Discretisation(modes, entries["nodes"], transport=entries["rotation"])
+        return cls(
+            discretisation,
+            tuple(plain["rows"]),
+            plain["converged"],
+            plain["error_estimate"],
+        )
 
 
-def choose(found: Variants, values: FloatArray, samples: int, told: Told) -> Choice:
+def choose(variants: Variants, values: FloatArray, samples: int, progress: Progress) -> Choice:
     """The smallest discretisation found that meets the tolerance on rows that stand for all.
 
     A scene that fixes modes, nodes or rotation is taken at its word. Rows without an equilibrium do not take part,
     unless no row has one.
 
     Args:
-        found: scenes and inputs of the table.
+        variants: scenes and inputs of the table.
         values: of the table, shape (rows, columns).
         samples: rows to look at.
-        told: told what is being done.
+        progress: told what is being done.
     """
-    accuracy = found.entries[0].scene.accuracy
+    accuracy = variants.entries[0].scene.accuracy
     if accuracy.fixed:
         return Choice(None)
     rows = representative_rows(values, samples)
-    cases = [(unfixed(found.of_row(row).scene, accuracy.tolerance), _values(found, row)) for row in rows]
-    done, total = 0, 2 * len(cases)
+    cases = []
+    for row in rows:
+        scene = unfixed(variants.of_row(row).scene, accuracy.tolerance)
+        cases.append((scene, variants.inputs_of_row(row)))
+    # Each row once by itself and once on the union, which may have to be refined.
+    expected = 2 * len(cases)
+    solved_cases = 0
 
-    def solved(scene: Scene, given: dict[str, FloatArray]) -> Solution:
-        nonlocal done
-        told("Choosing the discretisation", done, max(total, done + 1))
-        done += 1
-        return solve_scene(scene, given)
+    def solve_reporting(scene: Scene, inputs: dict[str, FloatArray]) -> Solution:
+        nonlocal solved_cases
+        progress("Choosing the discretisation", solved_cases, max(expected, solved_cases + 1))
+        solved_cases += 1
+        return solve_scene(scene, inputs)
 
-    alone = [solved(*case) for case in cases]
-    kept = [i for i, solution in enumerate(alone) if solution.converged]
-    used = kept or list(range(len(cases)))
-    chosen, together = refine([cases[i] for i in used], [alone[i] for i in used], solved)  # type: ignore[arg-type]
-    reached = [solution for solution in together if solution.converged]
-    estimates = [s.error_estimate for s in reached if s.error_estimate is not None]
-    return Choice(chosen, tuple(rows), len(reached), max(estimates, default=None))
+    alone = [solve_reporting(scene, inputs) for scene, inputs in cases]
+    with_equilibrium = [i for i, solution in enumerate(alone) if solution.converged]
+    used = with_equilibrium or list(range(len(cases)))
+    discretisation, together = common_discretisation(
+        [cases[i] for i in used],
+        [alone[i] for i in used],
+        solve_reporting,  # type: ignore[arg-type]
+    )
+    converged = [solution for solution in together if solution.converged]
+    estimates = [s.error_estimate for s in converged if s.error_estimate is not None]
+    return Choice(
+        discretisation,
+        tuple(rows),
+        len(converged),
+        max(estimates, default=None),
+    )
 
 
-def check(found: Variants, choice: Choice, results: FloatArray, told: Told) -> list[dict[str, Any]]:
+def check(
+    variants: Variants,
+    choice: Choice,
+    results: FloatArray,
+    progress: Progress,
+) -> list[dict[str, Any]]:
     """Some rows solved again in Python, beside a finer discretisation that tells their error.
 
     Args:
-        found: scenes and inputs of the table.
+        variants: scenes and inputs of the table.
         choice: the discretisation.
         results: of all rows, shape (rows, results).
-        told: told what is being done.
+        progress: told what is being done.
 
     Returns:
         for each row its number from 0, the estimated error, how far its poses lie from those found in Python, relative
@@ -111,18 +142,23 @@ def check(found: Variants, choice: Choice, results: FloatArray, told: Told) -> l
     converged = np.flatnonzero(results[:, 0] == 0)
     if not converged.size:
         return []
-    spread = representative_rows(results[converged][:, len(JUDGED) : len(JUDGED) + 3], CHECKED)
-    judged = []
-    for done, row in enumerate(converged[spread].tolist()):
-        told("Checking rows", done, len(spread))
-        solution = solve_scene(choice.scene(found.of_row(row).scene), _values(found, row))
-        words = {"row": row, "error_estimate": None, "difference": None, "stable": None}
+    # Rows whose first tip lies at the corners of the workspace, where the rods are bent most.
+    first = len(JUDGED)
+    positions = results[converged][:, first : first + 3]
+    rows = converged[representative_rows(positions, CHECKED)].tolist()
+    checked = []
+    for done, row in enumerate(rows):
+        progress("Checking rows", done, len(rows))
+        scene = choice.scene(variants.of_row(row).scene)
+        solution = solve_scene(scene, variants.inputs_of_row(row))
+        entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:
-            difference = pose_difference(results[row], solution)
-            words |= {"error_estimate": solution.error_estimate, "difference": difference, "stable": solution.stable}
-        judged.append(words)
-    told("Checking rows", len(spread), len(spread))
-    return judged
+            entry["error_estimate"] = solution.error_estimate
+            entry["difference"] = pose_difference(results[row], solution)
+            entry["stable"] = solution.stable
+        checked.append(entry)
+    progress("Checking rows", len(rows), len(rows))
+    return checked
 
 
 def pose_difference(row: FloatArray, solution: Solution) -> float:
@@ -130,15 +166,28 @@ def pose_difference(row: FloatArray, solution: Solution) -> float:
     scene = solution.model.scene
     length = max(rod.length for rod in scene.rods)
     count = len(scene.rods) + len(scene.bodies)
-    one, other = (
-        poses[len(JUDGED) : len(JUDGED) + count * len(POSE)].reshape(count, len(POSE))
-        for poses in (row, result_row(solution, len(row)))
-    )
-    position = np.abs(one[:, :3] - other[:, :3]).max() / length
+    swept = _poses(row, count)
+    solved = _poses(result_row(solution, len(row)), count)
+    position_difference = np.abs(swept[:, :3] - solved[:, :3]).max() / length
     # Both signs of a quaternion are the same rotation.
-    turns = [np.abs(one[:, 3:] - sign * other[:, 3:]).max(axis=1) for sign in (1.0, -1.0)]
-    return float(max(position, np.minimum(*turns).max()))
+    same_sign = np.abs(swept[:, 3:] - solved[:, 3:]).max(axis=1)
+    other_sign = np.abs(swept[:, 3:] + solved[:, 3:]).max(axis=1)
+    rotation_difference = np.minimum(same_sign, other_sign).max()
+    return float(max(position_difference, rotation_difference))
 
 
-def _values(found: Variants, row: int) -> dict[str, FloatArray]:
-    return found.layout.unpack(found.inputs[row])
+def _poses(row: FloatArray, count: int) -> FloatArray:
+    """Positions and quaternions of tips and bodies in a row of results, shape (count, 7)."""
+    first = len(JUDGED)
+    stop = first + count * len(POSE)
+    return row[first:stop].reshape(count, len(POSE))
+
+
+def _plain_discretisation(chosen: Discretisation | None) -> dict[str, Any] | None:
+    if chosen is None:
+        return None
+    return {
+        "modes": list(chosen.modes),
+        "nodes": chosen.nodes,
+        "rotation": chosen.transport,
+    }

@@ -47,6 +47,7 @@ class Cluster:
         waiting: dict[str, Chunk] = {}
         finished = as_completed(loop=self._client.loop)
         for chunk, parts in tasks:
+            # Pure tasks would be kept by a hash of their arguments, which takes longer than it saves.
             future = self._client.submit(_solve, *self._arguments(chunk, parts), pure=False)
             waiting[future.key] = chunk
             finished.add(future)
@@ -59,10 +60,13 @@ class Cluster:
         """Answers and inputs; a compiled library travels as the result of a task, which any worker can make anew."""
         if not chunk.compiled:
             return tuple(parts), None
-        (answer, inputs), (place, _) = parts[0], chunk.pieces[0]
-        if place not in self._shared:
-            self._shared = {place: self._client.submit(_same, answer, pure=False)}
-        return self._shared[place], inputs
+        # A compiled chunk has one part.
+        answer, inputs = parts[0]
+        variant, _ = chunk.pieces[0]
+        if variant not in self._shared:
+            # Chunks come variant by variant: the library of the last one is not needed any more.
+            self._shared = {variant: self._client.submit(_same, answer, pure=False)}
+        return self._shared[variant], inputs
 
 
 def _client(address: str) -> Any:
@@ -84,19 +88,19 @@ def _check_workers(client: Any) -> None:
     """Refuse workers that would compute something else, or nothing."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
-        found = client.run(_version)
+        versions = client.run(_version)
     except TimeoutError:
         client.close()
         raise ClusterError("the scheduler has no workers: start some with  dask worker ADDRESS") from None
     except ImportError as error:
         client.close()
         raise ClusterError(f"the workers lack this package: {error}") from None
-    others = sorted({f"{address} has {one}" for address, one in found.items() if one != _version()})
-    if others:
+    own = _version()
+    differing = sorted({f"{address} has {theirs}" for address, theirs in versions.items() if theirs != own})
+    if differing:
         client.close()
-        raise ClusterError(
-            f"the workers' versions of cosserat-casadi differ from {_version()} here: {'; '.join(others)}"
-        )
+        message = f"the workers' versions of cosserat-casadi differ from {own} here: {'; '.join(differing)}"
+        raise ClusterError(message)
 
 
 def _version() -> str:
@@ -108,15 +112,18 @@ def _same(answer: Answer) -> Answer:
 
 
 def _solve(answer: Answer | tuple[Part, ...], inputs: FloatArray | None) -> FloatArray:
-    return solve_parts(answer) if isinstance(answer, tuple) else answer.solve(inputs)  # type: ignore[arg-type]
+    if isinstance(answer, tuple):
+        return solve_parts(answer)
+    return answer.solve(inputs)  # type: ignore[arg-type]
 
 
 def _taken(future: Any, waiting: dict[str, Chunk]) -> tuple[Chunk, FloatArray]:
     from distributed import CancelledError, KilledWorker
 
     try:
-        found: FloatArray = future.result()
+        results: FloatArray = future.result()
     except (CancelledError, KilledWorker, OSError) as error:
         message = f"the cluster gave a chunk up: {error}; the same command goes on with what is not done"
         raise ClusterError(message) from None
-    return waiting.pop(future.key), found
+    chunk = waiting.pop(future.key)
+    return chunk, results

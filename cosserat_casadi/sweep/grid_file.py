@@ -40,7 +40,9 @@ class _Random:
 
     def draw(self, rng: np.random.Generator, count: int) -> FloatArray:
         first, second = self.numbers
-        return rng.uniform(first, second, count) if self.kind == "uniform" else rng.normal(first, second, count)
+        if self.kind == "uniform":
+            return rng.uniform(first, second, count)
+        return rng.normal(first, second, count)
 
 
 def read_grid(path: Path) -> tuple[tuple[str, ...], FloatArray]:
@@ -66,22 +68,27 @@ def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatA
     """
     problems: list[Problem] = []
     axes: dict[str, FloatArray | _Random] = {}
-    for name, given in _leaves({key: entry for key, entry in tables.items() if key not in ("samples", "seed")}):
+    columns = {key: entry for key, entry in tables.items() if key not in ("samples", "seed")}
+    for name, entry in _leaves(columns):
         try:
             if name in axes:
                 raise _Refused("is given twice", "once as a dotted key, once in quotes")
-            axes[name] = _axis(given)
+            axes[name] = _axis(entry)
         except _Refused as error:
             problems.append(Problem(f"{where}, {name}", *error.args))
-    samples = _samples(tables, where, any(isinstance(axis, _Random) for axis in axes.values()), problems)
-    rows = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random)) * samples
+    has_random = any(isinstance(axis, _Random) for axis in axes.values())
+    samples = _samples(tables, where, has_random, problems)
     if not axes and not problems:
         problems.append(Problem(where, "names no column", REMEDY))
+    # Counted before the rows are made: a grid too large would not fit into memory.
+    combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
+    rows = combinations * samples
     if rows > MOST_ROWS:
         problems.append(Problem(where, f"asks for {rows:,} rows", f"at most {MOST_ROWS:,}"))
     if problems:
         raise SceneError(*problems)
-    return tuple(axes), _product(axes, samples, int(tables.get("seed", 0)))
+    seed = int(tables.get("seed", 0))
+    return tuple(axes), _product(axes, samples, seed)
 
 
 class _Refused(Exception):  # noqa: N818 - it never leaves this module
@@ -92,47 +99,79 @@ def _leaves(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
     """Columns of nested tables: ``push.force.x`` may be written with its dots as TOML takes them, or in quotes."""
     for key, entry in tables.items():
         name = f"{prefix}{key}"
-        nested = isinstance(entry, dict) and entry and not set(entry) & {*RANGE, *RANDOM}
-        yield from _leaves(entry, f"{name}.") if nested else [(name, entry)]
+        if _is_nested(entry):
+            yield from _leaves(entry, f"{name}.")
+        else:
+            yield name, entry
 
 
-def _axis(given: Any) -> FloatArray | _Random:
-    if isinstance(given, dict):
-        return _random(given) if set(given) & set(RANDOM) else _range(given)
-    entries = given if isinstance(given, list) else [given]
+def _is_nested(entry: Any) -> bool:
+    """Whether an entry holds columns, and is not one itself."""
+    if not isinstance(entry, dict) or not entry:
+        return False
+    column_keys = {*RANGE, *RANDOM}
+    return not set(entry) & column_keys
+
+
+def _axis(entry: Any) -> FloatArray | _Random:
+    """The values of a column, or how to draw them."""
+    if isinstance(entry, dict):
+        if set(entry) & set(RANDOM):
+            return _random(entry)
+        return _range(entry)
+    entries = entry if isinstance(entry, list) else [entry]
     if not entries:
         raise _Refused("is an empty list", REMEDY)
-    return np.array([_number(entry) for entry in entries])
+    return np.array([_number(number) for number in entries])
 
 
-def _range(given: Mapping[str, Any]) -> FloatArray:
-    if set(given) != set(RANGE):
-        unknown, missing = sorted(set(given) - set(RANGE)), [key for key in RANGE if key not in given]
-        told = [f"does not know {', '.join(unknown)}"] * bool(unknown) + [f"lacks {', '.join(missing)}"] * bool(missing)
-        raise _Refused(" and ".join(told), REMEDY)
-    count = _whole(given["count"], "count", 1)
+def _range(entry: Mapping[str, Any]) -> FloatArray:
+    """Evenly spaced values, both ends included."""
+    _refuse_keys(entry)
+    count = _whole(entry["count"], "count", 1)
     if count > MOST_ROWS:
         raise _Refused(f"asks for {count:,} values", f"at most {MOST_ROWS:,}")
-    ends = _number(given["from"]), _number(given["to"])
-    if not math.isfinite(ends[1] - ends[0]):
+    start = _number(entry["from"])
+    end = _number(entry["to"])
+    if not math.isfinite(end - start):
         raise _Refused(BEYOND, REMEDY)
-    if count == 1 and ends[0] != ends[1]:
+    if count == 1 and start != end:
         raise _Refused("has one value between two ends", "count at least 2, or a number")
-    return np.linspace(*ends, count)
+    return np.linspace(start, end, count)
 
 
-def _random(given: Mapping[str, Any]) -> _Random:
-    (kind,) = set(given) if len(given) == 1 else ("",)
-    if kind not in RANDOM:
-        raise _Refused(f"mixes {', '.join(sorted(given))}", REMEDY)
-    numbers = given[kind]
+def _refuse_keys(entry: Mapping[str, Any]) -> None:
+    """Refuse a range with other keys than its three."""
+    unknown = sorted(set(entry) - set(RANGE))
+    missing = [key for key in RANGE if key not in entry]
+    faults = []
+    if unknown:
+        faults.append(f"does not know {', '.join(unknown)}")
+    if missing:
+        faults.append(f"lacks {', '.join(missing)}")
+    if faults:
+        raise _Refused(" and ".join(faults), REMEDY)
+
+
+def _random(entry: Mapping[str, Any]) -> _Random:
+    kinds = list(entry)
+    if len(kinds) != 1 or kinds[0] not in RANDOM:
+        raise _Refused(f"mixes {', '.join(sorted(entry))}", REMEDY)
+    kind = kinds[0]
+    numbers = entry[kind]
     if not isinstance(numbers, list) or len(numbers) != 2:
         raise _Refused(f"{kind} must be a list of {RANDOM[kind]}, got {shown(numbers)}", REMEDY)
     first, second = map(_number, numbers)
-    if (kind == "uniform" and not first < second) or (kind == "normal" and not second > 0):
+    if kind == "uniform":
+        sound = first < second
+        reach = second - first
+    else:
+        sound = second > 0
+        # No draw lies a hundred deviations off.
+        reach = abs(first) + 100 * second
+    if not sound:
         raise _Refused(f"{kind} = {numbers} is no range", "low < high; a deviation is > 0")
-    # No draw lies a hundred deviations off.
-    if not math.isfinite(second - first if kind == "uniform" else abs(first) + 100 * second):
+    if not math.isfinite(reach):
         raise _Refused(BEYOND, REMEDY)
     return _Random(kind, (first, second))
 
@@ -145,31 +184,42 @@ def _samples(tables: Mapping[str, Any], where: str, random: bool, problems: list
                 _whole(tables[key], key, least)
             except _Refused as error:
                 problems.append(Problem(where, *error.args))
-        if random != (key in tables):
-            told = "is missing for random columns" if random else "stands without random columns"
-            remedy = f"give {key} = {least + 100}" if random else "leave it out"
-            problems.append(Problem(f"{where}, {key}", told, remedy))
+        if random and key not in tables:
+            problem = "is missing for random columns"
+            problems.append(Problem(f"{where}, {key}", problem, f"give {key} = {least + 100}"))
+        if not random and key in tables:
+            problems.append(Problem(f"{where}, {key}", "stands without random columns", "leave it out"))
     samples = tables.get("samples", 1)
+    # Where it is refused the rows are still counted, with one draw.
     return samples if isinstance(samples, int) and samples > 0 else 1
 
 
 def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int) -> FloatArray:
     """Every combination, shape (rows, columns); draws run slowest."""
     rng = np.random.default_rng(seed)
-    drawn = [axis.draw(rng, samples) for axis in axes.values() if isinstance(axis, _Random)]
-    fixed = [axis for axis in axes.values() if not isinstance(axis, _Random)]
-    count = math.prod(map(len, fixed))
-    mesh = iter([part.ravel() for part in np.meshgrid(*fixed, indexing="ij")])
-    draws = iter(drawn)
-    parts = [
-        np.repeat(next(draws), count) if isinstance(axis, _Random) else np.tile(next(mesh), samples)
-        for axis in axes.values()
-    ]
-    return np.column_stack(parts)
+    fixed = {}
+    drawn = {}
+    for name, axis in axes.items():
+        if isinstance(axis, _Random):
+            drawn[name] = axis.draw(rng, samples)
+        else:
+            fixed[name] = axis
+    combinations = math.prod(map(len, fixed.values()))
+    meshes = np.meshgrid(*fixed.values(), indexing="ij")
+    mesh_of = dict(zip(fixed, meshes, strict=True))
+    columns = []
+    for name in axes:
+        if name in drawn:
+            columns.append(np.repeat(drawn[name], combinations))
+        else:
+            columns.append(np.tile(mesh_of[name].ravel(), samples))
+    return np.column_stack(columns)
 
 
 def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
+    # A boolean is an integer in Python, and what is not a number fails the comparison.
+    is_number = isinstance(value, int | float)
+    if isinstance(value, bool) or not is_number or not abs(value) <= sys.float_info.max:
         raise _Refused(f"must be a finite number, got {shown(value)}", REMEDY)
     return float(value)
 

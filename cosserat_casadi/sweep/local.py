@@ -36,17 +36,23 @@ class Cores:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        for worker in self._workers if kind else ():
-            worker.close()
+        # After an error the workers go first, or the pool would wait for what they are at.
+        if kind is not None:
+            self._close_workers()
         self._pool.shutdown(wait=True, cancel_futures=True)
-        for worker in self._workers if not kind else ():
+        if kind is None:
+            self._close_workers()
+
+    def _close_workers(self) -> None:
+        for worker in self._workers:
             worker.close()
 
     def run(self, tasks: Iterable[tuple[Chunk, Sequence[Part]]]) -> Iterator[tuple[Chunk, FloatArray]]:
         """Every chunk with its results, in the order in which they are ready."""
         waiting: dict[Future[FloatArray], Chunk] = {}
         for chunk, parts in tasks:
-            waiting[self._pool.submit(self._solve, chunk.compiled, parts)] = chunk
+            future = self._pool.submit(self._solve, chunk.compiled, parts)
+            waiting[future] = chunk
             if len(waiting) >= AHEAD * self.count:
                 yield from _ready(waiting)
         while waiting:
@@ -55,16 +61,20 @@ class Cores:
     def _solve(self, compiled: bool, parts: Sequence[Part]) -> FloatArray:
         if compiled:
             return solve_parts(parts)
+        # A process for each thread, started with its first chunk.
         if not hasattr(self._own, "worker"):
             self._own.worker = Worker()
             self._workers.append(self._own.worker)
-        found: FloatArray = self._own.worker.solve(parts)
-        return found
+        results: FloatArray = self._own.worker.solve(parts)
+        return results
 
 
 def available_cores() -> int:
     """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        # Fewer than the machine has, in a container or under a batch system.
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _ready(waiting: dict[Future[FloatArray], Chunk]) -> Iterator[tuple[Chunk, FloatArray]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import atomic_file, write_atomically
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.sweep.outcome_table import LABELS, Sweep
 
 FORMATS = (".csv", ".parquet")
@@ -40,8 +41,9 @@ def check_format(path: Path) -> None:
         ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
     """
     if path.suffix.lower() not in FORMATS:
-        raise SceneError(Problem("--output", f"{path} is neither CSV nor Parquet", f"use {' or '.join(FORMATS)}"))
-    if path.suffix.lower() == ".parquet":
+        problem = f"{path} is neither CSV nor Parquet"
+        raise SceneError(Problem("--output", problem, f"use {' or '.join(FORMATS)}"))
+    if _is_parquet(path):
         _arrow()
 
 
@@ -53,10 +55,13 @@ def record_file(path: Path) -> Path:
 def read_record(path: Path) -> dict[str, Any] | None:
     """What was computed for a file of results; None where nothing says so."""
     try:
-        found = json.loads(record_file(path).read_text(encoding="utf-8"))
+        text = record_file(path).read_text(encoding="utf-8")
+        record = json.loads(text)
     except (OSError, ValueError):
         return None
-    return found if isinstance(found, dict) and "sweep" in found else None
+    if isinstance(record, dict) and "sweep" in record:
+        return record
+    return None
 
 
 def write_sweep(sweep: Sweep, path: Path) -> None:
@@ -65,13 +70,10 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
     text = json.dumps(sweep.record, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_atomically(record_file(path), text.encode())
     with atomic_file(path) as temporary:
-        if path.suffix.lower() == ".parquet":
+        if _is_parquet(path):
             _write_parquet(sweep, temporary)
         else:
-            with temporary.open("w", encoding="utf-8", newline="") as stream:
-                csv.writer(stream, lineterminator="\n").writerow([*sweep.swept, "outcome", *sweep.found])
-                # Numbers and words without commas: the csv module would take half as long again.
-                stream.writelines(f"{','.join(cells)}\n" for cells in _cells(sweep))
+            _write_csv(sweep, temporary)
 
 
 def read_sweep(path: str | Path) -> Sweep:
@@ -82,29 +84,62 @@ def read_sweep(path: str | Path) -> Sweep:
     """
     file = Path(path)
     record = read_record(file)
+    read = _read_parquet if _is_parquet(file) else _read_csv
     try:
-        names, columns = _read_parquet(file) if file.suffix.lower() == ".parquet" else _read_csv(file)
-        place = names.index("outcome")
-        outcomes = np.array([LABELS.index(word) for word in columns[place]])
-        numbers = [
-            np.array([np.nan if cell in ("", None) else float(cell) for cell in column])
-            for column in columns
-            if column is not columns[place]
-        ]
+        names, columns = read(file)
+        split = names.index("outcome")
+        outcomes = np.array([LABELS.index(word) for word in columns[split]])
+        numbers = [_numbers(column) for column in (*columns[:split], *columns[split + 1 :])]
     except (OSError, ValueError, IndexError) as error:
-        raise SceneError(Problem(str(file), f"cannot be read as the results of a sweep: {error}")) from None
-    return Sweep(tuple(names[:place]), tuple(names[place + 1 :]), np.column_stack(numbers), outcomes, record or {})
+        problem = f"cannot be read as the results of a sweep: {error}"
+        raise SceneError(Problem(str(file), problem)) from None
+    return Sweep(
+        swept=tuple(names[:split]),
+        found=tuple(names[split + 1 :]),
+        values=np.column_stack(numbers),
+        outcomes=outcomes,
+        record=record or {},
+    )
+
+
+def _is_parquet(path: Path) -> bool:
+    return path.suffix.lower() == ".parquet"
+
+
+def _numbers(column: Sequence[Any]) -> FloatArray:
+    """Numbers of a column; NaN where the cell is empty."""
+    numbers = []
+    for cell in column:
+        # CSV leaves an empty text, Parquet nothing.
+        missing = cell is None or cell == ""
+        numbers.append(np.nan if missing else float(cell))
+    return np.array(numbers)
+
+
+def _write_csv(sweep: Sweep, path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        header = [*sweep.swept, "outcome", *sweep.found]
+        csv.writer(stream, lineterminator="\n").writerow(header)
+        # Numbers and words without commas: the csv module would take half as long again.
+        stream.writelines(f"{','.join(cells)}\n" for cells in _cells(sweep))
 
 
 def _cells(sweep: Sweep) -> Iterator[list[str]]:
     """Rows of the CSV file; what was not found is an empty cell."""
-    swept, steps = len(sweep.swept), sweep.found.index("iterations")
-    whole = np.isfinite(sweep.values.sum(axis=1)).tolist()
+    swept_count = len(sweep.swept)
+    iterations = swept_count + sweep.found.index("iterations")
+    complete = np.isfinite(sweep.values.sum(axis=1)).tolist()
+    # Lists of a block of rows: Python's own numbers print faster, and all at once would take too much memory.
     for first in range(0, len(sweep.values), BLOCK):
-        for place, row in enumerate(sweep.values[first : first + BLOCK].tolist(), first):
-            cells = list(map(repr, row)) if whole[place] else ["" if math.isnan(cell) else repr(cell) for cell in row]
-            cells[swept + steps] = str(int(row[swept + steps]))
-            cells.insert(swept, LABELS[sweep.outcomes[place]])
+        block = sweep.values[first : first + BLOCK].tolist()
+        for index, row in enumerate(block, first):
+            if complete[index]:
+                cells = list(map(repr, row))
+            else:
+                cells = ["" if math.isnan(cell) else repr(cell) for cell in row]
+            cells[iterations] = str(int(row[iterations]))
+            outcome = LABELS[sweep.outcomes[index]]
+            cells.insert(swept_count, outcome)
             yield cells
 
 
@@ -113,11 +148,15 @@ def _write_parquet(sweep: Sweep, path: Path) -> None:
     columns: dict[str, Any] = {}
     for name in sweep.swept:
         columns[name] = arrow.array(sweep[name])
-    columns["outcome"] = arrow.DictionaryArray.from_arrays(arrow.array(sweep.outcomes, arrow.int8()), list(LABELS))
+    numbers_of_outcomes = arrow.array(sweep.outcomes, arrow.int8())
+    columns["outcome"] = arrow.DictionaryArray.from_arrays(numbers_of_outcomes, list(LABELS))
     for name in sweep.found:
-        whole = name == "iterations"
-        numbers = sweep[name].astype(np.int32) if whole else sweep[name]
-        columns[name] = arrow.array(numbers, mask=~np.isfinite(sweep[name]))
+        numbers = sweep[name]
+        # Taken before the cast: whole numbers have no NaN.
+        missing = ~np.isfinite(numbers)
+        if name == "iterations":
+            numbers = numbers.astype(np.int32)
+        columns[name] = arrow.array(numbers, mask=missing)
     import pyarrow.parquet
 
     pyarrow.parquet.write_table(arrow.table(columns), path)

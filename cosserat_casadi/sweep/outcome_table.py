@@ -53,7 +53,9 @@ class Sweep:
     def counts(self) -> dict[str, int]:
         """How many rows ended in each way."""
         counted = Counter(self.outcomes.tolist())
-        return {LABELS[number]: counted[number] for number in sorted(counted)}
+        # In the order of LABELS, whichever came first.
+        numbers = sorted(counted)
+        return {LABELS[number]: counted[number] for number in numbers}
 
     @property
     def holds(self) -> bool:
@@ -64,11 +66,14 @@ class Sweep:
         if not self.record:
             return False
         tolerance = self.record["tolerance"]
-        chosen = self.record["chosen"]["error_estimate"]
-        looked_at = [0.0 if chosen is None else chosen]
-        for one in self.record["checked"]:
-            looked_at += [np.inf if one[word] is None else one[word] for word in ("error_estimate", "difference")]
-        return bool(self.converged.any()) and all(error <= tolerance for error in looked_at)
+        # Where the scene fixes its discretisation nothing was estimated beforehand; the checked rows decide.
+        errors = [self.record["chosen"]["error_estimate"] or 0.0]
+        for row in self.record["checked"]:
+            errors += [row["error_estimate"], row["difference"]]
+        # A row without an equilibrium in Python has no error, and so cannot be within the tolerance.
+        errors = [np.inf if error is None else error for error in errors]
+        within_tolerance = all(error <= tolerance for error in errors)
+        return within_tolerance and bool(self.converged.any())
 
     def __getitem__(self, column: str) -> FloatArray:
         """A column, shape (rows,).
@@ -78,14 +83,18 @@ class Sweep:
         """
         if column not in self.columns:
             raise KeyError(f"{column!r} is no column; there are {', '.join(self.columns)}")
-        return self.values[:, self.columns.index(column)]
+        index = self.columns.index(column)
+        return self.values[:, index]
 
     @property
     def posed(self) -> list[str]:
         """Rods and bodies whose poses are among the results."""
-        return [name.removesuffix(".qw") for name in self.found if name.endswith(".qw")]
+        # A pose is the only result with a quaternion.
+        scalar_parts = [name for name in self.found if name.endswith(".qw")]
+        return [name.removesuffix(".qw") for name in scalar_parts]
 
     def positions(self, name: str | None = None) -> FloatArray:
         """Positions of a tip or a body, shape (rows, 3), m; of the first by default."""
         chosen = self.posed[0] if name is None else name
-        return np.column_stack([self[f"{chosen}.{axis}"] for axis in "xyz"])
+        columns = [self[f"{chosen}.{axis}"] for axis in "xyz"]
+        return np.column_stack(columns)

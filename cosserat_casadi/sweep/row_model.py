@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from cosserat_casadi.codegen.rows import row_results
+from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -30,19 +30,32 @@ class RowModel:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
         model = _model(self.scene)
         width = len(row_results(model.scene))
-        rows = [result_row(solve(model, model.inputs.unpack(row)), width) for row in inputs]
+        rows = []
+        for row in inputs:
+            # From the unloaded scene each: what a row gives must not depend on those before.
+            solution = solve(model, model.inputs.unpack(row))
+            rows.append(result_row(solution, width))
         return np.array(rows).reshape(len(inputs), width)
 
 
 def result_row(solution: Solution, width: int) -> FloatArray:
     """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended."""
     row = np.full(width, np.nan)
-    row[:3] = OUTCOMES.index(solution.outcome), solution.iterations, solution.residual_norm
-    if solution.converged:
-        scene = solution.model.scene
-        poses = [*[solution.tip(rod.name) for rod in scene.rods], *[solution.body(body.name) for body in scene.bodies]]
-        states = [list(solution.actuator(one.name).values()) for one in scene.actuators]
-        row[3:] = np.concatenate([*[np.concatenate([p.position[0], p.quaternion[0]]) for p in poses], *states])
+    outcome = OUTCOMES.index(solution.outcome)
+    row[: len(JUDGED)] = (outcome, solution.iterations, solution.residual_norm)
+    if not solution.converged:
+        return row
+    scene = solution.model.scene
+    tips = [solution.tip(rod.name) for rod in scene.rods]
+    bodies = [solution.body(body.name) for body in scene.bodies]
+    numbers: list[float] = []
+    for pose in (*tips, *bodies):
+        numbers.extend(pose.position[0])
+        numbers.extend(pose.quaternion[0])
+    for actuator in scene.actuators:
+        # The effort and its conjugate, such as tension and length.
+        numbers.extend(solution.actuator(actuator.name).values())
+    row[len(JUDGED) :] = numbers
     return row
 
 

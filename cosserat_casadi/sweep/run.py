@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
-from cosserat_casadi.sweep.choice import Choice, Told, check, choose
+from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweep.cluster import Cluster
 from cosserat_casadi.sweep.local import Cores
 from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_sweep, record_file, write_sweep
@@ -32,7 +32,7 @@ from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
-from cosserat_casadi.sweep.variants import Variants, variants
+from cosserat_casadi.sweep.variants import Variants, variants_of
 from cosserat_casadi.sweep.work import COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS, Chunk, Part, chunks
 
 SAMPLES = 12
@@ -46,37 +46,48 @@ class Plan:
     Attributes:
         scene: as it was given.
         table: its rows.
-        found: the scenes and inputs of the rows.
+        variants: the scenes and inputs of the rows.
         output: file of the results, if one is wanted.
         samples: rows that the discretisation is chosen on.
     """
 
     scene: Scene
     table: Table
-    found: Variants
+    variants: Variants
     output: Path | None
     samples: int
 
     @property
     def identity(self) -> str:
         """What tells this sweep from others: the same identity gives the same results."""
-        words = [version("cosserat-casadi"), scene_text(self.scene), self.table.columns, self.samples]
-        sizes = [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS]
-        digest = hashlib.sha256(json.dumps([*words, sizes]).encode())
-        digest.update(np.ascontiguousarray(self.table.values, dtype="<f8").tobytes())
+        words = [
+            version("cosserat-casadi"),
+            scene_text(self.scene),
+            self.table.columns,
+            self.samples,
+            # They say which rows are solved in C: the same to the tolerance, but not to the last digit.
+            [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
+        ]
+        digest = hashlib.sha256(json.dumps(words).encode())
+        values = np.ascontiguousarray(self.table.values, dtype="<f8")
+        digest.update(values.tobytes())
         return digest.hexdigest()
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Columns of numbers that the results will have."""
         # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
-        found = [name for name in row_results(self.scene)[1:] if name not in self.table.columns]
-        return (*self.table.columns, *found)
+        # The outcome, which comes first, is no number.
+        names = row_results(self.scene)[1:]
+        results = [name for name in names if name not in self.table.columns]
+        return (*self.table.columns, *results)
 
     @property
     def part(self) -> Path | None:
         """The file of what is done, until all is."""
-        return None if self.output is None else self.output.with_name(f"{self.output.name}.part")
+        if self.output is None:
+            return None
+        return self.output.with_name(f"{self.output.name}.part")
 
     @property
     def finished(self) -> bool:
@@ -105,12 +116,13 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
-        plan = Plan(scene, table, variants(scene, table), output, samples)
+        plan = Plan(scene, table, variants_of(scene, table), output, samples)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
     if problems or plan is None:
         raise SceneError(*problems)
+    # Both raise where a library could not be generated or compiled.
     scene_names(NAME, scene)
     find_compiler()
     return plan
@@ -124,7 +136,7 @@ def sweep_scene(
     scheduler: str | None = None,
     cores: int | None = None,
     samples: int = SAMPLES,
-    progress: Told | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
 
@@ -144,15 +156,20 @@ def sweep_scene(
         ClusterError: the cluster cannot be used.
     """
     if isinstance(table, Mapping):
-        given = table_of(table)
-    else:
-        given = table if isinstance(table, Table) else read_table(Path(table))
-    plan = plan_sweep(scene, given, None if output is None else Path(output), samples)
+        table = table_of(table)
+    elif not isinstance(table, Table):
+        table = read_table(Path(table))
+    file = None if output is None else Path(output)
+    plan = plan_sweep(scene, table, file, samples)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
 def run_sweep(
-    plan: Plan, *, scheduler: str | None = None, cores: int | None = None, progress: Told | None = None
+    plan: Plan,
+    *,
+    scheduler: str | None = None,
+    cores: int | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Do what a plan says, or what is left of it; of a finished one, read the results.
 
@@ -166,19 +183,24 @@ def run_sweep(
         # A kill between the last two steps of the run before leaves it.
         plan.part.unlink(missing_ok=True)
         return read_sweep(plan.output)
-    told = progress or (lambda doing, done, total: None)
+    if progress is None:
+        progress = _ignore
     # A cluster that does not answer is told of before the discretisation is chosen.
     with _machine(scheduler, cores) as machine:
         store = None if plan.part is None else Store(plan.part)
         with store or nullcontext():
-            choice, done = _begun(plan, store, told)
-            work = chunks(plan.found)
-            _solve_rest(plan, choice, machine, work, done, store, told)
-            sweep = _sweep(plan, choice, work, done, told)
+            choice, done = _begun(plan, store, progress)
+            work = chunks(plan.variants)
+            _solve_rest(plan, choice, machine, work, done, store, progress)
+            sweep = _sweep(plan, choice, work, done, progress)
             if plan.output is not None and store is not None:
                 write_sweep(sweep, plan.output)
                 store.remove()
     return sweep
+
+
+def _ignore(doing: str, done: int, total: int) -> None:
+    """Progress that nobody asked for."""
 
 
 def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
@@ -191,12 +213,13 @@ def _machine(scheduler: str | None, cores: int | None) -> Cores | Cluster:
     return Cluster(scheduler)
 
 
-def _begun(plan: Plan, store: Store | None, told: Told) -> tuple[Choice, dict[int, FloatArray]]:
+def _begun(plan: Plan, store: Store | None, progress: Progress) -> tuple[Choice, dict[int, FloatArray]]:
     """The discretisation and what is done; of a new sweep the one is chosen now, and nothing is done."""
     head = None if store is None else store.head()
     if store is not None and head is not None:
-        return Choice.read(head["choice"]), store.resume(len(row_results(plan.scene)))
-    choice = choose(plan.found, plan.table.values, plan.samples, told)
+        width = len(row_results(plan.scene))
+        return Choice.read(head["choice"]), store.resume(width)
+    choice = choose(plan.variants, plan.table.values, plan.samples, progress)
     if store is not None:
         store.start({"sweep": plan.identity, "choice": choice.plain()})
     return choice, {}
@@ -209,47 +232,77 @@ def _solve_rest(
     work: Sequence[Chunk],
     done: dict[int, FloatArray],
     store: Store | None,
-    told: Told,
+    progress: Progress,
 ) -> None:
     """Solve every chunk that is not done, and keep it."""
     rest = [chunk for chunk in work if chunk.number not in done]
     count = sum(len(chunk.rows) for chunk in work if chunk.number in done)
-    for chunk, results in machine.run(_tasks(plan.found, choice, rest, lambda: told("Compiling", 0, 0))):
+    tasks = _tasks(plan.variants, choice, rest, progress)
+    for chunk, results in machine.run(tasks):
         done[chunk.number] = results
         if store is not None:
             store.add(chunk.number, results)
         count += len(results)
-        told("Sweeping", count, len(plan.table.values))
+        progress("Sweeping", count, len(plan.table.values))
 
 
-def _tasks(found: Variants, choice: Choice, rest: Sequence[Chunk], told: Any) -> Iterator[tuple[Chunk, list[Part]]]:
+def _tasks(
+    variants: Variants,
+    choice: Choice,
+    rest: Sequence[Chunk],
+    progress: Progress,
+) -> Iterator[tuple[Chunk, list[Part]]]:
     """Chunks with what solves them; sources are generated when their first chunk comes."""
-    library: tuple[int, RowLibrary] | None = None
+    library: RowLibrary | None = None
+    library_of: int | None = None
     for chunk in rest:
         if not chunk.compiled:
-            yield chunk, [(RowModel(_text(found, choice, place)), found.inputs[rows]) for place, rows in chunk.pieces]
+            yield chunk, _modelled_parts(variants, choice, chunk)
             continue
-        ((place, rows),) = chunk.pieces
-        if library is None or library[0] != place:
-            told()
-            library = place, row_library(build(choice.scene(found.entries[place].scene)))
-        yield chunk, [(library[1], found.inputs[rows])]
+        # A compiled chunk has rows of one variant.
+        ((variant, rows),) = chunk.pieces
+        if library is None or library_of != variant:
+            progress("Compiling", 0, 0)
+            scene = choice.scene(variants.entries[variant].scene)
+            library = row_library(build(scene))
+            library_of = variant
+        yield chunk, [(library, variants.inputs[rows])]
 
 
-def _text(found: Variants, choice: Choice, place: int) -> str:
-    return scene_text(choice.scene(found.entries[place].scene))
+def _modelled_parts(variants: Variants, choice: Choice, chunk: Chunk) -> list[Part]:
+    """What solves a chunk in Python: a model for each variant that it has rows of."""
+    parts: list[Part] = []
+    for variant, rows in chunk.pieces:
+        scene = choice.scene(variants.entries[variant].scene)
+        # Text, since models of CasADi do not travel to other processes.
+        model = RowModel(scene_text(scene))
+        parts.append((model, variants.inputs[rows]))
+    return parts
 
 
-def _sweep(plan: Plan, choice: Choice, work: Sequence[Chunk], done: dict[int, FloatArray], told: Told) -> Sweep:
+def _sweep(
+    plan: Plan,
+    choice: Choice,
+    work: Sequence[Chunk],
+    done: dict[int, FloatArray],
+    progress: Progress,
+) -> Sweep:
     """All results in the order of the table, some of them checked."""
     names = row_results(plan.scene)
     results = np.full((len(plan.table.values), len(names)), np.nan)
     for chunk in work:
         results[chunk.rows] = done[chunk.number]
-    checked = check(plan.found, choice, results, told)
-    found = plan.columns[len(plan.table.columns) :]
-    values = np.hstack([plan.table.values, results[:, [names.index(name) for name in found]]])
-    sweep = Sweep(plan.table.columns, found, values, results[:, 0].astype(np.int64), {})
+    checked = check(plan.variants, choice, results, progress)
+    result_names = plan.columns[len(plan.table.columns) :]
+    result_columns = [names.index(name) for name in result_names]
+    sweep = Sweep(
+        swept=plan.table.columns,
+        found=result_names,
+        values=np.hstack([plan.table.values, results[:, result_columns]]),
+        outcomes=results[:, 0].astype(np.int64),
+        record={},
+    )
+    # The record counts the outcomes of the sweep that it belongs to.
     sweep.record.update(_record(plan, choice, sweep, checked))
     return sweep
 
@@ -266,7 +319,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "chosen": choice.plain(),
         "checked": checked,
         "swept": list(sweep.swept),
-        "parameters": list(plan.found.parameters),
+        "parameters": list(plan.variants.parameters),
         "scene": scene_text(plan.scene),
     }
 
@@ -291,15 +344,22 @@ def output_problems(output: Path | None, plan: Plan | None) -> list[Problem]:
         return list(error.problems)
     if plan is None or plan.part is None:
         return []
+    return _foreign_files(output, plan.part, plan.identity)
+
+
+def _foreign_files(output: Path, part: Path, identity: str) -> list[Problem]:
+    """Files of other sweeps that the results would be written over."""
     problems = []
-    head = Store(plan.part).head()
-    ours = head is not None and head.get("sweep") == plan.identity
-    if plan.part.exists() and plan.part.stat().st_size > 0 and not ours:
-        problem = f"{plan.part} is of another sweep, which was not finished"
-        problems.append(Problem("--output", problem, "finish that one, remove the file, or name another output"))
+    head = Store(part).head() or {}
+    # A file without content is what a kill before the first line leaves.
+    unfinished = part.exists() and part.stat().st_size > 0
+    if unfinished and head.get("sweep") != identity:
+        problem = f"{part} is of another sweep, which was not finished"
+        remedy = "finish that one, remove the file, or name another output"
+        problems.append(Problem("--output", problem, remedy))
     record = read_record(output) or {}
     taken = [file for file in (output, record_file(output)) if file.exists()]
-    if taken and record.get("sweep") != plan.identity:
+    if taken and record.get("sweep") != identity:
         problem = f"{taken[0]} exists, and is not of this sweep"
         problems.append(Problem("--output", problem, "name another file, or remove it"))
     return problems

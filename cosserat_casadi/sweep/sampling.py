@@ -23,21 +23,27 @@ def representative_rows(values: FloatArray, count: int) -> list[int]:
         count: rows wanted; two thirds may be corners, the others are drawn at random.
     """
     rng = np.random.default_rng(SEED)
-    shares = _shares(values)
-    dimension = shares.shape[1]
-    if dimension <= MOST_CORNERS:
-        corners = np.array(list(product((1.0, -1.0), repeat=dimension))).reshape(2**dimension, dimension)
+    scaled = _scaled(values)
+    columns = scaled.shape[1]
+    if columns <= MOST_CORNERS:
+        signs = list(product((1.0, -1.0), repeat=columns))
+        corners = np.array(signs).reshape(2**columns, columns)
     else:
-        corners = rng.choice([-1.0, 1.0], (2**MOST_CORNERS, dimension))
-    farthest = [int(np.argmax(shares @ corner)) for corner in corners[: max(1, 2 * count // 3)]]
-    chosen = set(farthest)
-    chosen.update(rng.permutation(len(values))[: max(0, count - len(chosen))].tolist())
+        corners = rng.choice([-1.0, 1.0], (2**MOST_CORNERS, columns))
+    most_corners = max(1, 2 * count // 3)
+    # Nearest to a corner is what lies farthest in its direction.
+    chosen = {int(np.argmax(scaled @ corner)) for corner in corners[:most_corners]}
+    drawn = rng.permutation(len(values)).tolist()
+    missing = max(0, count - len(chosen))
+    chosen.update(drawn[:missing])
     return sorted(chosen)
 
 
-def _shares(values: FloatArray) -> FloatArray:
+def _scaled(values: FloatArray) -> FloatArray:
     """Columns that vary, each over its range, from -1 to 1."""
-    low, high = values.min(axis=0), values.max(axis=0)
+    low = values.min(axis=0)
+    high = values.max(axis=0)
     varies = high > low
-    shares: FloatArray = 2 * (values[:, varies] - low[varies]) / (high - low)[varies] - 1
-    return shares
+    width = (high - low)[varies]
+    scaled: FloatArray = 2 * (values[:, varies] - low[varies]) / width - 1
+    return scaled

@@ -33,36 +33,41 @@ class Store:
         """What sweep the file is of; None where there is none, or where it is damaged."""
         try:
             with self.path.open("rb") as file:
-                found = json.loads(file.readline())
+                head = json.loads(file.readline())
         except (OSError, ValueError):
             return None
-        return found if isinstance(found, dict) else None
+        return head if isinstance(head, dict) else None
 
     def start(self, head: Mapping[str, Any]) -> None:
         """Begin a sweep, over whatever the file held."""
         self._file = self.path.open("wb")
-        self._file.write(json.dumps(head).encode() + b"\n")
+        line = json.dumps(head).encode() + b"\n"
+        self._file.write(line)
+        # Out of this process at once, so that a kill does not lose it.
         self._file.flush()
 
     def resume(self, width: int) -> dict[int, FloatArray]:
         """What is done, by number of chunk, with results of this width; the file is ready for more."""
-        found, end = {}, 0
+        done = {}
         with self.path.open("rb") as file:
             end = len(file.readline())
             for number, content in _entries(file):
-                found[number] = np.frombuffer(content, dtype="<f8").reshape(-1, width)
+                results = np.frombuffer(content, dtype="<f8")
+                done[number] = results.reshape(-1, width)
                 end += ENTRY.size + len(content)
+        # What was being written when the process was killed is cut off.
         self._file = self.path.open("r+b")
         self._file.truncate(end)
         self._file.seek(end)
-        return found
+        return done
 
     def add(self, number: int, results: FloatArray) -> None:
         """Keep the results of a chunk."""
         content = np.ascontiguousarray(results, dtype="<f8").tobytes()
         if self._file is None:
             raise ValueError("the store is not open")
-        self._file.write(ENTRY.pack(number, len(content), zlib.crc32(content)) + content)
+        header = ENTRY.pack(number, len(content), zlib.crc32(content))
+        self._file.write(header + content)
         self._file.flush()
 
     def remove(self) -> None:
@@ -86,6 +91,7 @@ def _entries(file: BinaryIO) -> Iterator[tuple[int, bytes]]:
     """Whole entries; what follows a damaged one is not trusted."""
     while len(header := file.read(ENTRY.size)) == ENTRY.size:
         number, size, checksum = ENTRY.unpack(header)
+        # A damaged size may be negative, which would read all that follows.
         content = file.read(size) if size > 0 else b""
         # No chunk is empty: zeros are what a file system may leave after a failure of power.
         if not content or len(content) != size or zlib.crc32(content) != checksum:

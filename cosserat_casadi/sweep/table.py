@@ -34,9 +34,11 @@ class Table:
     where: str
     lines: tuple[int, ...] | None = None
 
-    def place(self, row: int) -> str:
-        """Where a row stands, for a refusal."""
-        return f"{self.where}, row {row + 1}" if self.lines is None else f"{self.where}, line {self.lines[row]}"
+    def where_of(self, row: int) -> str:
+        """What a refusal calls a row."""
+        if self.lines is None:
+            return f"{self.where}, row {row + 1}"
+        return f"{self.where}, line {self.lines[row]}"
 
 
 def read_table(path: Path) -> Table:
@@ -61,23 +63,27 @@ def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
         SceneError: there is no row, lengths differ, or a value is not a finite number.
     """
     arrays = {name: _column(name, values) for name, values in columns.items()}
-    lengths = {len(array) for array in arrays.values() if array.ndim == 1} or {1}
-    problems = [
-        Problem(name, f"must be a number or a list of numbers, got {array.ndim} dimensions")
-        for name, array in arrays.items()
-        if array.ndim > 1
-    ]
+    lengths = {len(array) for array in arrays.values() if array.ndim == 1}
+    # Numbers alone are a table of one row.
+    lengths = lengths or {1}
+    problems = []
+    for name, array in arrays.items():
+        if array.ndim > 1:
+            problem = f"must be a number or a list of numbers, got {array.ndim} dimensions"
+            problems.append(Problem(name, problem))
     if len(lengths) > 1:
-        problems.append(Problem("table", f"has columns of {', '.join(map(str, sorted(lengths)))} rows"))
+        listed = ", ".join(map(str, sorted(lengths)))
+        problems.append(Problem("table", f"has columns of {listed} rows"))
     if not arrays or not min(lengths):
         problems.append(Problem("table", "holds no row"))
-    problems += [
-        Problem(name, "holds what is not a finite number") for name, a in arrays.items() if not np.all(np.isfinite(a))
-    ]
+    for name, array in arrays.items():
+        if not np.all(np.isfinite(array)):
+            problems.append(Problem(name, "holds what is not a finite number"))
     if problems:
         raise SceneError(*problems)
     count = max(lengths)
-    return Table(tuple(arrays), np.column_stack([np.broadcast_to(a, count) for a in arrays.values()]), "table")
+    full_columns = [np.broadcast_to(array, count) for array in arrays.values()]
+    return Table(tuple(arrays), np.column_stack(full_columns), "table")
 
 
 def _column(name: str, values: npt.ArrayLike) -> FloatArray:
@@ -91,4 +97,5 @@ def shortened(problems: list[Problem], where: str) -> list[Problem]:
     """The first faults, and how many more there are."""
     if len(problems) <= MOST_TOLD:
         return problems
-    return [*problems[:MOST_TOLD], Problem(where, f"has {len(problems) - MOST_TOLD} more faults")]
+    further = len(problems) - MOST_TOLD
+    return [*problems[:MOST_TOLD], Problem(where, f"has {further} more faults")]

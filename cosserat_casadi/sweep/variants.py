@@ -29,7 +29,6 @@ from cosserat_casadi.sweep.table import Table, shortened
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds")
 """Tables of a scene that are no property of what is computed."""
 
-
 STIFFNESS = ("material", "section", "stiffness", "linear_density")
 """Tables and numbers of a rod that say how it yields, not where it is."""
 
@@ -40,7 +39,7 @@ class Variant:
 
     Attributes:
         scene: the scene with these parameters, its inputs those that are swept.
-        rows: places in the table, shape (k,).
+        rows: their numbers in the table, shape (k,).
     """
 
     scene: Scene
@@ -65,98 +64,139 @@ class Variants:
 
     def of_row(self, row: int) -> Variant:
         """The scene that a row belongs to."""
-        return next(entry for entry in self.entries if row in entry.rows)
+        holders = (entry for entry in self.entries if row in entry.rows)
+        return next(holders)
+
+    def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
+        """Inputs of a row by name."""
+        return self.layout.unpack(self.inputs[row])
 
 
-def variants(scene: Scene, table: Table) -> Variants:
+def variants_of(scene: Scene, table: Table) -> Variants:
     """The scenes and inputs that a table asks for.
 
     Raises:
         SceneError: with every fault: a column that is neither input nor parameter, a value that makes no sense.
     """
-    free = _freed(scene, table.columns)
+    free = _with_swept_inputs(scene, table.columns)
     layout = input_layout(free)
-    places = column_indices(layout)
-    chosen = [k for k, column in enumerate(table.columns) if column in places]
-    others = [k for k in range(len(table.columns)) if k not in chosen]
+    index_of = column_indices(layout)
+    input_columns = [k for k, column in enumerate(table.columns) if column in index_of]
+    parameter_columns = [k for k, column in enumerate(table.columns) if column not in index_of]
     inputs = np.tile(layout.pack(), (len(table.values), 1))
-    inputs[:, [places[table.columns[k]] for k in chosen]] = table.values[:, chosen]
-    parameters = tuple(table.columns[k] for k in others)
-    problems = [*_set_twice(free, [*layout.names, *parameters], table), *_refused_inputs(free, layout, inputs, table)]
-    entries = list(_entries(free, table, others, problems))
+    indices = [index_of[table.columns[k]] for k in input_columns]
+    inputs[:, indices] = table.values[:, input_columns]
+    parameters = tuple(table.columns[k] for k in parameter_columns)
+    problems = list(_set_twice(free, [*layout.names, *parameters], table))
+    problems += _refused_inputs(free, layout, inputs, table)
+    entries = list(_entries(free, table, parameter_columns, problems))
     if problems:
         raise SceneError(*shortened(problems, table.where))
     return Variants(tuple(entries), inputs, layout, parameters)
 
 
-def _freed(scene: Scene, columns: Sequence[str]) -> Scene:
+def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
     """The scene whose inputs are those that columns name, and no other."""
-    tables = {key: value for key, value in scene_tables(scene).items() if key not in ("targets", "bounds")}
-    wanted: list[str] = []
-    for name in dict.fromkeys(_input_name(column) for column in columns):
-        try:
-            scene_from_dict(tables | {"inputs": [name]})
-        except SceneError:
-            continue
-        wanted.append(name)
-    return scene_from_dict(tables | {"inputs": wanted})
+    tables = scene_tables(scene)
+    # Targets and bounds may name inputs that are none in a sweep.
+    tables.pop("targets", None)
+    tables.pop("bounds", None)
+    names = dict.fromkeys(_input_of_column(column) for column in columns)
+    inputs = [name for name in names if _may_be_input(tables, name)]
+    return scene_from_dict({**tables, "inputs": inputs})
 
 
-def _input_name(column: str) -> str:
-    """``push.force`` of ``push.force.x.1``, ``leg.base.position`` of ``leg.base.position.x``."""
+def _input_of_column(column: str) -> str:
+    """The input that a column would be an entry of, by the rule that columns are written with.
+
+    An input is ``owner.field``, of the base of a rod ``rod.base.field``; a column adds an axis and a degree to it:
+    ``push.force.x.1`` is of ``push.force``, ``leg.base.position.x`` of ``leg.base.position``. This is the one function
+    here that cuts names; whether there is such an input is for the scene to say.
+    """
     words = column.split(".")
-    return ".".join(words[: 3 if words[1:2] == ["base"] else 2])
+    is_of_base = words[1:2] == ["base"]
+    count = 3 if is_of_base else 2
+    return ".".join(words[:count])
+
+
+def _may_be_input(tables: Mapping[str, Any], name: str) -> bool:
+    """Whether the scene accepts a name among its inputs."""
+    try:
+        scene_from_dict({**tables, "inputs": [name]})
+    except SceneError:
+        return False
+    return True
 
 
 def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Problem]:
     """Names of inputs and parameters that set one thing: one of them would count for nothing."""
-    tables, places = scene_tables(scene), dict[str, tuple[str | int, ...]]()
+    tables = scene_tables(scene)
+    paths: dict[str, tuple[str | int, ...]] = {}
     for name in names:
         # What is not there to be set is told with the row that would set it.
         with suppress(SceneError):
             # A tangent is one more way to give the orientation.
-            places[name] = place_of(tables, name.replace(".base.tangent", ".base.quaternion"))
-    for (one, first), (other, second) in combinations(places.items(), 2):
-        shared = min(len(first), len(second))
-        if first[:shared] == second[:shared]:
+            paths[name] = place_of(tables, name.replace(".base.tangent", ".base.quaternion"))
+    for (first, first_path), (second, second_path) in combinations(paths.items(), 2):
+        # One path within the other: setting the shorter sets the longer too.
+        shared = min(len(first_path), len(second_path))
+        if first_path[:shared] == second_path[:shared]:
             remedy = "name what is swept in one way: push.force.x, wire.section.radius"
-            yield Problem(table.where, f"{other!r} sets what {one!r} sets", remedy)
+            yield Problem(table.where, f"{second!r} sets what {first!r} sets", remedy)
 
 
-def _entries(scene: Scene, table: Table, parameters: Sequence[int], problems: list[Problem]) -> Iterator[Variant]:
-    if not parameters:
+def _entries(
+    scene: Scene,
+    table: Table,
+    parameter_columns: Sequence[int],
+    problems: list[Problem],
+) -> Iterator[Variant]:
+    """The variants of a table; faults go to the problems."""
+    if not parameter_columns:
         try:
             check_constraints(scene)
         except SceneError as error:
             problems += error.problems
         yield Variant(scene, np.arange(len(table.values)))
         return
-    names = [table.columns[k] for k in parameters]
-    reserved = [c for c in names if c.replace("[", ".").split(".")[0] in NOT_PARAMETERS]
-    problems += [Problem(table.where, f"{c!r} cannot be swept", "change it with --set for all rows") for c in reserved]
+    reserved = [table.columns[k] for k in parameter_columns if _is_reserved(table.columns[k])]
+    for column in reserved:
+        problem = f"{column!r} cannot be swept"
+        problems.append(Problem(table.where, problem, "change it with --set for all rows"))
     if not reserved:
-        yield from _scenes(scene_tables(scene), table, parameters, problems)
+        yield from _scenes(scene_tables(scene), table, parameter_columns, problems)
+
+
+def _is_reserved(column: str) -> bool:
+    """Whether a column is in a table of the scene that is no property of what is computed."""
+    first_key = column.replace("[", ".").split(".")[0]
+    return first_key in NOT_PARAMETERS
 
 
 def _scenes(
-    tables: Mapping[str, Any], table: Table, parameters: Sequence[int], problems: list[Problem]
+    tables: Mapping[str, Any],
+    table: Table,
+    parameter_columns: Sequence[int],
+    problems: list[Problem],
 ) -> Iterator[Variant]:
     """A scene for each set of parameters; a fault is told once, with the first row that has it."""
-    columns = [table.columns[k] for k in parameters]
-    seen, moved = set[str](), any(_moves_joints(tables, column) for column in columns)
-    for values, rows in _groups(table.values[:, list(parameters)]):
-        overrides = [f"{column}={float(value)!r}" for column, value in zip(columns, values, strict=True)]
+    columns = [table.columns[k] for k in parameter_columns]
+    joints_move = any(_moves_joints(tables, column) for column in columns)
+    known = set[str]()
+    for values, rows in _groups(table.values[:, list(parameter_columns)]):
+        pairs = zip(columns, values, strict=True)
+        overrides = [f"{column}={float(value)!r}" for column, value in pairs]
         try:
             variant = Variant(scene_from_dict(tables, overrides), rows)
             # Building a model would find it too, but in a worker; it takes as long as that.
-            if moved or rows[0] == 0:
+            if joints_move or rows[0] == 0:
                 check_constraints(variant.scene)
             yield variant
         except SceneError as error:
             for problem in error.problems:
-                if str(problem) not in seen:
-                    seen.add(str(problem))
-                    problems.append(_told(problem, table, int(rows[0])))
+                if str(problem) not in known:
+                    known.add(str(problem))
+                    problems.append(_of_table(problem, table, int(rows[0])))
 
 
 def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:
@@ -169,38 +209,54 @@ def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:
 
 
 def _groups(values: FloatArray) -> Iterator[tuple[FloatArray, npt.NDArray[np.int64]]]:
-    """Distinct rows in the order in which they first come, each with the places where it stands."""
-    distinct, first, which = np.unique(values, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    places = np.split(np.argsort(which.ravel(), kind="stable"), np.cumsum(np.bincount(which.ravel()))[:-1])
-    for group in order:
-        yield distinct[group], places[group]
+    """Distinct rows in the order in which they first come, each with the numbers of the rows that are equal to it."""
+    distinct, first, group_of_row = np.unique(values, axis=0, return_index=True, return_inverse=True)
+    group_of_row = group_of_row.ravel()
+    # Rows sorted by group, then cut where a group ends.
+    by_group = np.argsort(group_of_row, kind="stable")
+    ends = np.cumsum(np.bincount(group_of_row))[:-1]
+    rows = np.split(by_group, ends)
+    for group in np.argsort(first):
+        yield distinct[group], rows[group]
 
 
-def _told(problem: Problem, table: Table, row: int) -> Problem:
+def _of_table(problem: Problem, table: Table, row: int) -> Problem:
     """A fault of an override as one of the table."""
-    if problem.where.startswith("--set "):
-        return Problem(f"{table.place(row)}, {problem.where.removeprefix('--set ')}", problem.problem, problem.remedy)
-    return Problem(f"{table.place(row)}, {problem.where}", problem.problem, problem.remedy)
+    # Parameters are set as overrides, which a reader of the table has not written.
+    column = problem.where.removeprefix("--set ")
+    where = f"{table.where_of(row)}, {column}"
+    return Problem(where, problem.problem, problem.remedy)
 
 
-def _refused_inputs(scene: Scene, layout: InputLayout, inputs: FloatArray, table: Table) -> Iterator[Problem]:
+def _refused_inputs(
+    scene: Scene,
+    layout: InputLayout,
+    inputs: FloatArray,
+    table: Table,
+) -> Iterator[Problem]:
     """Values of inputs that the scene itself could not have."""
-    for name, place in layout.slices.items():
-        values = inputs[:, place]
+    for name, entries in layout.slices.items():
+        values = inputs[:, entries]
         if name.endswith(".base.quaternion"):
-            zero = np.flatnonzero(~np.any(values, axis=1))
-            if zero.size:
-                yield Problem(f"{table.place(int(zero[0]))}, {name}", "must not be zero")
+            zero_rows = np.flatnonzero(~np.any(values, axis=1))
+            if zero_rows.size:
+                where = table.where_of(int(zero_rows[0]))
+                yield Problem(f"{where}, {name}", "must not be zero")
         elif values.shape[1] == 1:
             yield from _refused_numbers(scene, name, values[:, 0], table)
 
 
-def _refused_numbers(scene: Scene, name: str, values: FloatArray, table: Table) -> Iterator[Problem]:
+def _refused_numbers(
+    scene: Scene,
+    name: str,
+    values: FloatArray,
+    table: Table,
+) -> Iterator[Problem]:
     """A number such as a tension is refused where the scene refuses it; all between two that it takes are taken."""
     tables = scene_tables(scene)
-    for row in dict.fromkeys((int(np.argmin(values)), int(np.argmax(values)))):
+    extremes = (int(np.argmin(values)), int(np.argmax(values)))
+    for row in dict.fromkeys(extremes):
         try:
             scene_from_dict(tables, [f"{name}={float(values[row])!r}"])
         except SceneError as error:
-            yield from (_told(problem, table, row) for problem in error.problems)
+            yield from (_of_table(problem, table, row) for problem in error.problems)

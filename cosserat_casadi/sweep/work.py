@@ -44,7 +44,7 @@ class Chunk:
 
     Attributes:
         number: counted from 0.
-        pieces: for each scene the chunk has rows of, its place among the variants and its rows in the table.
+        pieces: for each scene the chunk has rows of, its index among the variants and its rows in the table.
         compiled: whether one compiled library solves them.
     """
 
@@ -55,38 +55,47 @@ class Chunk:
     @property
     def rows(self) -> npt.NDArray[np.int64]:
         """Rows in the table, in the order in which they are solved."""
-        return np.concatenate([rows for _, rows in self.pieces])
+        pieces = [rows for _, rows in self.pieces]
+        return np.concatenate(pieces)
 
 
-def chunks(found: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk]:
+def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk]:
     """All work of a table; the same table gives the same chunks.
 
     Args:
-        found: the scenes of the table.
+        variants: the scenes of the table.
         compiled_from: rows of one scene from which it is compiled.
     """
     listed: list[Chunk] = []
-    few = []
-    for place, entry in enumerate(found.entries):
-        if len(entry.rows) < compiled_from and found.parameters:
-            few += [(place, int(row)) for row in entry.rows]
+    modelled = []
+    for index, entry in enumerate(variants.entries):
+        if len(entry.rows) < compiled_from and variants.parameters:
+            modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):
-            listed.append(Chunk(len(listed), ((place, rows),), compiled=True))
-    for first in range(0, len(few), MODELLED_ROWS):
-        listed.append(Chunk(len(listed), tuple(_pieces(few[first : first + MODELLED_ROWS])), compiled=False))
+            listed.append(Chunk(len(listed), ((index, rows),), compiled=True))
+    # Variants of few rows share chunks, so that none is too small to be worth its transport.
+    for first in range(0, len(modelled), MODELLED_ROWS):
+        pieces = _pieces(modelled[first : first + MODELLED_ROWS])
+        listed.append(Chunk(len(listed), tuple(pieces), compiled=False))
     return listed
 
 
 def solve_parts(parts: Sequence[Part]) -> FloatArray:
     """Results of all rows of a chunk; they depend on these arguments alone."""
-    return np.vstack([answer.solve(inputs) for answer, inputs in parts])
+    results = [answer.solve(inputs) for answer, inputs in parts]
+    return np.vstack(results)
 
 
 def _pieces(rows: Sequence[tuple[int, int]]) -> Iterator[tuple[int, npt.NDArray[np.int64]]]:
-    for place in dict.fromkeys(place for place, _ in rows):
-        yield place, np.array([row for other, row in rows if other == place])
+    """Pairs of variant and row, as one array of rows for each variant."""
+    rows_of: dict[int, list[int]] = {}
+    for variant, row in rows:
+        rows_of.setdefault(variant, []).append(row)
+    for variant, own_rows in rows_of.items():
+        yield variant, np.array(own_rows)
 
 
 def _cut(rows: npt.NDArray[np.int64], size: int) -> list[npt.NDArray[np.int64]]:
-    return [rows[first : first + size] for first in range(0, len(rows), size)]
+    starts = range(0, len(rows), size)
+    return [rows[start : start + size] for start in starts]

@@ -23,12 +23,20 @@ class Worker:
     """A process beside this one, for one thread at a time."""
 
     def __init__(self) -> None:
-        package = str(Path(__file__).parents[2])
-        paths = [package, *filter(None, [os.environ.get("PYTHONPATH")])]
+        # The same package as here, installed or not.
+        paths = [str(Path(__file__).parents[2])]
+        if os.environ.get("PYTHONPATH"):
+            paths.append(os.environ["PYTHONPATH"])
+        environment = dict(os.environ)
+        environment["PYTHONPATH"] = os.pathsep.join(paths)
         # Small matrices: threads of BLAS would only take the other processes' cores.
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
-        command = [sys.executable, "-c", "from cosserat_casadi.sweep.worker import main; main()"]
-        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+        environment["OPENBLAS_NUM_THREADS"] = "1"
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", "from cosserat_casadi.sweep.worker import main; main()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
+        )
 
     def solve(self, parts: Sequence[Part]) -> FloatArray:
         """Results of the rows of a chunk.
@@ -42,11 +50,11 @@ class Worker:
         try:
             pickle.dump(parts, process.stdin)
             process.stdin.flush()
-            found: FloatArray = pickle.load(process.stdout)
+            results: FloatArray = pickle.load(process.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
             message = f"a process of the sweep ended with {process.wait()}; what an output keeps is not done again"
             raise SolveError(message) from None
-        return found
+        return results
 
     def close(self) -> None:
         """End the process: at once, its unfinished task is worth nothing to anyone."""

@@ -9,10 +9,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, Solution, build, discretise, read_scene, scene_from_dict, solve, solve_scene
-from cosserat_casadi.accuracy.coarsen import Trim
+from cosserat_casadi.accuracy.coarsen import Coarsening
 from cosserat_casadi.accuracy.cost import STRAIGHT, foreseen_operations, foreseen_time, spread_on
+from cosserat_casadi.accuracy.metrics import pose_distance
 from cosserat_casadi.accuracy.preview import Preview
-from cosserat_casadi.accuracy.refine import pose_distance
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -83,29 +83,29 @@ def test_held_rod_is_right_between_its_ends(kind: str) -> None:
     assert pose_distance(solution, fine(wanted, 11, 26)) <= 1e-3
 
 
-def test_trimmed_model_is_where_the_witness_says() -> None:
-    """Previews against solved models, and the start that a trim hands over against the solution."""
+def test_coarsened_model_is_where_the_reference_foresees() -> None:
+    """Previews against solved models, and the start that coarsening hands over against the solution."""
     wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT, HOOK, strain="reissner")
-    witness = fine(wanted, 9, 22)
-    preview = Preview(witness)
-    trimmed = Trim(preview, 1e-6).run()
-    solution = solve(build(wanted, trimmed.discretisation))
-    modes = {name: d.modes for name, d in trimmed.discretisation.items()}
+    reference = fine(wanted, 9, 22)
+    preview = Preview(reference)
+    coarsened = Coarsening(preview, 1e-6).run()
+    solution = solve(build(wanted, coarsened.discretisation))
+    modes = {name: d.modes for name, d in coarsened.discretisation.items()}
     start = preview.with_modes(modes)
-    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, trimmed.discretisation)
+    foreseen = preview.mode_shift(modes) + preview.grid_shift(start, modes, coarsened.discretisation)
     assert_allclose(Preview(solution).tips - preview.tips, foreseen, rtol=0, atol=2e-8)
     assert np.abs(foreseen).max() <= 1.01e-6
-    assert_allclose(trimmed.start, solution.x, rtol=0, atol=1e-3)
+    assert_allclose(coarsened.start, solution.x, rtol=0, atol=1e-3)
 
 
-def test_witness_knows_its_own_error() -> None:
-    """Not too small, and not so large that the ladder climbs in vain."""
+def test_reference_knows_its_own_error() -> None:
+    """Not too small, and not so large that levels are refined in vain."""
     wanted = scene(push(force=[4.0, 2.0, -1.0]), WEIGHT)
     truth = fine(wanted)
     for modes, nodes in ((5, 30), (7, 30), (9, 10)):
-        witness = solve(build(wanted, discretise(wanted, modes, nodes, "magnus6")))
-        resolution = Resolution(Preview(witness))
-        true = pose_distance(witness, truth)
+        reference = solve(build(wanted, discretise(wanted, modes, nodes, "magnus6")))
+        resolution = Resolution(Preview(reference))
+        true = pose_distance(reference, truth)
         assert true <= resolution.modes_error + resolution.grid_error <= 100 * true
 
 
@@ -210,4 +210,4 @@ class _Blind:
 def test_what_cannot_be_foreseen_is_an_infinite_error() -> None:
     resolution = Resolution(_Blind())  # type: ignore[arg-type]
     assert resolution.modes_error == np.inf
-    assert resolution.modes_lacking(1e-3) > 0
+    assert resolution.missing_modes(1e-3) > 0

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, discretise, parse_scene, solve, solve_scene, tune
-from cosserat_casadi.accuracy.refine import pose_distance
+from cosserat_casadi.accuracy.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
 from tests.scenes import push, scene
 

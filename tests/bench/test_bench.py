@@ -62,7 +62,7 @@ def test_every_point_is_measured(measured: tuple[Path, str, list[Measurement]]) 
     assert [row.name for row in rows] == [point.name for point in POINTS]
     for row in rows:
         assert row.note == ""
-        assert row.placed
+        assert row.in_plane
         assert 0 < row.igm_us < row.jacobian_us < row.cold_us
         assert row.igm_us < row.vm_igm_us
         assert row.cold_us < row.vm_cold_us
@@ -151,7 +151,7 @@ def test_a_point_that_is_not_compiled_says_why() -> None:
     opened = session.Session.open(planar(), "/bin/false")
     (row,) = opened.measure([Candidate("magnus4", 3, 5)])
     assert "the compiler fails" in row.note
-    assert not row.placed
+    assert not row.in_plane
     assert row.pose_error < 1e-2
     (large,) = opened.measure([Candidate("permuted", 3, 9)])
     assert large.note == "not compiled: literal system of 9 intervals"

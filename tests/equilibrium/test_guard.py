@@ -12,8 +12,8 @@ from scipy.integrate import quad
 from scipy.optimize import root
 
 from cosserat_casadi import Outcome, Scene, Solution, build, discretise, solve, solve_scene
-from cosserat_casadi.accuracy.node_residual import modes_to_see, node_residual
-from cosserat_casadi.accuracy.refine import largest_turn
+from cosserat_casadi.accuracy.metrics import largest_turn
+from cosserat_casadi.accuracy.node_residual import min_modes, node_residual
 from tests.initial_value import integrate
 from tests.reference.closed_forms import roll_up
 from tests.scenes import push, rod, scene
@@ -120,7 +120,7 @@ def test_wave_that_few_modes_cannot_see_shows_at_the_nodes() -> None:
     blind = solve(build(wanted, discretise(wanted, 7, 56, "magnus6")))
     assert blind.converged
     assert node_residual(blind) > 1e-2
-    assert modes_to_see(blind, largest_turn(blind), 1e-6) >= 25
+    assert min_modes(blind, largest_turn(blind), 1e-6) >= 25
     circle = solve(build(rolled(5.0), discretise(rolled(5.0), 2, 40, "magnus4")))
     assert node_residual(circle) < 1e-9
-    assert modes_to_see(circle, largest_turn(circle), 1e-6) == 0
+    assert min_modes(circle, largest_turn(circle), 1e-6) == 0

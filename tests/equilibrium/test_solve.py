@@ -303,7 +303,7 @@ def _discretised(modes: int, nodes: int) -> tuple[object, object]:
 
 
 def test_tolerance_that_cannot_be_met_is_unresolved(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cosserat_casadi.accuracy.refine.LADDER", (2, 3, 4))
+    monkeypatch.setattr("cosserat_casadi.accuracy.levels.REFERENCE_MODES", (2, 3, 4))
     solution = solve_scene(scene(push(force=[8.0, 2.0, 0.0]), accuracy={"tolerance": 1e-10}))
     assert not solution.converged
     assert solution.outcome is Outcome.UNRESOLVED

@@ -46,7 +46,7 @@ def test_extreme_scenes_end_truly(first: int) -> None:
 
 
 @pytest.mark.slow
-def test_witness_whose_coarser_models_overflow_is_refined() -> None:
+def test_reference_whose_coarser_models_overflow_is_refined() -> None:
     """Dropping two of its five modes leads nowhere: that is no small error, and there is a finer rung."""
     found = verdict(extreme_scene(73))
     assert found.faults == ()

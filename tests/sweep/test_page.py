@@ -15,7 +15,7 @@ import pytest
 from cosserat_casadi import read_scene
 from cosserat_casadi.sweep.outcome_table import LABELS
 from cosserat_casadi.sweep.table import Table, read_table
-from cosserat_casadi.sweep.variants import variants
+from cosserat_casadi.sweep.variants import variants_of
 from tests.conftest import ROOT
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
@@ -38,13 +38,13 @@ def table_of_block(language: str, suffix: str, folder: Path) -> Table:
 def test_grid_of_the_page(tmp_path: Path) -> None:
     table = table_of_block("toml", ".toml", tmp_path)
     assert len(table.values) == 200 * 21 * 3
-    assert variants(read_scene(WIRE), table).parameters == ()
+    assert variants_of(read_scene(WIRE), table).parameters == ()
 
 
 def test_csv_of_the_page(tmp_path: Path) -> None:
     table = table_of_block("csv", ".csv", tmp_path)
     assert table.values.tolist() == [[0.1, 0.0, 0.2], [0.2, -0.1, 0.2]]
-    assert variants(read_scene(WIRE), table).parameters == ()
+    assert variants_of(read_scene(WIRE), table).parameters == ()
 
 
 def test_every_outcome_is_named() -> None:

@@ -13,7 +13,7 @@ from cosserat_casadi import SceneError
 from cosserat_casadi.sweep.grid_file import grid
 from cosserat_casadi.sweep.sampling import representative_rows
 from cosserat_casadi.sweep.table import read_table, table_of
-from cosserat_casadi.sweep.variants import Variants, variants
+from cosserat_casadi.sweep.variants import Variants, variants_of
 from tests.scenes import push, rod, scene
 from tests.sweep.conftest import PLANAR
 
@@ -137,7 +137,7 @@ def test_arrays_that_are_no_table() -> None:
 
 
 def seen(**columns: object) -> Variants:
-    return variants(PLANAR, table_of({name.replace("__", "."): value for name, value in columns.items()}))  # type: ignore[misc]
+    return variants_of(PLANAR, table_of({name.replace("__", "."): value for name, value in columns.items()}))  # type: ignore[misc]
 
 
 def test_what_may_be_an_input_is_one_and_nothing_else() -> None:
@@ -171,7 +171,7 @@ def test_rows_of_equal_parameters_share_a_scene() -> None:
 )
 def test_columns_that_are_refused(columns: dict[str, list[float]], said: str) -> None:
     with pytest.raises(SceneError) as refused:
-        variants(PLANAR, table_of(columns))
+        variants_of(PLANAR, table_of(columns))
     assert said in str(refused.value)
 
 
@@ -187,11 +187,11 @@ def test_columns_that_are_refused(columns: dict[str, list[float]], said: str) ->
 )
 def test_two_names_of_one_thing_are_refused(columns: tuple[str, str]) -> None:
     with pytest.raises(SceneError, match=r"sets what '.*' sets"):
-        variants(PLANAR, table_of({name: [0.1, 0.2] for name in columns}))
+        variants_of(PLANAR, table_of({name: [0.1, 0.2] for name in columns}))
 
 
 def test_entries_of_one_vector_may_be_parameters() -> None:
-    found = variants(PLANAR, table_of({"push.force[0]": [0.1, 0.2], "push.force[1]": [0.3, 0.3]}))
+    found = variants_of(PLANAR, table_of({"push.force[0]": [0.1, 0.2], "push.force[1]": [0.3, 0.3]}))
     assert [entry.scene.loads[0].force for entry in found.entries] == [(0.1, 0.3, -0.4), (0.2, 0.3, -0.4)]  # type: ignore[union-attr]
 
 
@@ -206,17 +206,17 @@ def test_joints_that_hold_too_little_are_refused_with_their_row() -> None:
     ]
     given = scene(rods=rods, bodies=[{"name": "plate"}], joints=joints)
     with pytest.raises(SceneError, match=r"table, row 2, bodies\[0\]: nothing holds the orientation of 'plate'"):
-        variants(given, table_of({"joints[2].position[1]": [0.1, 0.0]}))
+        variants_of(given, table_of({"joints[2].position[1]": [0.1, 0.0]}))
     joints[2]["position"] = [0.2, 0.0, 0.0]
     with pytest.raises(SceneError, match=r"^bodies\[0\]: nothing holds the orientation of 'plate'"):
-        variants(scene(rods=rods, bodies=[{"name": "plate"}], joints=joints), table_of({"a.length": [0.8]}))
+        variants_of(scene(rods=rods, bodies=[{"name": "plate"}], joints=joints), table_of({"a.length": [0.8]}))
 
 
 def test_a_tension_below_zero_is_refused() -> None:
     tendon = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
     given = scene(push(), rods=[rod()], actuators=[tendon])
     with pytest.raises(SceneError, match=r"table, row 2, pull\.tension: must be >= 0"):
-        variants(given, table_of({"pull.tension": [0.0, -1e-3, 2.0]}))
+        variants_of(given, table_of({"pull.tension": [0.0, -1e-3, 2.0]}))
 
 
 def test_corners_are_among_the_rows_that_stand_for_all() -> None:

@@ -17,8 +17,8 @@ from cosserat_casadi.cli.reports.format import (
     table_of,
     title_line,
 )
-from cosserat_casadi.control.goals import Gap
 from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.control.target_errors import Gap
 from cosserat_casadi.equilibrium.solution import Solution
 
 ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}

@@ -1,0 +1,119 @@
+"""Refinement levels: uniform discretisations, one finer than the next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import ceil
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise, nodes_for
+
+REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
+"""Modes per strain component and element of a reference solution, level by level."""
+
+FIRST_LEVELS = ((1e-4, 1), (0.0, 2))
+"""First level for tolerances down to a bound; lower ones cannot tell how fast they converge."""
+
+MOST_LEVELS = 3
+"""Most levels up at once where the missing modes are extrapolated: convergence may turn out faster."""
+
+GRID_FACTOR = 1.4
+"""Factor on the intervals after a grid was too coarse."""
+
+MOST_GRID_FACTOR = 4.0
+"""Product of these factors at which the grid is given up."""
+
+VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
+"""Modes per strain component and element where a level is verified by the next one."""
+
+SPARE_NODES = 2
+"""Intervals of a verified level beyond those that the modes and the turn of a rod need."""
+
+
+def nodes_for_turn(modes: int, turn: float) -> int:
+    """Chebyshev intervals that resolve a rod with so many modes.
+
+    Args:
+        modes: per strain component and element.
+        turn: angle through which an element turns, rad. An interval more for every 2 rad, since the Magnus series and
+            the interpolation need a bounded turn of each (docs/theory.md, section 10).
+    """
+    return nodes_for(modes) + ceil(turn / 2)
+
+
+def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
+    """The model of a level that is verified by the next one.
+
+    Args:
+        scene: the scene.
+        modes: per strain component and element, one of VERIFIED_MODES.
+        turn: largest angle through which an element turned on the level before, rad; 0 on the first.
+    """
+    nodes = nodes_for_turn(modes, turn) + SPARE_NODES
+    # Two levels should differ by their modes: the highest order keeps the grid's error out of the comparison.
+    discretisation = discretise(scene, modes, nodes, "magnus8")
+    return build(scene, discretisation)
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level on the way to a reference solution, with what is known of the grid by then.
+
+    Attributes:
+        index: into REFERENCE_MODES.
+        grid_factor: factor on the intervals.
+        min_nodes: intervals below which a grid was too coarse for so bent a rod.
+    """
+
+    index: int
+    grid_factor: float = 1.0
+    min_nodes: int = 0
+
+    @classmethod
+    def first(cls, tolerance: float) -> Level:
+        """The level that a tolerance begins with."""
+        suitable = (index for bound, index in FIRST_LEVELS if tolerance >= bound)
+        last = len(REFERENCE_MODES) - 1
+        return cls(min(next(suitable), last))
+
+    @property
+    def modes(self) -> int:
+        """Modes per strain component and element."""
+        return REFERENCE_MODES[self.index]
+
+    def nodes(self, turn: float) -> int:
+        """Intervals per element, for rods whose elements turn by an angle in rad."""
+        nodes = nodes_for_turn(self.modes, turn)
+        stretched = ceil(self.grid_factor * nodes)
+        return max(stretched, self.min_nodes)
+
+    def with_modes(self, modes: int, most_levels: int = len(REFERENCE_MODES)) -> Level | None:
+        """The lowest level above that has so many modes, and the same grid factor.
+
+        Args:
+            modes: the number that is needed.
+            most_levels: the level is at most so many above this one.
+
+        Returns:
+            None where no level has so many.
+        """
+        count = len(REFERENCE_MODES)
+        sufficient = (i for i in range(count) if REFERENCE_MODES[i] >= modes)
+        lowest = next(sufficient, count)
+        # Always one up: a level that was just found too coarse is not solved again.
+        above = max(lowest, self.index + 1)
+        index = min(above, self.index + most_levels)
+        if index >= count:
+            return None
+        return replace(self, index=index)
+
+    def with_min_nodes(self, nodes: int) -> Level:
+        """The same modes on at least so many intervals."""
+        return replace(self, min_nodes=nodes)
+
+    def with_finer_grid(self) -> Level | None:
+        """The same modes on more intervals; None where the grid is given up."""
+        if self.grid_factor >= MOST_GRID_FACTOR:
+            return None
+        return replace(self, grid_factor=self.grid_factor * GRID_FACTOR)

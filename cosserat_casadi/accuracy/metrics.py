@@ -1,0 +1,118 @@
+"""How two solutions of one scene compare, and how far the rods of one turn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi.accuracy.preview import SAMPLES, watched
+from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.strain import DiscreteRod
+
+SAFETY = 2.0
+"""Factor on the distance to a finer solution whose own error is not known."""
+
+ROUNDING = 2e-14
+"""Floor of every estimate."""
+
+
+def with_estimate(
+    coarse: Solution,
+    fine: Solution,
+    factor: float = SAFETY,
+    fine_error: float = 0.0,
+) -> Solution:
+    """A solution with the error that a finer one of the same scene and inputs gives it.
+
+    Args:
+        coarse: the solution.
+        fine: the finer one.
+        factor: on the distance of their poses.
+        fine_error: error of the finer one, added.
+    """
+    watched_distance = pose_distance(coarse, fine)
+    sampled_distance = pose_distance(coarse, fine, SAMPLES)
+    shape_distance = max(watched_distance, sampled_distance)
+    return replace(
+        coarse,
+        error_estimate=factor * watched_distance + fine_error + ROUNDING,
+        shape_error_estimate=factor * shape_distance + fine_error + ROUNDING,
+    )
+
+
+def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None) -> float:
+    """Largest difference of the poses over all rods: position over length, rotation entries.
+
+    Args:
+        first: a solution.
+        second: another of the same scene.
+        X: abscissae to compare, shape (k,); by default those that the tolerance binds.
+    """
+    distances = [0.0]
+    for name, discrete_rod in first.model.discrete.rods.items():
+        sections = watched(first.model, name) if X is None else X
+        first_pose = first.pose(sections, name)
+        second_pose = second.pose(sections, name)
+        length = discrete_rod.properties.length
+        distances.append(_distance(first_pose, second_pose, length))
+    return max(distances)
+
+
+def largest_turn(solution: Solution) -> float:
+    """Largest angle through which an element of a rod turns from end to end, summed along it, rad."""
+    rods = solution.model.discrete.rods.values()
+    turns = [_element_turn(discrete_rod, solution) for discrete_rod in rods]
+    return max(turns)
+
+
+def prolong(solution: Solution, model: Model) -> FloatArray:
+    """Unknowns of a finer model of the same scene: the coefficients that exist, zeros for the rest.
+
+    Args:
+        solution: on the coarser model.
+        model: the finer one, with the same elements.
+
+    Returns:
+        shape (model.size,).
+    """
+    discrete = solution.model.discrete
+    blocks = []
+    for name, coarse_rod in discrete.rods.items():
+        q = solution.x[discrete.unknowns.strain(name)]
+        fine_rod = model.discrete.rods[name]
+        for component, columns in coarse_rod.columns.items():
+            elements = fine_rod.grid.elements
+            coarse = q[columns].reshape(elements, -1)
+            modes = fine_rod.at_nodes[component].shape[1] // elements
+            # Polynomials are sorted by degree, so a finer model adds its coefficients at the end.
+            fine = np.zeros((elements, modes))
+            fine[:, : coarse.shape[1]] = coarse
+            blocks.append(fine.ravel())
+    # Multipliers and poses of floating frames do not depend on the discretisation.
+    blocks.append(solution.x[discrete.unknowns.count(BlockKind.STRAIN) :])
+    return np.concatenate(blocks)
+
+
+def _distance(first: Pose, second: Pose, length: float) -> float:
+    position_change = np.abs(first.position - second.position)
+    rotation_change = np.abs(first.rotation - second.rotation)
+    position_distance = float(position_change.max()) / length
+    rotation_distance = float(rotation_change.max())
+    return max(position_distance, rotation_distance)
+
+
+def _element_turn(discrete_rod: DiscreteRod, solution: Solution) -> float:
+    """Largest of ℓ ∫ |K| dX over the elements of a rod, rad."""
+    grid = discrete_rod.grid
+    rod = discrete_rod.properties
+    strain = solution.strain(grid.nodes, rod.name)
+    curvature = np.linalg.norm(strain[:, :3], axis=1)
+    # Weights of the quadrature run over all nodes, element after element.
+    turns = grid.weights * curvature * rod.length
+    by_element = turns.reshape(grid.elements, -1)
+    element_turns = by_element.sum(axis=1)
+    return float(element_turns.max())

@@ -1,0 +1,129 @@
+"""The inputs that an inverse problem may change: which they are, their ranges, and how large a change of each is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+SHORTEST = 1e-3
+"""Least length of a rod or a cable that is tried, relative to the scene's."""
+
+UNFELT = 1e-9
+"""Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""
+
+
+@dataclass(frozen=True)
+class DecisionVariables:
+    """Inputs that may change, n entries of the stacked inputs.
+
+    Attributes:
+        indices: of the entries in the stacked inputs, shape (n,).
+        lower: least values, shape (n,), -inf where there is none.
+        upper: largest values, shape (n,), inf where there is none.
+    """
+
+    indices: npt.NDArray[np.int64]
+    lower: FloatArray
+    upper: FloatArray
+
+    def clipped(self, inputs: FloatArray) -> FloatArray:
+        """Stacked inputs with the decision variables brought into their ranges."""
+        inside = inputs.copy()
+        current = inputs[self.indices]
+        inside[self.indices] = np.clip(current, self.lower, self.upper)
+        return inside
+
+
+def decision_variables(model: Model) -> DecisionVariables:
+    """The inputs that a scene asks for: those it lists, or else those it bounds.
+
+    A tension is not below zero and a length not below a thousandth of the scene's, whatever the bounds.
+
+    Raises:
+        SceneError: the scene lists no inputs and bounds none.
+    """
+    layout = model.inputs
+    chosen = _chosen_names(model)
+    if not chosen:
+        remedy = "list them in inputs, or give each its range in [[bounds]]"
+        raise SceneError(Problem("inputs", "no input is named that could be found", remedy))
+    lower = _physical_lower(model)
+    upper = np.full(layout.size, np.inf)
+    for bound in model.scene.bounds:
+        # A bound is of all entries of a vector alike.
+        entries = layout.slices[bound.input]
+        if bound.lower is not None:
+            lower[entries] = np.maximum(lower[entries], bound.lower)
+        if bound.upper is not None:
+            upper[entries] = bound.upper
+    _refuse_empty_ranges(model, lower, upper)
+    all_indices = np.arange(layout.size)
+    indices = np.concatenate([all_indices[layout.slices[name]] for name in chosen])
+    return DecisionVariables(indices, lower[indices], upper[indices])
+
+
+def scales(model: Model, variables: DecisionVariables, start: Solution) -> FloatArray:
+    """A change of each decision variable that matters, shape (n,), in its unit.
+
+    Half the range where there is one; else what changes the dimensionless balance by one unit; else the value itself,
+    or the length of the rod whose base moves.
+    """
+    jacobian = model.input_jacobian(start.x, start.inputs).full()
+    sensitivity = np.linalg.norm(jacobian, axis=0)[variables.indices]
+    largest = sensitivity.max(initial=0.0)
+    own_size = _own_sizes(model, start.inputs)[variables.indices]
+    # Ones where a division would fail: these entries are not taken.
+    divisor = np.where(sensitivity > 0.0, sensitivity, 1.0)
+    unbounded_scale = np.where(sensitivity > UNFELT * largest, 1.0 / divisor, own_size)
+    half_range = (variables.upper - variables.lower) / 2
+    bounded = np.isfinite(half_range) & (half_range > 0.0)
+    return np.where(bounded, half_range, unbounded_scale)
+
+
+def _chosen_names(model: Model) -> list[str]:
+    """Names of the decision variables, in the order of the stacked inputs."""
+    scene = model.scene
+    bounded = tuple(bound.input for bound in scene.bounds)
+    changeable = bounded if scene.inputs is None else scene.inputs
+    return [name for name in model.inputs.names if name in changeable]
+
+
+def _physical_lower(model: Model) -> FloatArray:
+    """Least values that an input can have by what it is, shape (inputs,)."""
+    layout = model.inputs
+    lower = np.full(layout.size, -np.inf)
+    for name, default in zip(layout.names, layout.defaults, strict=True):
+        if name.endswith(".tension"):
+            lower[layout.slices[name]] = 0.0
+        elif name.endswith(".length"):
+            lower[layout.slices[name]] = SHORTEST * default.item()
+    return lower
+
+
+def _refuse_empty_ranges(model: Model, lower: FloatArray, upper: FloatArray) -> None:
+    problems = []
+    for i, bound in enumerate(model.scene.bounds):
+        entries = model.inputs.slices[bound.input]
+        if np.any(lower[entries] > upper[entries]):
+            least = float(lower[entries].max())
+            problem = f"is below {least:g}, the least that {bound.input} can be"
+            problems.append(Problem(f"bounds[{i}].upper", problem))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _own_sizes(model: Model, inputs: FloatArray) -> FloatArray:
+    """How large an input is by itself, where nothing else tells, shape (inputs,)."""
+    sizes = np.where(inputs != 0.0, np.abs(inputs), 1.0)
+    # The base of a rod may well be at the origin, so its value tells nothing.
+    lengths = {f"{rod.name}.base.position": rod.length for rod in model.scene.rods}
+    for name, entries in model.inputs.slices.items():
+        sizes[entries] = lengths.get(name, sizes[entries])
+    return sizes

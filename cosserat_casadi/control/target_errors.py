@@ -1,0 +1,152 @@
+"""How far a state is from its targets: symbolically for an optimiser, in metres and radians for a person."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.rotation import quaternion_product
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Error of one target: how far it is missed.
+
+    Attributes:
+        what: the target in words.
+        position: distance in m, of a curve the largest over its points.
+        angle: angle between the target's orientation and the actual one, rad; None where the orientation is free.
+    """
+
+    what: str
+    position: float
+    angle: float | None
+
+    def within(self, length: float, tolerance: float) -> bool:
+        """Whether the target is met: position relative to a length, and angle, to a tolerance."""
+        angle_met = self.angle is None or self.angle <= tolerance
+        return angle_met and self.position <= tolerance * length
+
+
+def length_of(model: Model, target: scenes.Target) -> float:
+    """Length that a target's distance is measured by, m: that of its rod, for a body that of the longest rod."""
+    lengths = {rod.name: rod.length for rod in model.scene.rods}
+    if target.rod is None:
+        return max(lengths.values())
+    return lengths[target.rod]
+
+
+def weighted_errors(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
+    """Weighted errors of all targets, without unit; half their sum of squares is what an optimiser lessens.
+
+    Positions count relative to the rod's length. Orientations by the chord 2 sin(θ/2) of the angle θ between them,
+    which is smooth at every angle. The points of a curve count together as much as one point.
+    """
+    errors = []
+    for target in model.scene.targets:
+        error = _error(model, target, x, inputs)
+        errors.append(np.sqrt(target.weight) * error)
+    stacked: Matrix = ca.vertcat(*errors)
+    return stacked
+
+
+def target_errors(solution: Solution) -> tuple[Gap, ...]:
+    """How far a solution is from each of the targets of its scene."""
+    targets = solution.model.scene.targets
+    return tuple(_gap(solution, target) for target in targets)
+
+
+def _error(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> Matrix:
+    """Error of one target without its weight: 3 numbers, 6 with an orientation, 3k for k points of a curve."""
+    length = length_of(model, target)
+    if isinstance(target, scenes.CurveTarget):
+        error = _curve_error(model, target, x, inputs)
+        scaled: Matrix = error / (length * np.sqrt(len(target.at)))
+        return scaled
+    position, quaternion = _pose(model, target, x, inputs)
+    position_error = (position - ca.DM(target.position)) / length
+    if isinstance(target, scenes.PositionTarget):
+        return position_error
+    return ca.vertcat(position_error, 2 * _half_rotation(target, quaternion))
+
+
+def _curve_error(model: Model, target: scenes.CurveTarget, x: Matrix, inputs: Matrix) -> Matrix:
+    """Differences from the points of a curve, m, shape (3k,)."""
+    shape = model.shape[target.rod]
+    differences = []
+    for X, point in zip(target.at, target.points, strict=True):
+        position = shape(x, inputs, X)[0]
+        differences.append(position - ca.DM(point))
+    stacked: Matrix = ca.vertcat(*differences)
+    return stacked
+
+
+def _pose(
+    model: Model,
+    target: scenes.PoseTarget | scenes.PositionTarget,
+    x: Matrix,
+    inputs: Matrix,
+) -> list[Matrix]:
+    """Position and quaternion of what a target is for."""
+    if target.rod is None:
+        outputs = model.body[str(target.body)](x, inputs)
+    elif target.at == 1.0:
+        # The tip needs no interpolation.
+        outputs = model.tip[target.rod](x, inputs)
+    else:
+        outputs = model.shape[target.rod](x, inputs, target.at)
+    return list(outputs[:2])
+
+
+def _half_rotation(target: scenes.PoseTarget, quaternion: Matrix) -> Matrix:
+    """Vector part of the rotation from the target's orientation to the actual one: sin(θ/2) times its axis."""
+    w, x, y, z = target.quaternion
+    conjugate = ca.MX(ca.DM([w, -x, -y, -z]))
+    # A planar rod leaves entries of its quaternion structurally zero.
+    actual = ca.densify(ca.MX(quaternion))
+    difference = quaternion_product(conjugate, actual)
+    return difference[1:]
+
+
+def _gap(solution: Solution, target: scenes.Target) -> Gap:
+    if isinstance(target, scenes.CurveTarget):
+        return _curve_gap(solution, target)
+    if target.rod is None:
+        what = f"body {target.body}"
+        pose = solution.body(target.body)
+    else:
+        section = "tip" if target.at == 1.0 else f"section X = {target.at:g}"
+        what = f"{section} of {target.rod}"
+        pose = solution.pose(np.array([target.at]), target.rod)
+    difference = pose.position[0] - np.array(target.position)
+    distance = float(np.linalg.norm(difference))
+    if isinstance(target, scenes.PositionTarget):
+        return Gap(what, distance, None)
+    angle = _angle(np.array(target.quaternion), pose.quaternion[0])
+    return Gap(what, distance, angle)
+
+
+def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
+    pose = solution.pose(np.array(target.at), target.rod)
+    differences = pose.position - np.array(target.points)
+    distances = np.linalg.norm(differences, axis=1)
+    what = f"{len(target.at)} points along {target.rod}"
+    return Gap(what, float(distances.max()), None)
+
+
+def _angle(first: FloatArray, second: FloatArray) -> float:
+    """Angle of the rotation between two unit quaternions, rad, in [0, π]."""
+    scalar = first @ second
+    # The conjugate of the first times the second.
+    vector = first[0] * second[1:] - second[0] * first[1:]
+    vector = vector - np.cross(first[1:], second[1:])
+    # The arc tangent is exact near 0 and near π, where arc cosine and arc sine are not; q and −q are one rotation.
+    sine = np.linalg.norm(vector)
+    half_angle = np.arctan2(sine, abs(scalar))
+    return float(2 * half_angle)

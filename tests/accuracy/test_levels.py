@@ -1,0 +1,84 @@
+"""Refinement levels: what a solution lacks, and where each verdict leads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cosserat_casadi import Scene, Solution, build, discretise, solve
+from cosserat_casadi.accuracy.assess import Enough, NeedsFinerGrid, NeedsModes, NeedsNodes, NoEquilibrium, assess
+from cosserat_casadi.accuracy.levels import GRID_FACTOR, MOST_GRID_FACTOR, REFERENCE_MODES, Level
+from cosserat_casadi.numerics.outcome import Outcome
+from tests.scenes import WEIGHT, push, scene
+
+BENT = scene(push(force=[3.0, 1.0, -0.5]), WEIGHT)
+
+
+def solved(wanted: Scene, modes: int, nodes: int) -> Solution:
+    return solve(build(wanted, discretise(wanted, modes, nodes, "magnus6")))
+
+
+def rolled(turns: float) -> Scene:
+    straight = {"name": "rod", "length": 1.0, "strain": "planar", "stiffness": {"bending_y": 1.0}}
+    return scene(push(force=[0, 0, 0], moment=[0, 2 * np.pi * turns, 0]), rods=[straight])
+
+
+@pytest.mark.parametrize(
+    ("modes", "nodes", "verdict"),
+    [(5, 30, NeedsModes), (9, 9, NeedsFinerGrid), (9, 14, Enough)],
+)
+def test_verdict_names_what_leaves_the_error(modes: int, nodes: int, verdict: type) -> None:
+    assert isinstance(assess(solved(BENT, modes, nodes), 1e-8), verdict)
+
+
+def test_missing_modes_are_extrapolated() -> None:
+    verdict = assess(solved(BENT, 4, 30), 1e-6)
+    assert isinstance(verdict, NeedsModes)
+    assert verdict.extrapolated
+    assert verdict.modes > 4
+
+
+def test_too_bent_for_its_grid_needs_nodes_that_resolve_it() -> None:
+    verdict = assess(solved(rolled(5.0), 2, 6), 1e-6)
+    assert isinstance(verdict, NeedsNodes)
+    assert 6 < verdict.nodes <= 12
+
+
+def test_failed_solve_is_no_equilibrium() -> None:
+    stalled = replace(solved(BENT, 4, 10), outcome=Outcome.LOAD_STALLED)
+    assert isinstance(assess(stalled, 1e-6), NoEquilibrium)
+
+
+def test_extrapolated_modes_skip_three_levels_at_most() -> None:
+    level = Level(1)
+    assert level.with_modes(1000, most_levels=3) == Level(4)
+    assert level.with_modes(REFERENCE_MODES[1]) == Level(2)
+    assert level.with_modes(REFERENCE_MODES[5]) == Level(5)
+    assert level.with_modes(REFERENCE_MODES[-1] + 1) is None
+
+
+def test_what_is_known_of_the_grid_is_kept_with_more_modes() -> None:
+    level = Level(2).with_min_nodes(90)
+    finer = level.with_finer_grid()
+    assert finer is not None
+    above = finer.with_modes(finer.modes + 1)
+    assert above == Level(3, GRID_FACTOR, 90)
+    assert above.nodes(0.0) == 90
+    assert above.nodes(400.0) > 90
+
+
+def test_grid_is_given_up_after_some_factors() -> None:
+    level: Level | None = Level(2)
+    factors = []
+    while level is not None:
+        factors.append(level.grid_factor)
+        level = level.with_finer_grid()
+    assert factors[0] == 1.0
+    assert factors[-2] < MOST_GRID_FACTOR <= factors[-1]
+
+
+@pytest.mark.parametrize(("tolerance", "index"), [(1e-2, 1), (1e-4, 1), (1e-5, 2), (1e-12, 2)])
+def test_first_level(tolerance: float, index: int) -> None:
+    assert Level.first(tolerance) == Level(index)
