@@ -115,6 +115,5 @@ class StrainSumOnRod:
     @property
     def _weighted(self) -> FloatArray:
         """ℓ w g, shape (len(components), M)."""
-        rod = self.shape.rod
-        lengths = rod.properties.length * rod.grid.weights
+        lengths = self.shape.rod.node_lengths
         return np.asarray(lengths * self.quantity.densities)

@@ -166,9 +166,7 @@ class RoutedCable:
     @property
     def _node_lengths(self) -> FloatArray:
         """Length of rod that each node of the routing stands for, ℓ w, shape (k,), m."""
-        rod = self.shape.rod
-        weights = rod.grid.weights[self.routing.nodes]
-        return np.asarray(rod.properties.length * weights)
+        return self.shape.rod.node_lengths[self.routing.nodes]
 
 
 def _constant(row: FloatArray) -> Row:

@@ -53,22 +53,27 @@ class InverseGeometricModel:
     @cached_property
     def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
         """Every effort of an actuator with the quantity that it works on, at this shape."""
-        return tuple((a.effort, a.quantity.on(self.shape)) for a in self.actuation)
+        found = []
+        for actuation in self.actuation:
+            conjugate = actuation.quantity.on(self.shape)
+            found.append((actuation.effort, conjugate))
+        return tuple(found)
 
     @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        unit = self.rod.energy_unit
-        forces = [effort / unit * conjugate.gradient for effort, conjugate in self.efforts]
-        if not forces:
+        if not self.efforts:
             return None
+        forces = []
+        for effort, conjugate in self.efforts:
+            forces.append(effort / self.rod.energy_unit * conjugate.gradient)
         return sum(forces[1:], forces[0])
 
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
-        passive = self._elastic(stiffness @ self.shape.q) + self.generalised_force
+        elastic = self._elastic(self._stiffness @ self.shape.q)
+        passive = elastic + self.generalised_force
         if self.actuation_force is None:
             return passive
         return passive + self.actuation_force
@@ -76,8 +81,8 @@ class InverseGeometricModel:
     @cached_property
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
-        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
-        stored = ca.bilin(stiffness, self.shape.q, self.shape.q)
+        q = self.shape.q
+        stored = ca.bilin(self._stiffness, q, q)
         return self.rod.energy_unit / 2 * self._elastic(stored)
 
     @cached_property
@@ -100,6 +105,11 @@ class InverseGeometricModel:
         for effort, conjugate in self.efforts:
             total = total + effort * conjugate.value
         return total
+
+    @property
+    def _stiffness(self) -> ca.DM:
+        """K_εε / (EI/ℓ), n×n, without its zeros."""
+        return ca.sparsify(ca.DM(self.rod.stiffness))
 
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""

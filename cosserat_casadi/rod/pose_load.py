@@ -48,8 +48,7 @@ class LoadedSections:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
-        rod = self.shape.rod
-        return np.asarray(rod.properties.length * rod.grid.weights)
+        return self.shape.rod.node_lengths
 
     @cached_property
     def position(self) -> Matrix:

@@ -138,7 +138,8 @@ class Reaction:
         """Sum over the sections of variations of a vector, 3×n."""
         if isinstance(wrench, PointWrench):
             return variation
-        sums = ca.kron(ca.DM.eye(3), self._node_lengths)
+        lengths = ca.DM(self.tangent.rod.node_lengths).T
+        sums = ca.kron(ca.DM.eye(3), lengths)
         return sums @ variation
 
     def _lever(self, wrench: Wrench) -> Matrix:
@@ -147,14 +148,9 @@ class Reaction:
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
             return hat(shape.position_at(node))
-        weighted = shape.position * ca.repmat(self._node_lengths, 3, 1)
+        lengths = ca.DM(shape.rod.node_lengths).T
+        weighted = shape.position * ca.repmat(lengths, 3, 1)
         return _hat_row(weighted)
-
-    @property
-    def _node_lengths(self) -> ca.DM:
-        """Length of rod that each node stands for, ℓ w, 1×M, m."""
-        rod = self.tangent.rod
-        return ca.DM(rod.properties.length * rod.grid.weights).T
 
 
 def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:

@@ -155,8 +155,17 @@ class DiscreteRod:
     @cached_property
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
-        element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
-        return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.properties.admitted}
+        grid = self.grid
+        element = np.repeat(np.arange(grid.elements), grid.intervals + 1)
+        values = {}
+        for c in self.properties.admitted:
+            values[c] = self.shape_functions(c, grid.nodes, element)
+        return values
+
+    @cached_property
+    def node_lengths(self) -> Array:
+        """Length of rod that each node stands for in sums, ℓ w, shape (M,), m."""
+        return np.asarray(self.properties.length * self.grid.weights)
 
     def node_matrix(self, component: int) -> FoldedMatrix:
         """Φ_c at the nodes, M×n_c: modes meet sums or differences of mirrored nodes."""
@@ -235,7 +244,11 @@ class DiscreteRod:
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
         """Taylor coefficients of the unloaded turn of every interval: one (intervals, 3) array for each l."""
-        return self._taylor(lambda X, element: self.properties.intrinsic_strain(X)[:, :3])
+
+        def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
+            return self.properties.intrinsic_strain(X)[:, :3]
+
+        return self._taylor(curvature)
 
     @cached_property
     def taylor_count(self) -> int:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -105,6 +104,4 @@ class StrainDensityOnRod:
     @property
     def _node_lengths(self) -> FloatArray:
         """Length of rod that each node of the span stands for, ℓ w, shape (k,), m."""
-        rod = self.shape.rod
-        weights = rod.grid.weights[self.quantity.nodes]
-        return np.asarray(rod.properties.length * weights)
+        return self.shape.rod.node_lengths[self.quantity.nodes]

@@ -76,8 +76,11 @@ class Tangent:
     @cached_property
     def angular_size(self) -> int:
         """Number n_a of coordinates of curvature and torsion, which come first in q."""
-        angular = [c for c in self.rod.properties.admitted if c < 3]
-        return sum(self.rod.at_nodes[c].shape[1] for c in angular)
+        size = 0
+        for c in self.rod.properties.admitted:
+            if c < 3:
+                size += self.rod.at_nodes[c].shape[1]
+        return size
 
     @cached_property
     def turn_matrix(self) -> FoldedMatrix:
@@ -146,8 +149,8 @@ class Tangent:
     def rotation_of(self, node: int) -> Matrix:
         """δθ of one node, 3×n, rad."""
         components = ca.vertsplit(self.rotation, self.rod.grid.size)
-        turned = ca.vertcat(*[component[node, :] for component in components])
-        return self._with_linear_columns(turned)
+        rows = [component[node, :] for component in components]
+        return self._with_linear_columns(ca.vertcat(*rows))
 
     def motion(self, load: LoadedSections) -> Matrix:
         """[δr; δθ] of the sections of a load, stacked component by component, 6k×n, m and rad."""
@@ -188,12 +191,15 @@ class Tangent:
 
     def _with_linear_columns(self, angular: Matrix) -> Matrix:
         """Columns of the angular coordinates, and zeros for the linear ones."""
-        return ca.horzcat(angular, ca.DM(angular.shape[0], self._linear_size))
+        linear = ca.DM(angular.shape[0], self._linear_size)
+        return ca.horzcat(angular, linear)
 
     def _frozen_wrenches(self) -> Matrix:
         """What all wrenches add but for following forces, n×n; linear strains do not meet each other."""
-        no_row = ca.DM(0, self.angular_size)
-        linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], no_row)
+        rows = [self._linear_rows(c) for c in self._linear]
+        # A rod without linear strains has no such row.
+        rows.append(ca.DM(0, self.angular_size))
+        linear = ca.vertcat(*rows)
         none = ca.DM(linear.shape[0], linear.shape[0])
         return ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
 
@@ -236,7 +242,8 @@ class Tangent:
 
     def _commutator(self, couple: Matrix) -> Matrix:
         """Σ δθᵀ ĉ^ δθ over the nodes, C of the module's docstring, skew, n_a×n_a, for couples 3×M."""
-        return self.rotation.T @ (hat_operator(couple) @ self.rotation)
+        turned = hat_operator(couple) @ self.rotation
+        return self.rotation.T @ turned
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
@@ -276,8 +283,7 @@ class Tangent:
         """δn̂ of a force per length that turns with the sections, 3M×n_a."""
         grid = self.rod.grid
         turned = -(hat_operator(self.igm.statics.line(wrench, force)) @ self.rotation)
-        lengths = self.rod.properties.length * grid.weights[:, None]
-        to_covector = ca.DM(lengths * grid.integration_matrix).T
+        to_covector = ca.DM(self.rod.node_lengths[:, None] * grid.integration_matrix).T
         components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
         return ca.vertcat(*components)
 
@@ -322,16 +328,19 @@ class Tangent:
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""
-        return ca.DM(self.rod.properties.length * self.rod.at_nodes[component])
+        phi = self.rod.at_nodes[component]
+        return ca.DM(self.rod.properties.length * phi)
 
     @cached_property
     def _gather(self) -> ca.DM:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
-        sections = np.eye(self.intervals + 1)[1:, self.rod.grid.section_of_node]
+        section_of_node = self.rod.grid.section_of_node
+        sections = np.eye(self.intervals + 1)[1:, section_of_node]
         gather = np.kron(np.eye(3), sections)
         return ca.sparsify(ca.DM(gather))
 
 
 def _with_base(part: Matrix) -> Matrix:
     """Variations of the distinct sections, the base, which does not vary, before the others."""
-    return ca.vertcat(ca.DM(1, part.shape[1]), part)
+    base = ca.DM(1, part.shape[1])
+    return ca.vertcat(base, part)
