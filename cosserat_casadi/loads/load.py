@@ -102,6 +102,7 @@ class Load(ABC):
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
             multiplies profile j of :meth:`profiles`.
         """
+        # The pose is a set of free symbols when a load is traced: the energy can be differentiated here.
         energy = self.energy(load, section, values)
         if energy is None:
             raise NotImplementedError(f"{type(self).__name__} gives neither a wrench nor an energy")
@@ -130,6 +131,7 @@ class Load(ABC):
 
     def breaks(self, load: Any) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
+        # Under a point load strain and internal force jump; what acts per length leaves them smooth.
         at = self.abscissa(load)
         if at is None:
             return ()

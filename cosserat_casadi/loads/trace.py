@@ -71,6 +71,7 @@ def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int
     symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
     energy = member.energy(load, section, symbols)
     force, moment = (ca.sparsify(ca.SX(vector)) for vector in member.wrench(load, section, symbols))
+    # What depends on the data of its section differs from node to node, and is evaluated there as well.
     pose = _entries(section.position, section.rotation, section.data)
     pose_free = energy is None and not ca.depends_on(_entries(force, moment), pose)
     if energy is None and member.axes(load) == "section":
@@ -130,6 +131,7 @@ def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], dat
     moment_vanishes = wrench.nnz_out(1) == 0
     if force_vanishes and moment_vanishes:
         return True
+    # The work of a wrench that follows, or hangs on the pose, may depend on the way: nothing is claimed for it.
     if found.follower or not found.pose_free:
         return False
     return moment_vanishes or one_axis

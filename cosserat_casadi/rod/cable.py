@@ -57,9 +57,10 @@ class RoutedCable:
     @cached_property
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
+        # K × D with D = (D_x, D_y, 0), written out so that rows which vanish are left out.
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
-        length = self.shape.rod.properties.length
+        length = self.shape.rod.length
         slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
         return (
             _sum(gx, _negative(_product(kz, dy)), slope_x),
@@ -87,6 +88,7 @@ class RoutedCable:
     @cached_property
     def lever(self) -> dict[int, Row]:
         """Rate of |T| with each admitted strain, the components of [D × t; t]."""
+        # [D × t; t], angular part first.
         x, y, z = self.direction
         dx, dy = self._offset
         levers = {
@@ -97,7 +99,7 @@ class RoutedCable:
             4: y,
             5: z,
         }
-        return {c: levers[c] for c in self.shape.rod.properties.admitted}
+        return {c: levers[c] for c in self.shape.rod.admitted}
 
     @cached_property
     def value(self) -> Matrix:
@@ -122,6 +124,7 @@ class RoutedCable:
 
         With T linear in the strains, ∂²|T| = (∂_aT·∂_bT − ∂_a|T| ∂_b|T|) / |T|.
         """
+        # A cable parallel to the rod has a length that is linear in the strains.
         x, y, _ = self.tangent
         if x is None and y is None:
             return None
@@ -131,6 +134,7 @@ class RoutedCable:
         if across is None:
             return None
         row = across / self.stretch * ca.DM(self._node_lengths).T
+        # The nodes of other elements, which the cable does not pass, have no entry.
         whole = type(row)(1, self.shape.rod.grid.size)
         whole[self.routing.nodes.tolist()] = row
         return whole

@@ -92,6 +92,7 @@ class InverseGeometricModel:
         None unless every load is a dead force or has an energy. With r = S t and n̂ = Sᵀ f the work of the dead forces
         is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
+        # A dead moment may have a potential, but none that is a function of q written here.
         if any(w.follower or w.moment is not None for w in self.statics.fixed_wrenches):
             return None
         if any(load.energy is None for load in self.statics.pose_loads):
@@ -122,6 +123,7 @@ class InverseGeometricModel:
         moment = self.statics.interval_moment
         force: Matrix = ca.DM.zeros(self.rod.size, 1)
         if moment is not None and self.rod.properties.turning_axes:
+            # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
             pull = interval_kernels(self.rod).pull.map(moment.shape[1])
             pulled = pull(*self.shape.interval_arguments, moment)
             per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
@@ -130,25 +132,26 @@ class InverseGeometricModel:
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
-        linear = [c for c in self.rod.properties.admitted if c >= 3]
-        sizes = [self.rod.at_nodes[c].shape[1] for c in linear]
+        rod = self.rod
         # Curvature and torsion come first in q; forces work on them through moments alone.
-        parts: list[Matrix] = [ca.DM.zeros(self.rod.size - sum(sizes), 1)]
-        for c, size in zip(linear, sizes, strict=True):
+        angular_size = sum(rod.size_of(c) for c in rod.angular)
+        parts: list[Matrix] = [ca.DM.zeros(angular_size, 1)]
+        for c in rod.linear:
             if covector is None:
-                parts.append(ca.DM.zeros(size, 1))
+                parts.append(ca.DM.zeros(rod.size_of(c), 1))
                 continue
             along_director = dot(self.shape.directors[c - 3], covector)
-            per_coordinate = self.rod.node_matrix(c) * (-self.rod.properties.length / self.rod.energy_unit)
+            per_coordinate = rod.node_matrix(c) * (-rod.length / rod.energy_unit)
             parts.append(per_coordinate.T @ along_director.T)
         return ca.vertcat(*parts)
 
     def _weighted_force(self) -> Matrix:
         """Literal quadrature of report (2.16), −ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ), from the internal wrench at the nodes, n×1."""
         wrench = self.statics.internal_wrench()
-        factor = self.rod.properties.length / self.rod.energy_unit * self.rod.grid.weights
+        rod = self.rod
+        factor = rod.length / rod.energy_unit * rod.grid.weights
         parts = []
-        for c in self.rod.properties.admitted:
-            weighted = ca.DM(self.rod.at_nodes[c] * factor[:, None])
-            parts.append(weighted.T @ wrench[c, :].T)
+        for c in rod.admitted:
+            weighted = rod.at_nodes[c] * factor[:, None]
+            parts.append(ca.DM(weighted).T @ wrench[c, :].T)
         return -ca.vertcat(*parts)

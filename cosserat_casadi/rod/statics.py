@@ -65,6 +65,7 @@ class Statics:
     @cached_property
     def moment_covector(self) -> Matrix | None:
         """T × n̂ + ĉ, 3×M, conjugate to the variations of the rotations of the nodes, N m; None without loads."""
+        # Turning the sections by δθ moves the tangents by δθ × t.
         parts = []
         force = self.force_covector
         if force is not None:
@@ -98,6 +99,7 @@ class Statics:
     @cached_property
     def base_force(self) -> Matrix:
         """Force of the clamp on the rod, base frame, 3×1, N: minus the sum of the loads."""
+        # Sums of the loads, not of n̂: exact whatever the integration matrix.
         total = ca.DM.zeros(3, 1)
         for wrench in self.wrenches:
             if wrench.force is not None:
@@ -175,6 +177,7 @@ class Statics:
         grid = self.shape.rod.grid
         if isinstance(wrench, PointWrench):
             node = grid.node_at(wrench.at)
+            # The couple stands at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
             return self._resultant(wrench, moment) @ to_node
         lengths = ca.DM(self.shape.rod.node_lengths)
@@ -199,10 +202,12 @@ class Statics:
             if vector is None:
                 continue
             if isinstance(wrench, PointWrench):
-                before = (np.arange(grid.size) <= grid.node_at(wrench.at)).astype(float)
+                # The node at the tip side of a break does not carry what acts on the break.
+                loaded = grid.node_at(wrench.at)
+                before = (np.arange(grid.size) <= loaded).astype(float)
                 total = total + self._resultant(wrench, vector) @ ca.DM(before).T
             else:
-                to_tip = self.shape.rod.properties.length * self._from_tip
+                to_tip = self.shape.rod.length * self._from_tip
                 total = total + self.line(wrench, vector) @ ca.DM(to_tip).T
         return total
 
@@ -211,13 +216,15 @@ class Statics:
         grid = self.shape.rod.grid
         if grid.elements == 1:
             return covector
-        gather = np.zeros((grid.size, grid.section_of_node[-1] + 1))
-        gather[np.arange(grid.size), grid.section_of_node] = 1.0
+        section_of_node = grid.section_of_node
+        gather = np.zeros((grid.size, section_of_node[-1] + 1))
+        gather[np.arange(grid.size), section_of_node] = 1.0
         return covector @ ca.DM(ca.sparsify(ca.DM(gather)))
 
 
 def _sums_to_the_tip(row: Matrix) -> Matrix:
     """Sum of each entry of a row and of all behind it."""
+    # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
     reversed_row = ca.densify(row[:, ::-1])
     return ca.cumsum(reversed_row, 1)[:, ::-1]
 

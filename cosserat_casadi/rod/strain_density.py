@@ -63,7 +63,7 @@ class StrainDensityOnRod:
         rod = self.shape.rod
         _, gradient, _ = self._at_nodes
         parts = []
-        for c in rod.properties.admitted:
+        for c in rod.admitted:
             phi = rod.at_nodes[c][self.quantity.nodes]
             weighted = phi * self._node_lengths[:, None]
             parts.append(ca.DM(weighted).T @ gradient[c, :].T)
@@ -85,7 +85,8 @@ class StrainDensityOnRod:
         nodes = self.quantity.nodes.tolist()
         rows = self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
         present = [c for c, row in enumerate(rows) if row is not None]
-        strain = ca.vertcat(*[ca.DM(1, len(nodes)) if row is None else row[nodes] for row in rows])
+        zero = ca.DM(1, len(nodes))
+        strain = ca.vertcat(*[zero if row is None else row[nodes] for row in rows])
         kernel = self._kernel(present).map(len(nodes))
         density, gradient, second = kernel.call([strain, ca.DM(self.quantity.data)])
         return density, gradient, second
@@ -96,6 +97,7 @@ class StrainDensityOnRod:
         pattern = ca.Sparsity.triplet(6, 1, present, [0] * len(present))
         strain = ca.SX.sym("strain", pattern)
         data = ca.SX.sym("data", len(self.quantity.data))
+        # Called with symbols once; the map below evaluates what is differentiated here.
         density = self.quantity.density(strain, data)
         gradient = ca.jacobian(density, strain).T
         second = ca.vec(ca.jacobian(gradient, strain))
