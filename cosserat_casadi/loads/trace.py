@@ -123,15 +123,15 @@ def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], dat
     """
     # Inputs that are zero leave no entry, so that a wrench that vanishes with them is structurally zero.
     numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values.items()}
-    found = traced(member, load, numbers, data_size)
-    if found.kernel.world_energy is not None:
+    trace = traced(member, load, numbers, data_size)
+    if trace.kernel.world_energy is not None:
         return True
-    wrench = found.kernel.world_wrench
+    wrench = trace.kernel.world_wrench
     force_vanishes = wrench.nnz_out(0) == 0
     moment_vanishes = wrench.nnz_out(1) == 0
     if force_vanishes and moment_vanishes:
         return True
     # The work of a wrench that follows, or hangs on the pose, may depend on the way: nothing is claimed for it.
-    if found.follower or not found.pose_free:
+    if trace.follower or not trace.pose_free:
         return False
     return moment_vanishes or one_axis

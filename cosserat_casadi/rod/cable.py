@@ -155,14 +155,14 @@ class RoutedCable:
         """Scalar product of the rates of T with two strains, shape (k,)."""
         dx, dy = self.routing.offset
         zero = np.zeros_like(dx)
-        one = np.ones_like(dx)
+        unit = np.ones_like(dx)
         rates = [
             np.array([zero, zero, dy]),
             np.array([zero, zero, -dx]),
             np.array([-dy, dx, zero]),
-            np.array([one, zero, zero]),
-            np.array([zero, one, zero]),
-            np.array([zero, zero, one]),
+            np.array([unit, zero, zero]),
+            np.array([zero, unit, zero]),
+            np.array([zero, zero, unit]),
         ]
         product = rates[a] * rates[b]
         return np.asarray(product.sum(axis=0))

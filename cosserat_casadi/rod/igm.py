@@ -53,11 +53,11 @@ class InverseGeometricModel:
     @cached_property
     def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
         """Every effort of an actuator with the quantity that it works on, at this shape."""
-        found = []
+        efforts = []
         for actuation in self.actuation:
             conjugate = actuation.quantity.on(self.shape)
-            found.append((actuation.effort, conjugate))
-        return tuple(found)
+            efforts.append((actuation.effort, conjugate))
+        return tuple(efforts)
 
     @cached_property
     def actuation_force(self) -> Matrix | None:

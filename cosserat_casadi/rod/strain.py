@@ -261,15 +261,15 @@ class DiscreteRod:
     @cached_property
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
-        found = []
+        orders = []
         for order, per_interval in enumerate(self._taylor(self._sampled_modes)):
             matrices = {}
             for c in self.angular:
                 # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
                 within_degree = self.degrees(c) >= order
                 matrices[c] = per_interval[:, self.columns[c]] * within_degree
-            found.append(matrices)
-        return found
+            orders.append(matrices)
+        return orders
 
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
