@@ -33,6 +33,7 @@ class Chamber(Actuator):
 
     def quantity(self, actuator: Any, grid: Grid) -> StrainSum:
         """The volume: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
+        # (Γ + K × D)_z = Γ_z + K_x D_y − K_y D_x.
         channel = routing(actuator, grid)
         x, y = channel.offset
         densities = np.zeros((3, grid.size))

@@ -37,6 +37,7 @@ def span_ends(actuator: Any) -> tuple[float, ...]:
 def _nodes_in(span: tuple[float, float], grid: Grid) -> Indices:
     """Nodes of the elements inside a span, each side of a break with its own."""
     start, end = span
+    # A span ends at breaks, so an element is inside as a whole or not at all.
     middles = grid.nodes.reshape(grid.elements, -1).mean(axis=1)
     inside = (middles > start) & (middles < end)
     return np.flatnonzero(np.repeat(inside, grid.intervals + 1))

@@ -32,10 +32,12 @@ class Gravity(Load):
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """The acceleration, a force per mass."""
+        # Mass comes in by the profile of a rod and the factor of a body.
         return values["acceleration"], ca.DM(3, 1)
 
     def profiles(self, load: Any, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
         """Mass per length, kg/m."""
+        # A rod without mass is not weighed, and costs nothing.
         if rod.linear_density is None:
             return np.zeros((1, len(X)))
         return np.asarray(rod.linear_density(X)[None, :])

@@ -102,6 +102,7 @@ class Load(ABC):
             force in N and moment in N m, or both per metre for a load that has no abscissa: 3×k each, where column j
             multiplies profile j of :meth:`profiles`.
         """
+        # The pose is a set of free symbols when a load is traced: the energy can be differentiated here.
         energy = self.energy(load, section, values)
         if energy is None:
             raise NotImplementedError(f"{type(self).__name__} gives neither a wrench nor an energy")
@@ -130,6 +131,7 @@ class Load(ABC):
 
     def breaks(self, load: Any) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
+        # Under a point load strain and internal force jump; what acts per length leaves them smooth.
         at = self.abscissa(load)
         if at is None:
             return ()
@@ -160,25 +162,25 @@ class Load(ABC):
             return self.point_arrows(label, position, force, moment)
         largest = float(np.linalg.norm(force, axis=0).max())
         legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
-        found = []
+        arrows = []
         for start, vector in zip(position.T, force.T, strict=True):
             if np.any(vector):
-                found.append(Arrow(start, vector, "line", legend))
+                arrows.append(Arrow(start, vector, "line", legend))
             # One entry in the legend is enough.
             legend = ""
-        return found
+        return arrows
 
     def point_arrows(self, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
         """Force and moment on one section or on a body, shape (3, 1) each; what is zero is not drawn."""
-        found = []
+        arrows = []
         vectors: dict[Sort, FloatArray] = {"point": force[:, 0], "moment": moment[:, 0]}
         for sort, vector in vectors.items():
             if not np.any(vector):
                 continue
             size = float(np.linalg.norm(vector))
             legend = f"{label}: {size:.3g} {UNITS[sort]}" if label else ""
-            found.append(Arrow(position[:, 0], vector, sort, legend))
-        return found
+            arrows.append(Arrow(position[:, 0], vector, sort, legend))
+        return arrows
 
 
 def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:

@@ -71,6 +71,7 @@ def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int
     symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
     energy = member.energy(load, section, symbols)
     force, moment = (ca.sparsify(ca.SX(vector)) for vector in member.wrench(load, section, symbols))
+    # What depends on the data of its section differs from node to node, and is evaluated there as well.
     pose = _entries(section.position, section.rotation, section.data)
     pose_free = energy is None and not ca.depends_on(_entries(force, moment), pose)
     if energy is None and member.axes(load) == "section":
@@ -123,14 +124,15 @@ def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], dat
     """
     # Inputs that are zero leave no entry, so that a wrench that vanishes with them is structurally zero.
     numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values.items()}
-    found = traced(member, load, numbers, data_size)
-    if found.kernel.world_energy is not None:
+    trace = traced(member, load, numbers, data_size)
+    if trace.kernel.world_energy is not None:
         return True
-    wrench = found.kernel.world_wrench
+    wrench = trace.kernel.world_wrench
     force_vanishes = wrench.nnz_out(0) == 0
     moment_vanishes = wrench.nnz_out(1) == 0
     if force_vanishes and moment_vanishes:
         return True
-    if found.follower or not found.pose_free:
+    # The work of a wrench that follows, or hangs on the pose, may depend on the way: nothing is claimed for it.
+    if trace.follower or not trace.pose_free:
         return False
     return moment_vanishes or one_axis

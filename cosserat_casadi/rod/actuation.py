@@ -100,7 +100,7 @@ class StrainSumOnRod:
         rod = self.shape.rod
         weights = dict(zip(self.quantity.components, self._weighted, strict=True))
         rows = []
-        for c in rod.properties.admitted:
+        for c in rod.admitted:
             phi = rod.at_nodes[c]
             # A strain that the quantity does not depend on has no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
@@ -115,6 +115,5 @@ class StrainSumOnRod:
     @property
     def _weighted(self) -> FloatArray:
         """ℓ w g, shape (len(components), M)."""
-        rod = self.shape.rod
-        lengths = rod.properties.length * rod.grid.weights
+        lengths = self.shape.rod.node_lengths
         return np.asarray(lengths * self.quantity.densities)

@@ -57,9 +57,10 @@ class RoutedCable:
     @cached_property
     def tangent(self) -> tuple[Row, Row, Row]:
         """T in the sections' frames, three rows."""
+        # K × D with D = (D_x, D_y, 0), written out so that rows which vanish are left out.
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
-        length = self.shape.rod.properties.length
+        length = self.shape.rod.length
         slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
         return (
             _sum(gx, _negative(_product(kz, dy)), slope_x),
@@ -88,6 +89,7 @@ class RoutedCable:
     @cached_property
     def lever(self) -> dict[int, Row]:
         """Rate of |T| with each admitted strain, the components of [D × t; t]."""
+        # [D × t; t], angular part first.
         x, y, z = self.direction
         dx, dy = self._offset
         levers = {
@@ -98,7 +100,7 @@ class RoutedCable:
             4: y,
             5: z,
         }
-        return {c: levers[c] for c in self.shape.rod.properties.admitted}
+        return {c: levers[c] for c in self.shape.rod.admitted}
 
     @cached_property
     def value(self) -> Matrix:
@@ -123,6 +125,7 @@ class RoutedCable:
 
         With T linear in the strains, ∂²|T| = (∂_aT·∂_bT − ∂_a|T| ∂_b|T|) / |T|.
         """
+        # A cable parallel to the rod has a length that is linear in the strains.
         x, y, _ = self.tangent
         if x is None and y is None:
             return None
@@ -132,6 +135,7 @@ class RoutedCable:
         if across is None:
             return None
         row = across / self.stretch * ca.DM(self._node_lengths).T
+        # The nodes of other elements, which the cable does not pass, have no entry.
         whole = type(row)(1, self.shape.rod.grid.size)
         whole[self.routing.nodes.tolist()] = row
         return whole
@@ -152,14 +156,14 @@ class RoutedCable:
         """Scalar product of the rates of T with two strains, shape (k,)."""
         dx, dy = self.routing.offset
         zero = np.zeros_like(dx)
-        one = np.ones_like(dx)
+        unit = np.ones_like(dx)
         rates = [
             np.array([zero, zero, dy]),
             np.array([zero, zero, -dx]),
             np.array([-dy, dx, zero]),
-            np.array([one, zero, zero]),
-            np.array([zero, one, zero]),
-            np.array([zero, zero, one]),
+            np.array([unit, zero, zero]),
+            np.array([zero, unit, zero]),
+            np.array([zero, zero, unit]),
         ]
         product = rates[a] * rates[b]
         return np.asarray(product.sum(axis=0))
@@ -167,9 +171,7 @@ class RoutedCable:
     @property
     def _node_lengths(self) -> FloatArray:
         """Length of rod that each node of the routing stands for, ℓ w, shape (k,), m."""
-        rod = self.shape.rod
-        weights = rod.grid.weights[self.routing.nodes]
-        return np.asarray(rod.properties.length * weights)
+        return self.shape.rod.node_lengths[self.routing.nodes]
 
 
 def _constant(row: FloatArray) -> Row:

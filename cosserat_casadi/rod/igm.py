@@ -53,22 +53,27 @@ class InverseGeometricModel:
     @cached_property
     def efforts(self) -> tuple[tuple[Matrix, Conjugate], ...]:
         """Every effort of an actuator with the quantity that it works on, at this shape."""
-        return tuple((a.effort, a.quantity.on(self.shape)) for a in self.actuation)
+        efforts = []
+        for actuation in self.actuation:
+            conjugate = actuation.quantity.on(self.shape)
+            efforts.append((actuation.effort, conjugate))
+        return tuple(efforts)
 
     @cached_property
     def actuation_force(self) -> Matrix | None:
         """ℓ ∫ Φᵀ Bᵀ Λ_ad dX / (EI/ℓ), n×1: what actuators put against the elastic stress, report (2.16)."""
-        unit = self.rod.energy_unit
-        forces = [effort / unit * conjugate.gradient for effort, conjugate in self.efforts]
-        if not forces:
+        if not self.efforts:
             return None
+        forces = []
+        for effort, conjugate in self.efforts:
+            forces.append(effort / self.rod.energy_unit * conjugate.gradient)
         return sum(forces[1:], forces[0])
 
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
-        passive = self._elastic(stiffness @ self.shape.q) + self.generalised_force
+        elastic = self._elastic(self._stiffness @ self.shape.q)
+        passive = elastic + self.generalised_force
         if self.actuation_force is None:
             return passive
         return passive + self.actuation_force
@@ -76,8 +81,8 @@ class InverseGeometricModel:
     @cached_property
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
-        stiffness = ca.sparsify(ca.DM(self.rod.stiffness))
-        stored = ca.bilin(stiffness, self.shape.q, self.shape.q)
+        q = self.shape.q
+        stored = ca.bilin(self._stiffness, q, q)
         return self.rod.energy_unit / 2 * self._elastic(stored)
 
     @cached_property
@@ -87,6 +92,7 @@ class InverseGeometricModel:
         None unless every load is a dead force or has an energy. With r = S t and n̂ = Sᵀ f the work of the dead forces
         is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
+        # A dead moment may have a potential, but none that is a function of q written here.
         if any(w.follower or w.moment is not None for w in self.statics.fixed_wrenches):
             return None
         if any(load.energy is None for load in self.statics.pose_loads):
@@ -102,6 +108,11 @@ class InverseGeometricModel:
             total = total + effort * conjugate.value
         return total
 
+    @property
+    def _stiffness(self) -> ca.DM:
+        """K_εε / (EI/ℓ), n×n, without its zeros."""
+        return ca.sparsify(ca.DM(self.rod.stiffness))
+
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""
         if self.shape.ratio is None:
@@ -113,6 +124,7 @@ class InverseGeometricModel:
         moment = self.statics.interval_moment
         force: Matrix = ca.DM.zeros(self.rod.size, 1)
         if moment is not None and self.rod.properties.turning_axes:
+            # (∂Ω/∂q)ᵀ Tᵀ Rᵀ m of every interval.
             pull = interval_kernels(self.rod).pull.map(moment.shape[1])
             pulled = pull(*self.shape.interval_arguments, moment)
             per_coordinate = self.rod.turn_matrix / -self.rod.energy_unit
@@ -121,25 +133,26 @@ class InverseGeometricModel:
 
     def _linear_force(self, covector: Matrix | None) -> Matrix:
         """Generalised forces of shear and extension: −ℓ Φᵀ (d·n̂)."""
-        linear = [c for c in self.rod.properties.admitted if c >= 3]
-        sizes = [self.rod.at_nodes[c].shape[1] for c in linear]
+        rod = self.rod
         # Curvature and torsion come first in q; forces work on them through moments alone.
-        parts: list[Matrix] = [ca.DM.zeros(self.rod.size - sum(sizes), 1)]
-        for c, size in zip(linear, sizes, strict=True):
+        angular_size = sum(rod.size_of(c) for c in rod.angular)
+        parts: list[Matrix] = [ca.DM.zeros(angular_size, 1)]
+        for c in rod.linear:
             if covector is None:
-                parts.append(ca.DM.zeros(size, 1))
+                parts.append(ca.DM.zeros(rod.size_of(c), 1))
                 continue
             along_director = dot(self.shape.directors[c - 3], covector)
-            per_coordinate = self.rod.node_matrix(c) * (-self.rod.properties.length / self.rod.energy_unit)
+            per_coordinate = rod.node_matrix(c) * (-rod.length / rod.energy_unit)
             parts.append(per_coordinate.T @ along_director.T)
         return ca.vertcat(*parts)
 
     def _weighted_force(self) -> Matrix:
         """Literal quadrature of report (2.16), −ℓ ∫ Φᵀ Bᵀ Λ dX / (EI/ℓ), from the internal wrench at the nodes, n×1."""
         wrench = self.statics.internal_wrench()
-        factor = self.rod.properties.length / self.rod.energy_unit * self.rod.grid.weights
+        rod = self.rod
+        factor = rod.length / rod.energy_unit * rod.grid.weights
         parts = []
-        for c in self.rod.properties.admitted:
-            weighted = ca.DM(self.rod.at_nodes[c] * factor[:, None])
-            parts.append(weighted.T @ wrench[c, :].T)
+        for c in rod.admitted:
+            weighted = rod.at_nodes[c] * factor[:, None]
+            parts.append(ca.DM(weighted).T @ wrench[c, :].T)
         return -ca.vertcat(*parts)

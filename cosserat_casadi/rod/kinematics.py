@@ -45,7 +45,8 @@ class Shape:
     @cached_property
     def interval_begins(self) -> Matrix:
         """Rotation matrices of the sections at which the intervals begin, side by side, 3×(3·intervals)."""
-        return side_by_side([d[:, :-1] for d in self.section_directors])
+        begins = [d[:, :-1] for d in self.section_directors]
+        return side_by_side(begins)
 
     @property
     def interval_arguments(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
@@ -69,8 +70,9 @@ class Shape:
     @cached_property
     def tangent(self) -> Matrix:
         """Rate of position dr/dX = ℓ R Γ at the nodes, 3×M, in metres."""
+        # Shear and extension; a component that is zero whatever the load has no row.
         strain = self.rod.strain_rows(self.q, (3, 4, 5), self.ratio)
-        length = self.rod.properties.length
+        length = self.rod.length
         terms = []
         for director, row in zip(self.directors, strain, strict=True):
             if row is not None:
@@ -113,10 +115,12 @@ class Shape:
 
     def rotations_at(self, nodes: list[int]) -> Matrix:
         """Rotation matrices base_R_section of k nodes side by side, 3×3k."""
-        return side_by_side([d[:, nodes] for d in self.directors])
+        chosen = [d[:, nodes] for d in self.directors]
+        return side_by_side(chosen)
 
     def _at_nodes(self, sections: Matrix) -> Matrix:
         grid = self.rod.grid
+        # Both sides of a break are nodes on one section.
         if grid.elements == 1:
             return sections
         columns = np.asarray(grid.section_of_node).tolist()
@@ -131,7 +135,9 @@ def side_by_side(directors: Sequence[Matrix]) -> Matrix:
 
 def shape(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Shape:
     """Forward sweep of report (2.17) in the base frame."""
-    product = bool(rod.properties.turning_axes) and rod.discretisation.transport != "permuted"
-    intervals = interval_rotations(rod, q, ratio) if product else None
+    literal = rod.discretisation.transport == "permuted"
+    intervals = None
+    if rod.properties.turning_axes and not literal:
+        intervals = interval_rotations(rod, q, ratio)
     quaternions = section_quaternions(rod, q, intervals, ratio)
     return Shape(rod, q, quaternions, intervals, ratio)

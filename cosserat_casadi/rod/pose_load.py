@@ -48,8 +48,7 @@ class LoadedSections:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
-        rod = self.shape.rod
-        return np.asarray(rod.properties.length * rod.grid.weights)
+        return self.shape.rod.node_lengths
 
     @cached_property
     def position(self) -> Matrix:
@@ -95,8 +94,8 @@ class LoadedSections:
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
         components = variation.shape[0] // len(self.nodes)
-        weights = np.tile(self.weights, components)
-        return ca.diag(ca.DM(weights)) @ variation
+        weights = ca.DM(np.tile(self.weights, components))
+        return ca.diag(weights) @ variation
 
     @cached_property
     def with_base(self) -> tuple[Matrix, Matrix]:
@@ -142,6 +141,7 @@ class LoadedSections:
 
     def _mapped(self, function: ca.Function) -> list[Matrix]:
         """Results of a function of the kernel at all sections, side by side."""
+        # Base, parameters and scale are the same for all sections; CasADi's map wants them side by side.
         count = len(self.nodes)
         rotations = self.shape.rotations_at(self.nodes)
         alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]

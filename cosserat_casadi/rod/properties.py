@@ -40,8 +40,12 @@ class RodProperties:
 
     def intrinsic_strain(self, X: Array) -> Array:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""
-        columns = [legendre.legval(2 * X - 1, np.asarray(c)) for c in self.intrinsic]
-        return np.stack([np.broadcast_to(c, X.shape) for c in columns], axis=-1)
+        columns = []
+        for coefficients in self.intrinsic:
+            values = legendre.legval(2 * X - 1, np.asarray(coefficients))
+            # A constant gives one number for all abscissae.
+            columns.append(np.broadcast_to(values, X.shape))
+        return np.stack(columns, axis=-1)
 
     @property
     def bending_stiffness(self) -> float:
@@ -49,14 +53,20 @@ class RodProperties:
 
         A rod that admits neither takes H ℓ² of its softest linear strain.
         """
-        x, weights = legendre.leggauss(8)
-        mean = (weights / 2) @ self.hooke((x + 1) / 2)
+        points, weights = legendre.leggauss(8)
+        X = (points + 1) / 2
+        mean = (weights / 2) @ self.hooke(X)
         angular = [mean[i] for i in self.admitted if i < 3]
-        linear = [mean[i] * self.length**2 for i in self.admitted if i >= 3]
-        return float(min(angular or linear))
+        if angular:
+            return float(min(angular))
+        linear = [mean[i] * self.length**2 for i in self.admitted]
+        return float(min(linear))
 
     @property
     def turning_axes(self) -> tuple[int, ...]:
         """Local axes about which the rod can turn along its length, unloaded or not."""
-        bent = {i for i in range(3) if any(c != 0.0 for c in self.intrinsic[i])}
-        return tuple(sorted(bent | {i for i in self.admitted if i < 3}))
+        axes = {i for i in self.admitted if i < 3}
+        for i, coefficients in enumerate(self.intrinsic[:3]):
+            if any(coefficients):
+                axes.add(i)
+        return tuple(sorted(axes))

@@ -68,6 +68,7 @@ class Reaction:
                 turned = self._turned(wrench, wrench.moment)
                 moment = moment - self._resultant(turned, wrench)
         for load in self._statics.pose_loads:
+            # The δr × f of these are in the covector already, with the other frozen forces.
             forces, moments = _halves(self.tangent.wrench_variation(load))
             moment = moment - _hat_row(load.position) @ forces - _summed(moments, load)
         return moment
@@ -75,6 +76,7 @@ class Reaction:
     @cached_property
     def with_turn(self) -> Variation:
         """Derivatives with a turn of the base, base axes, rad."""
+        # Pose-dependent wrenches turn back as dead ones do, and change with the motion of their sections besides.
         frozen = [load.frozen for load in self._statics.pose_loads]
         variations = []
         for axis in range(3):
@@ -128,6 +130,7 @@ class Reaction:
         shape = self.tangent.shape
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
+            # δ(R v) = δθ × R v = −(R v)^ δθ.
             turning = self.tangent.rotation_of(node)
             return -(hat(shape.rotation_at(node) @ vector) @ turning)
         angular = -(hat_operator(self._statics.line(wrench, vector)) @ self.tangent.rotation)
@@ -138,7 +141,8 @@ class Reaction:
         """Sum over the sections of variations of a vector, 3×n."""
         if isinstance(wrench, PointWrench):
             return variation
-        sums = ca.kron(ca.DM.eye(3), self._node_lengths)
+        lengths = ca.DM(self.tangent.rod.node_lengths).T
+        sums = ca.kron(ca.DM.eye(3), lengths)
         return sums @ variation
 
     def _lever(self, wrench: Wrench) -> Matrix:
@@ -147,14 +151,9 @@ class Reaction:
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
             return hat(shape.position_at(node))
-        weighted = shape.position * ca.repmat(self._node_lengths, 3, 1)
+        lengths = ca.DM(shape.rod.node_lengths).T
+        weighted = shape.position * ca.repmat(lengths, 3, 1)
         return _hat_row(weighted)
-
-    @property
-    def _node_lengths(self) -> ca.DM:
-        """Length of rod that each node stands for, ℓ w, 1×M, m."""
-        rod = self.tangent.rod
-        return ca.DM(rod.properties.length * rod.grid.weights).T
 
 
 def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:

@@ -62,11 +62,16 @@ def _rectangle_torsion_constant(width: Array, height: Array) -> Array:
     tanh is 1 to rounding from n = 13 on for every a ≥ b, so the rest of the series is a constant: 31 ζ(5)/32 is
     the sum of 1/n⁵, and only the deficits 1 − tanh are summed.
     """
-    a, b = np.maximum(width, height), np.minimum(width, height)
+    a = np.maximum(width, height)
+    b = np.minimum(width, height)
     n = np.arange(1, 27, 2)
+    # Σ 1/n⁵ over all odd n, 31/32 of ζ(5).
     all_odd = 31 / 32 * 1.0369277551433699
-    deficit = ((1 - np.tanh(n * np.pi / 2 * (a / b)[..., None])) / n**5).sum(axis=-1)
-    result: Array = a * b**3 * (1 / 3 - 64 / np.pi**5 * (b / a) * (all_odd - deficit))
+    slenderness = (a / b)[..., None]
+    deficits = 1 - np.tanh(n * np.pi / 2 * slenderness)
+    deficit = (deficits / n**5).sum(axis=-1)
+    series = 64 / np.pi**5 * (b / a) * (all_odd - deficit)
+    result: Array = a * b**3 * (1 / 3 - series)
     return result
 
 
@@ -82,8 +87,10 @@ def hooke(shape: SectionShape, youngs_modulus: float, shear_modulus: float, shea
     Returns:
         shape (len, 6): N m² for the first three columns, N for the others.
     """
-    shear = shear_correction * shear_modulus * shape.area
     bending_x = youngs_modulus * shape.second_moment_x
     bending_y = youngs_modulus * shape.second_moment_y
     torsion = shear_modulus * shape.torsion_constant
-    return np.stack([bending_x, bending_y, torsion, shear, shear, youngs_modulus * shape.area], axis=-1)
+    shear = shear_correction * shear_modulus * shape.area
+    extension = youngs_modulus * shape.area
+    diagonal = [bending_x, bending_y, torsion, shear, shear, extension]
+    return np.stack(diagonal, axis=-1)

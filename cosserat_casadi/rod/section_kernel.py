@@ -47,6 +47,7 @@ class SectionKernel:
         symbols = self._symbols()
         position, rotation = symbols[:2]
         wrench = ca.vertcat(*self._in_base(symbols))
+        # The entries of R are differentiated as if they were free, then led along the rotations.
         columns = [ca.vec(rate) for rate in rotation_rates(rotation)]
         with_position = ca.jacobian(wrench, position)
         with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ ca.horzcat(*columns)

@@ -38,7 +38,8 @@ class Statics:
     @cached_property
     def pose_loads(self) -> list[LoadedSections]:
         """Loads that depend on the poses of their sections."""
-        return [LoadedSections(load, self.shape) for load in self.loads if isinstance(load, PoseWrench)]
+        dependent = [load for load in self.loads if isinstance(load, PoseWrench)]
+        return [LoadedSections(load, self.shape) for load in dependent]
 
     @cached_property
     def fixed_wrenches(self) -> list[Wrench]:
@@ -48,7 +49,8 @@ class Statics:
     @cached_property
     def wrenches(self) -> list[Wrench]:
         """All wrenches; those that depend on poses as dead ones, with the values that they have at this shape."""
-        return self.fixed_wrenches + [load.frozen for load in self.pose_loads]
+        frozen = [load.frozen for load in self.pose_loads]
+        return self.fixed_wrenches + frozen
 
     @cached_property
     def force_covector(self) -> Matrix | None:
@@ -63,15 +65,26 @@ class Statics:
     @cached_property
     def moment_covector(self) -> Matrix | None:
         """T × n̂ + ĉ, 3×M, conjugate to the variations of the rotations of the nodes, N m; None without loads."""
+        # Turning the sections by δθ moves the tangents by δθ × t.
+        parts = []
         force = self.force_covector
-        lever = None if force is None else cross(self.shape.tangent, force)
-        parts = [lever, self.couple_covector(follower=False), self.couple_covector(follower=True)]
-        return _total([part for part in parts if part is not None])
+        if force is not None:
+            parts.append(cross(self.shape.tangent, force))
+        for follower in (False, True):
+            couple = self.couple_covector(follower)
+            if couple is not None:
+                parts.append(couple)
+        return _total(parts)
 
     def couple_covector(self, follower: bool) -> Matrix | None:
         """ĉ of the dead or of the follower moments, 3×M, N m; None without any."""
-        wrenches = [w for w in self.wrenches if w.follower == follower]
-        return _total([self._couple_covector(w, w.moment) for w in wrenches if w.moment is not None])
+        parts = []
+        for wrench in self.wrenches:
+            if wrench.follower != follower or wrench.moment is None:
+                continue
+            couple = self._couple_covector(wrench, wrench.moment)
+            parts.append(couple)
+        return _total(parts)
 
     @cached_property
     def interval_moment(self) -> Matrix | None:
@@ -86,6 +99,7 @@ class Statics:
     @cached_property
     def base_force(self) -> Matrix:
         """Force of the clamp on the rod, base frame, 3×1, N: minus the sum of the loads."""
+        # Sums of the loads, not of n̂: exact whatever the integration matrix.
         total = ca.DM.zeros(3, 1)
         for wrench in self.wrenches:
             if wrench.force is not None:
@@ -96,7 +110,9 @@ class Statics:
     def base_moment(self) -> Matrix:
         """Moment of the clamp on the rod about the base, base frame, 3×1, N m."""
         covector = self.moment_covector
-        return ca.DM.zeros(3, 1) if covector is None else -ca.sum2(covector)
+        if covector is None:
+            return ca.DM.zeros(3, 1)
+        return -ca.sum2(covector)
 
     @cached_property
     def internal_force(self) -> Matrix:
@@ -110,7 +126,9 @@ class Statics:
         Integrated over each element from the internal force, so that it jumps where a couple acts.
         """
         lever = cross(self.shape.tangent, self.internal_force)
-        return lever @ ca.DM(self._from_tip).T + self._beyond_each_node(lambda wrench: wrench.moment)
+        of_forces = lever @ ca.DM(self._from_tip).T
+        of_couples = self._beyond_each_node(lambda wrench: wrench.moment)
+        return of_forces + of_couples
 
     def internal_wrench(self) -> Matrix:
         """Λ = [M; N] at the nodes in the sections' frames, 6×M: report (1.23) inverted."""
@@ -120,14 +138,12 @@ class Statics:
 
     def line(self, wrench: LineWrench, coefficients: Matrix) -> Matrix:
         """Force or moment per length at the nodes from the coefficients of a line wrench, 3×M, base frame."""
-        values = coefficients if wrench.profiles is None else coefficients @ ca.DM(wrench.profiles)
-        return self.shape.to_base(values) if wrench.follower else values
-
-    @property
-    def _node_lengths(self) -> FloatArray:
-        """Length of rod that each node stands for, ℓ w, shape (M,), m."""
-        rod = self.shape.rod
-        return np.asarray(rod.properties.length * rod.grid.weights)
+        values = coefficients
+        if wrench.profiles is not None:
+            values = coefficients @ ca.DM(wrench.profiles)
+        if wrench.follower:
+            return self.shape.to_base(values)
+        return values
 
     @property
     def _from_tip(self) -> FloatArray:
@@ -136,14 +152,22 @@ class Statics:
         return np.asarray(grid.weights[None, :] - grid.integration_matrix)
 
     def _force_covector_of(self, wrenches: Sequence[Wrench]) -> Matrix | None:
-        return _total([self._force_covector(w, w.force) for w in wrenches if w.force is not None])
+        parts = []
+        for wrench in wrenches:
+            if wrench.force is None:
+                continue
+            covector = self._force_covector(wrench, wrench.force)
+            parts.append(covector)
+        return _total(parts)
 
     def _force_covector(self, wrench: Wrench, force: Matrix) -> Matrix:
-        grid = self.shape.rod.grid
+        rod = self.shape.rod
+        grid = rod.grid
         if isinstance(wrench, PointWrench):
-            node = grid.node_at(wrench.at)
-            return self._resultant(wrench, force) @ ca.DM(grid.integration_matrix[node]).T
-        to_covector = self.shape.rod.properties.length * grid.weights[:, None] * grid.integration_matrix
+            # δr of the node is this row of S times the variations of the tangents.
+            row = grid.integration_matrix[grid.node_at(wrench.at)]
+            return self._resultant(wrench, force) @ ca.DM(row).T
+        to_covector = rod.node_lengths[:, None] * grid.integration_matrix
         if wrench.follower or wrench.profiles is None:
             return self.line(wrench, force) @ ca.DM(to_covector)
         # Profiles are numbers: a dead force per length needs no product with S at run time.
@@ -153,14 +177,17 @@ class Statics:
         grid = self.shape.rod.grid
         if isinstance(wrench, PointWrench):
             node = grid.node_at(wrench.at)
+            # The couple stands at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
             return self._resultant(wrench, moment) @ to_node
-        return self.line(wrench, moment) @ ca.diag(ca.DM(self._node_lengths))
+        lengths = ca.DM(self.shape.rod.node_lengths)
+        return self.line(wrench, moment) @ ca.diag(lengths)
 
     def _resultant(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """Sum of the forces or moments of a wrench, 3×1, base frame."""
         if isinstance(wrench, LineWrench):
-            return self.line(wrench, vector) @ ca.DM(self._node_lengths)
+            lengths = ca.DM(self.shape.rod.node_lengths)
+            return self.line(wrench, vector) @ lengths
         if not wrench.follower:
             return vector
         node = self.shape.rod.grid.node_at(wrench.at)
@@ -175,10 +202,12 @@ class Statics:
             if vector is None:
                 continue
             if isinstance(wrench, PointWrench):
-                before = (np.arange(grid.size) <= grid.node_at(wrench.at)).astype(float)
+                # The node at the tip side of a break does not carry what acts on the break.
+                loaded = grid.node_at(wrench.at)
+                before = (np.arange(grid.size) <= loaded).astype(float)
                 total = total + self._resultant(wrench, vector) @ ca.DM(before).T
             else:
-                to_tip = self.shape.rod.properties.length * self._from_tip
+                to_tip = self.shape.rod.length * self._from_tip
                 total = total + self.line(wrench, vector) @ ca.DM(to_tip).T
         return total
 
@@ -187,13 +216,15 @@ class Statics:
         grid = self.shape.rod.grid
         if grid.elements == 1:
             return covector
-        gather = np.zeros((grid.size, grid.section_of_node[-1] + 1))
-        gather[np.arange(grid.size), grid.section_of_node] = 1.0
+        section_of_node = grid.section_of_node
+        gather = np.zeros((grid.size, section_of_node[-1] + 1))
+        gather[np.arange(grid.size), section_of_node] = 1.0
         return covector @ ca.DM(ca.sparsify(ca.DM(gather)))
 
 
 def _sums_to_the_tip(row: Matrix) -> Matrix:
     """Sum of each entry of a row and of all behind it."""
+    # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
     reversed_row = ca.densify(row[:, ::-1])
     return ca.cumsum(reversed_row, 1)[:, ::-1]
 

@@ -74,10 +74,35 @@ class DiscreteRod:
         """Number of strain coordinates n."""
         return self.discretisation.unknowns
 
+    @property
+    def length(self) -> float:
+        """Undeformed length ℓ, m."""
+        return self.properties.length
+
+    @property
+    def admitted(self) -> tuple[int, ...]:
+        """Indices of the admitted strains, ascending."""
+        return self.properties.admitted
+
+    @property
+    def angular(self) -> list[int]:
+        """Admitted strains that are curvature or torsion: their coordinates come first in q."""
+        return [c for c in self.admitted if c < 3]
+
+    @property
+    def linear(self) -> list[int]:
+        """Admitted strains that are shear or extension."""
+        return [c for c in self.admitted if c >= 3]
+
+    def size_of(self, component: int) -> int:
+        """Number of coordinates n_c of an admitted strain."""
+        columns = self.columns[component]
+        return int(columns.stop - columns.start)
+
     @cached_property
     def energy_unit(self) -> float:
         """EI/ℓ in joules: residuals and energies are divided by it."""
-        return self.properties.bending_stiffness / self.properties.length
+        return self.properties.bending_stiffness / self.length
 
     @cached_property
     def scales(self) -> tuple[float, ...]:
@@ -85,8 +110,9 @@ class DiscreteRod:
         points, weights = legendre.leggauss(8)
         X = (points + 1) / 2
         mean = (weights / 2) @ self.properties.hooke(X)
-        unit = self.properties.bending_stiffness / self.properties.length**2
-        strains = [np.sqrt(unit / mean[c]) for c in self.properties.admitted]
+        unit = self.properties.bending_stiffness / self.length**2
+        # A constant strain of this size stores EI/(2ℓ) in the rod.
+        strains = [np.sqrt(unit / mean[c]) for c in self.admitted]
         return tuple(map(float, strains))
 
     @cached_property
@@ -94,7 +120,7 @@ class DiscreteRod:
         """Coordinates of each admitted component in q: stacked component by component, then by element."""
         columns = {}
         start = 0
-        for component, modes in zip(self.properties.admitted, self.discretisation.modes, strict=True):
+        for component, modes in zip(self.admitted, self.discretisation.modes, strict=True):
             end = start + modes * self.discretisation.elements
             columns[component] = slice(start, end)
             start = end
@@ -102,10 +128,11 @@ class DiscreteRod:
 
     def shape_functions(self, component: int, X: Array, element: npt.NDArray[np.int64]) -> Array:
         """Φ_c at abscissae X seen from the given elements, report (2.4): shape (len(X), n_c)."""
-        number = self.properties.admitted.index(component)
+        number = self.admitted.index(component)
         modes = self.discretisation.modes[number]
         polynomials = _POLYNOMIALS[self.properties.basis]
         breaks = np.asarray(self.discretisation.breaks)
+        # The polynomials of an element are in its own coordinate, from 0 to 1.
         start = breaks[element]
         width = breaks[element + 1] - start
         values = self.scales[number] * polynomials(modes, (X - start) / width)
@@ -118,7 +145,7 @@ class DiscreteRod:
 
     def degrees(self, component: int) -> npt.NDArray[np.int64]:
         """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
-        number = self.properties.admitted.index(component)
+        number = self.admitted.index(component)
         degrees = np.arange(self.discretisation.modes[number])
         return np.tile(degrees, self.discretisation.elements)
 
@@ -149,14 +176,24 @@ class DiscreteRod:
                 rows.append(row)
         if len(rows) == 1:
             return FoldedMatrix(ca.DM(0, 0), ca.DM(0, self.size))
-        parities = np.concatenate([self.parities(c) for c in self.columns])
-        return folded(np.vstack(rows), np.concatenate(mirror), np.concatenate(signs), parities)
+        matrix = np.vstack(rows)
+        parities = [self.parities(c) for c in self.columns]
+        return folded(matrix, np.concatenate(mirror), np.concatenate(signs), np.concatenate(parities))
 
     @cached_property
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
-        element = np.repeat(np.arange(self.grid.elements), self.grid.intervals + 1)
-        return {c: self.shape_functions(c, self.grid.nodes, element) for c in self.properties.admitted}
+        grid = self.grid
+        element = np.repeat(np.arange(grid.elements), grid.intervals + 1)
+        values = {}
+        for c in self.admitted:
+            values[c] = self.shape_functions(c, grid.nodes, element)
+        return values
+
+    @cached_property
+    def node_lengths(self) -> Array:
+        """Length of rod that each node stands for in sums, ℓ w, shape (M,), m."""
+        return np.asarray(self.length * self.grid.weights)
 
     def node_matrix(self, component: int) -> FoldedMatrix:
         """Φ_c at the nodes, M×n_c: modes meet sums or differences of mirrored nodes."""
@@ -176,9 +213,10 @@ class DiscreteRod:
             start, end = self.grid.breaks[e : e + 2]
             width = end - start
             X = start + width * (points + 1) / 2
-            lengths = weights * width / 2 * self.properties.length
+            lengths = weights * width / 2 * self.length
             hooke = self.properties.hooke(X) * (lengths / self.energy_unit)[:, None]
             element = np.full(len(X), e)
+            # Strains do not couple: the Hooke tensor is diagonal, and so are its blocks.
             for c, columns in self.columns.items():
                 phi = self.shape_functions(c, X, element)
                 matrix[columns, columns] += phi.T @ (hooke[:, [c]] * phi)
@@ -203,6 +241,7 @@ class DiscreteRod:
     def strain_rows(self, q: Matrix, components: Sequence[int], ratio: Ratio = None) -> list[Matrix | None]:
         """Components of (ℓ/ℓ₀) ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
         intrinsic = self.properties.intrinsic_strain(self.grid.nodes)
+        # Strains that are neither admitted nor intrinsic stay zero, and cost nothing below.
         rows: list[Matrix | None] = []
         for c in components:
             row = None
@@ -222,20 +261,24 @@ class DiscreteRod:
     @cached_property
     def taylor_matrices(self) -> list[dict[int, Array]]:
         """Matrices from q_c to the l-th Taylor coefficient of the turn of every interval, (intervals, n_c)."""
-        found = []
+        orders = []
         for order, per_interval in enumerate(self._taylor(self._sampled_modes)):
             matrices = {}
-            for c in self.columns:
-                if c < 3:
-                    # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
-                    matrices[c] = per_interval[:, self.columns[c]] * (self.degrees(c) >= order)
-            found.append(matrices)
-        return found
+            for c in self.angular:
+                # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
+                within_degree = self.degrees(c) >= order
+                matrices[c] = per_interval[:, self.columns[c]] * within_degree
+            orders.append(matrices)
+        return orders
 
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
         """Taylor coefficients of the unloaded turn of every interval: one (intervals, 3) array for each l."""
-        return self._taylor(lambda X, element: self.properties.intrinsic_strain(X)[:, :3])
+
+        def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
+            return self.properties.intrinsic_strain(X)[:, :3]
+
+        return self._taylor(curvature)
 
     @cached_property
     def taylor_count(self) -> int:
@@ -246,14 +289,14 @@ class DiscreteRod:
 
     def _sampled_modes(self, X: Array, element: npt.NDArray[np.int64]) -> Array:
         samples = np.zeros((len(X), self.size))
-        for c, columns in self.columns.items():
-            if c < 3:
-                samples[:, columns] = self.shape_functions(c, X, element)
+        for c in self.angular:
+            samples[:, self.columns[c]] = self.shape_functions(c, X, element)
         return samples
 
     def _taylor(self, field: Callable[[Array, npt.NDArray[np.int64]], Array]) -> list[Array]:
         """Taylor coefficients over every interval of ℓ h times a field sampled at Gauss points."""
         degree = max([*self.discretisation.modes, *map(len, self.properties.intrinsic)])
+        # Enough Gauss points for the field's own polynomials, so that ∫ K is exact.
         points = max(self.taylor_count, degree // 2 + 1)
         tau, to_taylor = magnus.taylor_from_samples(self.taylor_count, points)
         left = self.grid.left_ends
@@ -263,6 +306,7 @@ class DiscreteRod:
         X = middle[:, None] + width[:, None] * tau
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals * points)
         samples = field(X.ravel(), element).reshape(len(width), points, -1)
-        lengths = self.properties.length * width
+        # ∫ K ds over an interval: per X times ℓ, per interval times its width.
+        lengths = self.length * width
         scaled = samples * lengths[:, None, None]
         return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]

@@ -76,8 +76,7 @@ class Tangent:
     @cached_property
     def angular_size(self) -> int:
         """Number n_a of coordinates of curvature and torsion, which come first in q."""
-        angular = [c for c in self.rod.properties.admitted if c < 3]
-        return sum(self.rod.at_nodes[c].shape[1] for c in angular)
+        return sum(self.rod.size_of(c) for c in self.rod.angular)
 
     @cached_property
     def turn_matrix(self) -> FoldedMatrix:
@@ -112,6 +111,7 @@ class Tangent:
         grid = self.rod.grid
         if not self.kernels.axes:
             return ca.DM(3 * grid.size, self.angular_size)
+        # Both nodes at a break turn with their one section; the base does not turn.
         section_of_node = np.asarray(grid.section_of_node).tolist()
         parts = []
         for part in ca.vertsplit(self.section_rotation, self.intervals):
@@ -123,8 +123,9 @@ class Tangent:
     def tangent(self) -> Matrix:
         """δt of the nodes, 3M×n, m."""
         columns = [-(hat_operator(self.shape.tangent) @ self.rotation)]
-        for c in self._linear:
+        for c in self.rod.linear:
             director = self.shape.directors[c - 3]
+            # ℓ d δΓ, one component of the director after the other.
             stretch = self._stretch(c)
             rows = [ca.diag(row) @ stretch for row in ca.vertsplit(director)]
             columns.append(ca.vertcat(*rows))
@@ -133,12 +134,13 @@ class Tangent:
     def position(self, node: int) -> Matrix:
         """δr of one node, 3×n, m."""
         weights = self.rod.grid.integration_matrix[[node]]
-        x, y, z = ca.vertsplit(self.shape.tangent * ca.repmat(ca.DM(weights), 3, 1))
+        weighted = self.shape.tangent * ca.repmat(ca.DM(weights), 3, 1)
+        x, y, z = ca.vertsplit(weighted)
         none = type(x)(*x.shape)
         # Σ w δθ × t, the sum over the nodes.
         levers = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]])
         columns = [levers @ self.rotation]
-        for c in self._linear:
+        for c in self.rod.linear:
             stretch = weights.T * np.asarray(self._stretch(c))
             columns.append(self.shape.directors[c - 3] @ ca.DM(stretch))
         return ca.horzcat(*columns)
@@ -146,12 +148,13 @@ class Tangent:
     def rotation_of(self, node: int) -> Matrix:
         """δθ of one node, 3×n, rad."""
         components = ca.vertsplit(self.rotation, self.rod.grid.size)
-        turned = ca.vertcat(*[component[node, :] for component in components])
-        return self._with_linear_columns(turned)
+        rows = [component[node, :] for component in components]
+        return self._with_linear_columns(ca.vertcat(*rows))
 
     def motion(self, load: LoadedSections) -> Matrix:
         """[δr; δθ] of the sections of a load, stacked component by component, 6k×n, m and rad."""
         if load.load.at is not None:
+            # One section: no product with all of S.
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
         grid = self.rod.grid
@@ -177,23 +180,21 @@ class Tangent:
         return matrix
 
     @property
-    def _linear(self) -> list[int]:
-        """Admitted strains that are shear or extension."""
-        return [c for c in self.rod.properties.admitted if c >= 3]
-
-    @property
     def _linear_size(self) -> int:
         """Number of coordinates of shear and extension."""
         return self.rod.size - self.angular_size
 
     def _with_linear_columns(self, angular: Matrix) -> Matrix:
         """Columns of the angular coordinates, and zeros for the linear ones."""
-        return ca.horzcat(angular, ca.DM(angular.shape[0], self._linear_size))
+        linear = ca.DM(angular.shape[0], self._linear_size)
+        return ca.horzcat(angular, linear)
 
     def _frozen_wrenches(self) -> Matrix:
         """What all wrenches add but for following forces, n×n; linear strains do not meet each other."""
-        no_row = ca.DM(0, self.angular_size)
-        linear = ca.vertcat(*[self._linear_rows(c) for c in self._linear], no_row)
+        rows = [self._linear_rows(c) for c in self.rod.linear]
+        # A rod without linear strains has no such row.
+        rows.append(ca.DM(0, self.angular_size))
+        linear = ca.vertcat(*rows)
         none = ca.DM(linear.shape[0], linear.shape[0])
         return ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
 
@@ -204,6 +205,7 @@ class Tangent:
         if statics.interval_moment is None or not self.kernels.axes:
             return ca.DM(self.angular_size, self.angular_size)
         turning, stiffness, second = self.interval_operators
+        # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
         passing = self._moment_variation() + stiffness @ self.interval_variation
         pulled = turning.T @ passing + second @ self.turn_matrix.unfolded
         product = (self.turn_matrix / -unit).T @ pulled
@@ -233,23 +235,26 @@ class Tangent:
         tangent_hat = hat_operator(self.shape.tangent)
         gather = self._gather
         lever = gather @ (force_hat @ tangent_hat) @ gather.T
+        # An interval feels what acts beyond it: sums from the tip.
         from_tip = reversed_places(lever @ self.section_rotation, count)
         return variation + reversed_places(cumulative_sum(from_tip, count), count)
 
     def _commutator(self, couple: Matrix) -> Matrix:
         """Σ δθᵀ ĉ^ δθ over the nodes, C of the module's docstring, skew, n_a×n_a, for couples 3×M."""
-        return self.rotation.T @ (hat_operator(couple) @ self.rotation)
+        turned = hat_operator(couple) @ self.rotation
+        return self.rotation.T @ turned
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
         covector = self.igm.statics.force_covector
         phi = self.rod.node_matrix(component)
         if covector is None:
-            return ca.DM(phi.half.shape[1], self.angular_size)
+            return ca.DM(self.rod.size_of(component), self.angular_size)
         lever = cross(self.shape.directors[component - 3], covector)
-        work = ca.horzcat(*[ca.diag(row) for row in ca.vertsplit(lever)])
-        per_coordinate = phi * (-self.rod.properties.length / self.rod.energy_unit)
-        return per_coordinate.T @ (work @ self.rotation)
+        rows = [ca.diag(row) for row in ca.vertsplit(lever)]
+        work = ca.horzcat(*rows) @ self.rotation
+        per_coordinate = phi * (-self.rod.length / self.rod.energy_unit)
+        return per_coordinate.T @ work
 
     def _following_forces(self) -> Matrix | None:
         """What forces add by turning with their sections: −Σ δtᵀ δn̂ / (EI/ℓ), n×n."""
@@ -271,28 +276,33 @@ class Tangent:
     def _following_point(self, wrench: PointWrench, force: Matrix) -> Matrix:
         node = self.rod.grid.node_at(wrench.at)
         turning = self.rotation_of(node)[:, : self.angular_size]
-        turned = hat(self.shape.rotation_at(node) @ force) @ turning
+        in_base = self.shape.rotation_at(node) @ force
+        # δf = δθ × f = −f^ δθ, and the work is that of −δrᵀ f^ δθ.
+        turned = hat(in_base) @ turning
         return -self.position(node).T @ turned
 
     def _following_line(self, wrench: LineWrench, force: Matrix) -> Matrix:
         """δn̂ of a force per length that turns with the sections, 3M×n_a."""
         grid = self.rod.grid
-        turned = -(hat_operator(self.igm.statics.line(wrench, force)) @ self.rotation)
-        lengths = self.rod.properties.length * grid.weights[:, None]
-        to_covector = ca.DM(lengths * grid.integration_matrix).T
+        per_length = self.igm.statics.line(wrench, force)
+        turned = -(hat_operator(per_length) @ self.rotation)
+        to_covector = ca.DM(self.rod.node_lengths[:, None] * grid.integration_matrix).T
         components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
         return ca.vertcat(*components)
 
     def _pose_stiffness(self) -> Matrix | None:
         """What loads add by depending on poses: −Σ [δr; δθ]ᵀ [δf; δc] / (EI/ℓ), n×n."""
-        parts = [self.motion(load).T @ self.wrench_variation(load) for load in self.igm.statics.pose_loads]
+        parts = []
+        for load in self.igm.statics.pose_loads:
+            motion = self.motion(load)
+            parts.append(motion.T @ self.wrench_variation(load))
         if not parts:
             return None
         return sum(parts[1:], parts[0]) / -self.rod.energy_unit
 
     def _actuation_stiffness(self) -> Matrix | None:
         """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
-        admitted = self.rod.properties.admitted
+        admitted = self.rod.admitted
         blocks = {}
         for a in admitted:
             for b in admitted:
@@ -309,6 +319,7 @@ class Tangent:
         """Rows of the coordinates of strain a, columns of those of strain b."""
         phi_a = ca.sparsify(ca.DM(self.rod.at_nodes[a]))
         phi_b = ca.sparsify(ca.DM(self.rod.at_nodes[b]))
+        # Efforts first add their rows at the nodes: one product with Φ for all of them.
         rows = []
         for effort, conjugate in self.igm.efforts:
             curvature = conjugate.curvature(a, b)
@@ -318,22 +329,26 @@ class Tangent:
             return ca.DM(phi_a.shape[1], phi_b.shape[1])
         total = sum(rows[1:], rows[0])
         block = phi_a.T @ (ca.diag(total) @ phi_b)
+        # Symmetric to the last digit, and half the products.
         if a == b:
             return ca.triu2symm(ca.triu(block))
         return block
 
     def _stretch(self, component: int) -> ca.DM:
         """Stretch ℓ Φ_c at the nodes of a unit of each coordinate of a linear strain, M×n_c, m."""
-        return ca.DM(self.rod.properties.length * self.rod.at_nodes[component])
+        phi = self.rod.at_nodes[component]
+        return ca.DM(self.rod.length * phi)
 
     @cached_property
     def _gather(self) -> ca.DM:
         """Sums of stacked vectors at the nodes over each distinct section beyond the base, (3·intervals)×3M."""
-        sections = np.eye(self.intervals + 1)[1:, self.rod.grid.section_of_node]
+        section_of_node = self.rod.grid.section_of_node
+        sections = np.eye(self.intervals + 1)[1:, section_of_node]
         gather = np.kron(np.eye(3), sections)
         return ca.sparsify(ca.DM(gather))
 
 
 def _with_base(part: Matrix) -> Matrix:
     """Variations of the distinct sections, the base, which does not vary, before the others."""
-    return ca.vertcat(ca.DM(1, part.shape[1]), part)
+    base = ca.DM(1, part.shape[1])
+    return ca.vertcat(base, part)

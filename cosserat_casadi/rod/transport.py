@@ -22,6 +22,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio, per_reference_length
 
 ARGUMENTS = ["turn", "omega", "factors", "rotation", "moment"]
+"""Arguments of the kernels of an interval, the members of their symbols."""
 
 IDENTITY = ca.DM([1, 0, 0, 0])
 """Quaternion of the base section."""
@@ -64,6 +65,7 @@ class IntervalKernels:
     @cached_property
     def rotation_pattern(self) -> ca.Sparsity:
         """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis leaves that axis alone."""
+        # The pattern of one increment is that of all products of increments.
         quaternion = ca.SX.sym("quaternion", self.increment.sparsity_out(0))
         return ca.sparsify(quaternion_to_matrix(quaternion)).sparsity()
 
@@ -76,9 +78,11 @@ class IntervalKernels:
         """
         a = self._arguments()
         omega = self._rotation_vector(a.turn)
-        pulled = a.increment.pulled(a.rotation.T @ a.moment)
-        force = ca.cse(ca.jtimes(omega, a.turn, pulled, True))
-        return ca.Function("pull", a.listed, [force], ARGUMENTS, ["force"], KEPT)
+        moment = a.rotation.T @ a.moment
+        pulled = a.increment.pulled(moment)
+        # Reverse mode: (∂Ω/∂turn)ᵀ pulled.
+        force = ca.jtimes(omega, a.turn, pulled, True)
+        return ca.Function("pull", a.listed, [ca.cse(force)], ARGUMENTS, ["force"], KEPT)
 
     @cached_property
     def variation(self) -> ca.Function:
@@ -90,15 +94,17 @@ class IntervalKernels:
         """
         a = self._arguments()
         omega = self._rotation_vector(a.turn)
-        turning = (a.rotation @ a.increment.tangent) @ ca.jacobian(omega, a.turn)
+        rates = ca.jacobian(omega, a.turn)
+        turning = (a.rotation @ a.increment.tangent) @ rates
         # V is that of the increment seen from the base: Ω turned by R.
         turned = replace(a.increment, omega=a.rotation @ a.increment.omega)
         stiffness = turned.stiffness(a.moment)
         # H holds Tᵀ Rᵀ moment fixed: a symbol while it is differentiated.
         pulled = ca.SX.sym("pulled", 3)
         force = ca.jtimes(omega, a.turn, pulled, True)
-        second = ca.triu2symm(ca.triu(ca.jacobian(force, a.turn)))
-        second = ca.substitute(second, pulled, a.increment.pulled(a.rotation.T @ a.moment))
+        upper = ca.triu(ca.jacobian(force, a.turn))
+        moment = a.rotation.T @ a.moment
+        second = ca.substitute(ca.triu2symm(upper), pulled, a.increment.pulled(moment))
         outputs = [ca.sparsify(output) for output in ca.cse([turning, stiffness, second])]
         return ca.Function("variation", a.listed, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
 
@@ -146,12 +152,13 @@ class _Symbols:
     @property
     def listed(self) -> list[ca.SX]:
         """All, in the order of ARGUMENTS."""
-        return [self.turn, self.omega, self.factors, self.rotation, self.moment]
+        return [getattr(self, name) for name in ARGUMENTS]
 
     @property
     def increment(self) -> magnus.Increment:
         """The rotation of the interval."""
-        return magnus.Increment(self.omega, self.factors[0], self.factors[1])
+        half_sine, cubic = ca.vertsplit(self.factors)
+        return magnus.Increment(self.omega, half_sine, cubic)
 
 
 def interval_kernels(rod: DiscreteRod) -> IntervalKernels:
@@ -168,7 +175,8 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
 def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
     axes = list(rod.properties.turning_axes)
-    intrinsic = np.concatenate([taylor[:, axes].T for taylor in rod.intrinsic_taylor])
+    coefficients = [taylor[:, axes].T for taylor in rod.intrinsic_taylor]
+    intrinsic = np.concatenate(coefficients)
     varying = unstack(rod.turn_matrix @ q, len(intrinsic))
     return per_reference_length(ca.DM(intrinsic), ratio) + varying
 
@@ -225,6 +233,7 @@ def section_quaternions(
         return ca.repmat(IDENTITY, 1, len(rod.grid.left_ends) + 1)
     if intervals is None:
         return _permuted_transport(rod, q, ratio)
+    # Quaternions of a rod that turns about one axis keep two entries: the product of such has the same two.
     pattern = interval_kernels(rod).increment.sparsity_out(0)
     start = ca.project(IDENTITY, pattern)
     count = intervals.quaternion.shape[1]
@@ -252,8 +261,9 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
         rates = []
         for node in range(first, first + grid.intervals + 1):
             matrix = quaternion_rate_matrix(curvature[:, node])
-            rates.append(width * rod.properties.length / 2 * matrix)
+            rates.append(width * rod.length / 2 * matrix)
         none = [ca.DM.zeros(4, 1)] * len(rates)
+        # An element begins where the last one ended.
         begins = sections[-1][:, -1]
         solution = permuted_system(rates, none).solve(begins)
         sections.append(solution[:, 1:])

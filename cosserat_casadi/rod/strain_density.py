@@ -1,0 +1,109 @@
+"""A quantity given by its density along the rod, g(ξ), which CasADi differentiates.
+
+For an actuator whose quantity is no cable's length and not linear in the strains: its density is a small function of
+the six strains of one section, and gradient and curvature are its derivatives at the nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.kinematics import Shape
+
+Density = Callable[[Matrix, Matrix], Matrix]
+"""Strains of a section per reference length, 6×1, and its data, d×1 ↦ quantity per length, 1×1."""
+
+
+@dataclass(frozen=True)
+class StrainDensity:
+    """A quantity L = ℓ Σ_k w_k g(ξ_k, data_k) over the nodes of an actuator's span.
+
+    Attributes:
+        density: g, a function of CasADi matrices.
+        nodes: the k nodes of the span.
+        data: what g depends on along the rod, shape (d, k).
+    """
+
+    density: Density
+    nodes: Indices
+    data: FloatArray
+
+    def on(self, shape: Shape) -> StrainDensityOnRod:
+        """The quantity on a rod of this shape."""
+        return StrainDensityOnRod(shape, self)
+
+
+@dataclass(frozen=True)
+class StrainDensityOnRod:
+    """A quantity given by its density, on a rod.
+
+    Attributes:
+        shape: the rod's shape.
+        quantity: the quantity.
+    """
+
+    shape: Shape
+    quantity: StrainDensity
+
+    @cached_property
+    def value(self) -> Matrix:
+        """L, 1×1."""
+        density, _, _ = self._at_nodes
+        return density @ ca.DM(self._node_lengths)
+
+    @cached_property
+    def gradient(self) -> Matrix:
+        """∂L/∂q, n×1."""
+        rod = self.shape.rod
+        _, gradient, _ = self._at_nodes
+        parts = []
+        for c in rod.admitted:
+            phi = rod.at_nodes[c][self.quantity.nodes]
+            weighted = phi * self._node_lengths[:, None]
+            parts.append(ca.DM(weighted).T @ gradient[c, :].T)
+        return ca.vertcat(*parts)
+
+    def curvature(self, a: int, b: int) -> Matrix | None:
+        """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+        _, _, second = self._at_nodes
+        row = second[6 * b + a, :]
+        if not row.nnz():
+            return None
+        whole = type(row)(1, self.shape.rod.grid.size)
+        whole[self.quantity.nodes.tolist()] = row * ca.DM(self._node_lengths).T
+        return whole
+
+    @cached_property
+    def _at_nodes(self) -> tuple[Matrix, Matrix, Matrix]:
+        """Density, 1×k, its gradient, 6×k, and its second derivatives column by column, 36×k, at the nodes."""
+        nodes = self.quantity.nodes.tolist()
+        rows = self.shape.rod.strain_rows(self.shape.q, range(6), self.shape.ratio)
+        present = [c for c, row in enumerate(rows) if row is not None]
+        zero = ca.DM(1, len(nodes))
+        strain = ca.vertcat(*[zero if row is None else row[nodes] for row in rows])
+        kernel = self._kernel(present).map(len(nodes))
+        density, gradient, second = kernel.call([strain, ca.DM(self.quantity.data)])
+        return density, gradient, second
+
+    def _kernel(self, present: list[int]) -> ca.Function:
+        """(strain, data) ↦ (density, gradient, second derivatives) of one section."""
+        # A strain that is zero whatever the rod does has no symbol: nothing is written for it.
+        pattern = ca.Sparsity.triplet(6, 1, present, [0] * len(present))
+        strain = ca.SX.sym("strain", pattern)
+        data = ca.SX.sym("data", len(self.quantity.data))
+        # Called with symbols once; the map below evaluates what is differentiated here.
+        density = self.quantity.density(strain, data)
+        gradient = ca.jacobian(density, strain).T
+        second = ca.vec(ca.jacobian(gradient, strain))
+        return ca.Function("density", [strain, data], ca.cse([density, gradient, second]))
+
+    @property
+    def _node_lengths(self) -> FloatArray:
+        """Length of rod that each node of the span stands for, ℓ w, shape (k,), m."""
+        return self.shape.rod.node_lengths[self.quantity.nodes]

@@ -1,0 +1,157 @@
+"""Actuators that do not ship: a density of the strains, and everything follows from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, Scene, build, scene_from_dict, solve
+from cosserat_casadi.actuators.actuator import Actuator
+from cosserat_casadi.actuators.routing import routing
+from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.registry import EFFECTS, register
+from cosserat_casadi.rod.strain_density import StrainDensity
+from cosserat_casadi.scene.records import Record
+from tests.scenes import STIFFNESS, push
+
+LENGTH = 0.8
+TENDON: dict[str, Any] = {
+    "name": "cable",
+    "kind": "tendon",
+    "rod": "rod",
+    "tension": 0.7,
+    "offset": [[0.03, 0.02], [0.01, -0.04]],
+    "span": [0.0, 0.6],
+}
+
+
+class CordRecord(Record):
+    """A cord under tension, or a muscle whose volume depends on the strains."""
+
+    magnitudes: ClassVar[tuple[str, ...]] = ("pull",)
+
+    name: str
+    kind: Literal["cord", "muscle"]
+    rod: str
+    pull: float
+    offset: tuple[Any, Any] = (0.0, 0.0)
+    span: tuple[float, float] = (0.0, 1.0)
+
+
+class _Pulled(Actuator):
+    magnitudes: ClassVar[Mapping[str, str]] = {"pull": "N"}
+    effort = "pull"
+    conjugate = "reach"
+    units: ClassVar[Mapping[str, str]] = {"pull": "N", "reach": "m"}
+    energy_sign = 1.0
+
+    def density(self, strain: Matrix, data: Matrix) -> Matrix:
+        raise NotImplementedError
+
+    def quantity(self, actuator: Any, grid: Grid) -> StrainDensity:
+        course = routing(actuator, grid)
+        data = np.vstack([course.offset, course.slope / LENGTH])
+        return StrainDensity(self.density, course.nodes, data)
+
+
+class Cord(_Pulled):
+    """A tendon written as the length of its tangent."""
+
+    kind = "cord"
+
+    def density(self, strain: Matrix, data: Matrix) -> Matrix:
+        offset = ca.vertcat(data[:2], 0)
+        tangent = strain[3:] + ca.cross(strain[:3], offset) + ca.vertcat(data[2:], 0)
+        return ca.sqrt(ca.sumsqr(tangent))
+
+
+class Muscle(_Pulled):
+    """A quantity of curvature, torsion and stretch together that no cable has."""
+
+    kind = "muscle"
+
+    def density(self, strain: Matrix, data: Matrix) -> Matrix:
+        bending = strain[0] ** 2 + strain[1] ** 2
+        return strain[5] * ca.exp(-0.1 * bending) + ca.sin(strain[2]) * strain[3]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def kinds() -> Iterator[None]:
+    for kind in (Cord, Muscle):
+        register(kind)
+    yield
+    for kind in (Cord, Muscle):
+        EFFECTS.pop(kind.kind)
+
+
+def scene(strain: str | list[str], *actuators: Record, **changes: Any) -> Scene:
+    names = {"planar": ["bending_y"], "kirchhoff": ["bending_x", "bending_y", "torsion"], "reissner": list(STIFFNESS)}
+    admitted = names[strain] if isinstance(strain, str) else strain
+    rod = {"name": "rod", "length": LENGTH, "strain": strain, "stiffness": {n: STIFFNESS[n] for n in admitted}}
+    curved = {"curvature": [0.3, [-0.2, 0.1], 0.2], "tangent": [0.02, 0.01, 1.03]} if strain != "planar" else {}
+    tables = {"schema": 1, "accuracy": {"modes": 3, "nodes": 8}, "rods": [{**rod, "intrinsic": curved}]}
+    plain = scene_from_dict({**tables, "loads": [push()], **changes})
+    return plain.model_copy(update={"actuators": (*plain.actuators, *actuators)})
+
+
+def point(model: Model) -> np.ndarray:
+    return 0.3 * np.random.default_rng(0).standard_normal(model.size)
+
+
+STRAINS = ["planar", "kirchhoff", "reissner", ["bending_y", "shear_x", "extension"]]
+
+
+@pytest.mark.parametrize("strain", STRAINS)
+def test_cord_as_density_vs_tendon(strain: str | list[str]) -> None:
+    """The derivatives by CasADi against those that rod/cable.py writes out."""
+    cord = CordRecord(
+        name="cord", kind="cord", rod="rod", pull=0.7, offset=((0.03, 0.02), (0.01, -0.04)), span=(0.0, 0.6)
+    )
+    own, shipped = build(scene(strain, cord)), build(scene(strain, actuators=[TENDON]))
+    x = point(own)
+    assert_allclose(own.residual(x, own.pack()).full(), shipped.residual(x, shipped.pack()).full(), rtol=0, atol=1e-13)
+    expected = shipped.jacobian(x, shipped.pack())[0].full()
+    assert_allclose(own.jacobian(x, own.pack())[0].full(), expected, rtol=0, atol=1e-13 * np.abs(expected).max())
+    outputs = own.actuator["cord"](x, own.pack()), shipped.actuator["cable"](x, shipped.pack())
+    for value, other in zip(*outputs, strict=True):
+        assert_allclose(value.full(), other.full(), rtol=0, atol=1e-14)
+    assert own.operations(own.jacobian) <= 1.05 * shipped.operations(shipped.jacobian)
+
+
+@pytest.mark.parametrize("strain", STRAINS)
+def test_muscle_vs_automatic_differentiation(strain: str | list[str]) -> None:
+    muscle = CordRecord(name="muscle", kind="muscle", rod="rod", pull=0.7, span=(0.2, 0.6))
+    model = build(scene(strain, muscle))
+    assert model.potential is not None
+    x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("u", model.inputs.size)
+    residual = model.residual(x, inputs)
+    unit = model.discrete.rods["rod"].energy_unit
+    outputs = [ca.gradient(model.potential(x, inputs), x) / unit, ca.jacobian(residual, x)]
+    automatic = ca.Function("a", [x, inputs], outputs)
+    gradient, jacobian = (value.full() for value in automatic(point(model), model.pack()))
+    found = model.jacobian(point(model), model.pack())
+    assert_allclose(found[1].full(), gradient, rtol=0, atol=1e-13)
+    assert_allclose(found[0].full(), jacobian, rtol=0, atol=1e-12 * np.abs(jacobian).max())
+    pull, reach, rate = model.actuator["muscle"](point(model), model.pack())
+    assert model.actuator["muscle"].name_out() == ["pull", "reach", "d_reach_d_x"]
+    assert float(pull) == 0.7
+    changed = ca.Function("r", [x, inputs], [ca.jacobian(model.actuator["muscle"](x, inputs)[1], x)])
+    assert_allclose(rate.full(), changed(point(model), model.pack()).full(), rtol=0, atol=1e-14)
+    assert float(reach) > 0.0
+
+
+def test_effort_is_an_input_and_the_rod_is_solved() -> None:
+    muscle = CordRecord(name="muscle", kind="muscle", rod="rod", pull=0.7)
+    model = build(scene("reissner", muscle))
+    assert "muscle.pull" in model.inputs.names
+    solution = solve(model, {"muscle.pull": 1.2})
+    assert solution.converged
+    assert solution.stable
+    without = solve(model, {"muscle.pull": 0.0})
+    assert np.abs(solution.tip().position - without.tip().position).max() > 1e-3
