@@ -8,10 +8,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import casadi as ca
-
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.kernels import kernels, sources
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.model.build import Model
@@ -93,14 +91,12 @@ def _sources(model: Model, names: Names) -> dict[str, str]:
     parts = assembled(model, names)
     every = kernels(model, names, parts)
     untimed = {names.kernel(word, rod) for rod in names.rods for word in ("tip_jacobian", "shape")}
+    generated = kernel_sources(every, names)
+    rest = kernel_sources([f for f in every if f.name() not in untimed], names)
     files = {
-        **library_sources(model, names, parts, None),
-        **sources([f for f in every if f.name() not in untimed], "timed_kernels", "int"),
-        "untimed.c": _only_c([f for f in every if f.name() in untimed], "untimed"),
+        **library_sources(model, names, parts, generated, None),
+        **generated,
+        "timed_kernels.c": rest["timed_kernels.c"],
+        "untimed.c": kernel_sources([f for f in every if f.name() in untimed], names, "untimed")["untimed.c"],
     }
-    files["timed_kernels.h"] = sources(every, "timed_kernels", "int")["timed_kernels.h"]
     return {name: text for name, text in files.items() if name.endswith((".c", ".h"))}
-
-
-def _only_c(functions: list[ca.Function], stem: str) -> str:
-    return sources(functions, stem, "int")[f"{stem}.c"]

@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -22,6 +22,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import Names, library_names
 from cosserat_casadi.codegen.status import OUTCOMES
@@ -131,7 +132,7 @@ class Compiled:
         given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(pointer(given), pointer(q), ctypes.byref(info))
+        self._function("solve")(pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
         return _solution(q, info)
 
     def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
@@ -143,7 +144,7 @@ class Compiled:
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
         q, info = _vector(start, self.size, "start").copy(), _Info()
-        self._function("follow")(pointer(old), pointer(given), pointer(q), ctypes.byref(info))
+        self._function("follow")(pointer(old), pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
         return _solution(q, info)
 
     def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
@@ -156,7 +157,7 @@ class Compiled:
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
         q, infos = np.zeros((len(given), self.size)), (_Info * len(given))()
-        self._function("solve_batch")(len(given), pointer(given), pointer(q), infos)
+        self._function("solve_batch")(len(given), pointer(given), pointer(q), self._workspace(), 1, infos)
         return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
 
     def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
@@ -186,7 +187,9 @@ class Compiled:
         unknowns = _vector(q, self.size, "q")
         count = len(self._names.rods) + len(self._names.bodies)
         d_q, d_poses = np.zeros((len(given), self.size)), np.zeros((count, len(given), 7))
-        status = self._function("solve_sensitivity")(pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses))
+        status = self._function("solve_sensitivity")(
+            pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses), self._workspace()
+        )
         return None if status != 0 else (d_q.T, [pose.T for pose in d_poses])
 
     @cached_property
@@ -195,6 +198,11 @@ class Compiled:
 
     def _function(self, word: str) -> Any:
         return getattr(self._handle, self._names.function(word))
+
+    def _workspace(self) -> Any:
+        """Memory for one call, so that several threads may call at once."""
+        doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
+        return (ctypes.c_double * doubles)()
 
     def _external(self, word: str, owner: str | None = None) -> ca.Function:
         return ca.external(self._names.differentiable(word, owner), str(self.library))
@@ -219,7 +227,8 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
     sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
-    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
+    headers += [folder / file for file in described["files"] if file in VERBATIM]
     return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
 
 
@@ -261,13 +270,21 @@ def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], c
     return target
 
 
-def compiled_texts(name: str, texts: Mapping[str, str], compiler: str) -> Path:
-    """As :func:`shared_object`, of sources and headers that are texts by file name."""
+def compiled_texts(name: str, texts: Mapping[str, str], compiler: str, included: Collection[str] = frozenset()) -> Path:
+    """As :func:`shared_object`, of sources and headers that are texts by file name.
+
+    Args:
+        name: what the name of the object begins with.
+        texts: content by file name.
+        compiler: path of a C compiler.
+        included: files that others include: they are not compiled by themselves.
+    """
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / file for file in texts]
         for path in paths:
             path.write_text(texts[path.name], encoding="utf-8")
-        sources, headers = ([path for path in paths if path.suffix == suffix] for suffix in (".c", ".h"))
+        sources = [path for path in paths if path.suffix == ".c" and path.name not in included]
+        headers = [path for path in paths if path not in sources]
         return shared_object(name, sources, headers, compiler)
 
 

@@ -5,18 +5,15 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Sequence
 from pathlib import Path
-
-import casadi as ca
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import kernels, sources
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
-from cosserat_casadi.codegen.names import Names, library_names, scene_names
+from cosserat_casadi.codegen.names import library_names, scene_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -79,11 +76,12 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     names = scene_names(name, model.scene)
     parts = assembled(model, names)
     functions = kernels(model, names, parts)
+    generated = kernel_sources(functions, names)
     # casadi.external expects the integers that CasADi itself was built with.
     derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
     files = {
-        **library_sources(model, names, parts, error_estimate),
-        **kernel_sources(functions, names),
+        **library_sources(model, names, parts, generated, error_estimate),
+        **generated,
         f"{name}_derivatives.c": derivatives[f"{name}_derivatives.c"],
         "scene.toml": scene_text(model.scene),
     }
@@ -91,11 +89,3 @@ def folder_files(model: Model, name: str, error_estimate: float | None = None) -
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files
-
-
-def kernel_sources(functions: Sequence[ca.Function], names: Names) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does."""
-    stem = f"{names.name}_kernels"
-    generated = sources(functions, stem, "int")
-    prologue = f"#ifdef {names.macro}_SINGLE\n#define casadi_real float\n#endif\n"
-    return {**generated, f"{stem}.c": prologue + generated[f"{stem}.c"]}

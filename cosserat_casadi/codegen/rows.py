@@ -11,9 +11,8 @@ import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler, pointer
-from cosserat_casadi.codegen.export import kernel_sources
-from cosserat_casadi.codegen.kernels import kernels
-from cosserat_casadi.codegen.library import library_sources, render
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
 from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -52,12 +51,14 @@ class RowLibrary:
 
         Raises:
             ExportError: there is no C compiler, or it fails.
+            MemoryError: there is none for the workspace.
         """
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
         found = np.empty((len(given), self.results))
-        _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(found))
+        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(found)):
+            raise MemoryError("there is no memory for the solver's workspace")
         return found
 
 
@@ -69,14 +70,17 @@ def row_library(model: Model) -> RowLibrary:
     """
     names = scene_names(NAME, model.scene)
     parts = assembled(model, names)
-    written = {
-        **library_sources(model, names, parts, None),
-        **kernel_sources(kernels(model, names, parts), names),
-    }
+    generated = kernel_sources(kernels(model, names, parts), names)
     columns = row_results(model.scene)
-    wanted = [f"{NAME}.h", f"{NAME}.c", f"{NAME}_kernels.h", f"{NAME}_kernels.c"]
-    files = [(name, written[name]) for name in wanted] + [(f"{NAME}_rows.c", _rows_source(model, names, len(columns)))]
-    return RowLibrary(tuple(files), model.inputs.size, len(columns))
+    files = {
+        **library_sources(model, names, parts, generated, None),
+        **generated,
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns)),
+    }
+    wanted = [
+        (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
+    ]
+    return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
 
 
 def row_results(scene: Scene) -> tuple[str, ...]:
@@ -95,13 +99,11 @@ def _rows_source(model: Model, names: Names, results: int) -> str:
     bodies = [names.function("body", body) for body in names.bodies]
     lines, place = list[str](), len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(q, given, here + {place}, here + {place + 3});")
+        lines.append(f"    {function}(x, given, row + {place}, row + {place + 3});")
         place += len(POSE)
-    if names.actuators:
-        lines.append(f"    {names.name}_real slope[{names.macro}_UNKNOWNS];")
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(q, given, here + {place}, here + {place + 1}, slope);")
+        lines.append(f"    {function}(x, given, row + {place}, row + {place + 1}, 0);")
         place += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
     return render("rows.c.in", words)
@@ -115,4 +117,4 @@ def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 @cache
 def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler())))
+    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), VERBATIM)))

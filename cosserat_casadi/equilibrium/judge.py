@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.load_path import column, input_path
+from cosserat_casadi.equilibrium.load_path import column, input_path, is_shape
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import Stability, admissible_spectrum, judged, second_variation, variations
 from cosserat_casadi.maths.typing import FloatArray
@@ -15,7 +15,7 @@ from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length
 from cosserat_casadi.numerics.outcome import Outcome
 
 NEAR = 0.5
-"""Longest way of the unknowns (2-norm) that a correction may go and still count as the same branch."""
+"""Most that a correction may move strains and poses of frames (2-norm) and still count as on the same branch."""
 
 
 ASIDE, ASIDE_STEPS = 0.05, 8
@@ -121,5 +121,6 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
         settings: limits.
     """
     found = newton(input_path(model, start, inputs, inputs).at(1.0), start, settings)
-    strayed = found.damped or length_of(found.x - start) > NEAR
+    # Multipliers and tensions may jump where a stiff rod moves by a hair: they tell nothing of the branch.
+    strayed = found.damped or length_of((found.x - start)[is_shape(model)]) > NEAR
     return None if found.outcome is not Outcome.CONVERGED or strayed else found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -64,6 +65,15 @@ def step_shares(model: Model) -> FloatArray:
         for place in places:
             shares[place] = share
     return shares
+
+
+def is_shape(model: Model) -> npt.NDArray[np.bool_]:
+    """Which unknowns are strains or poses of frames, not multipliers or tensions, shape (size,)."""
+    discrete = model.discrete
+    shape = np.zeros(model.size, dtype=np.bool_)
+    for place in (*discrete.rod_slices.values(), *discrete.moving_slices.values()):
+        shape[place] = True
+    return shape
 
 
 def _matrix(model: Model, jacobian: ca.DM) -> Jacobian:

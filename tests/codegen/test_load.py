@@ -208,7 +208,7 @@ def test_the_object_is_compiled_once(strip: Path, tmp_path: Path) -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+@pytest.mark.parametrize("ending", [".c", ".h", "_config.h", "_kernels.c", "_kernels.h", "_derivatives.c"])
 def test_a_changed_source_gives_another_object(strip: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = pretended(monkeypatch)
     first = load(strip).library
@@ -350,7 +350,7 @@ def test_manifest_of_something_else(tmp_path: Path, content: object) -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+@pytest.mark.parametrize("ending", [".c", ".h", "_config.h", "_kernels.c", "_kernels.h", "_derivatives.c"])
 def test_missing_source(strip: Path, ending: str) -> None:
     (strip / f"strip{ending}").unlink()
     assert refusal(strip) == (str(strip / f"strip{ending}"), "is missing", "export the folder anew")

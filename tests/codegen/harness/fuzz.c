@@ -10,7 +10,9 @@
 #include <string.h>
 #include <time.h>
 
-enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 7 };
+enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 8 };
+
+static @{name}_workspace workspace;
 
 static long counts[STATUSES];
 static int most_iterations;
@@ -85,10 +87,10 @@ static void check(@{name}_status said, const double *inputs, const double *start
   if (!finite(inputs, INPUTS) || !finite(q, N)) fail("converged, not finite", inputs, start, q, info);
   @{name}_tip(q, inputs, position, quaternion);
   if (!finite(position, 3) || !finite(quaternion, 4)) fail("tip is not finite", inputs, start, q, info);
-  @{name}_residual(q, inputs, residual);
+  @{name}_residual(q, inputs, residual, &workspace);
   if (!(norm(residual, N) <= 1e-10 * (1 + norm(q, N)))) fail("no equilibrium", inputs, start, q, info);
   if (!isfinite(norm(q, N))) fail("unknowns beyond all measure", inputs, start, q, info);
-  if (@{name}_solve_sensitivity(inputs, q, d_q, d_tip) == @{MACRO}_CONVERGED) {
+  if (@{name}_solve_sensitivity(inputs, q, d_q, d_tip, &workspace) == @{MACRO}_CONVERGED) {
     if (!finite(d_q, N * INPUTS) || !finite(d_tip, 7 * INPUTS)) fail("sensitivity is not finite", inputs, start, q, info);
   }
 }
@@ -99,7 +101,7 @@ static void solve(const double *inputs, const double *start) {
   double q[N], begun;
   memcpy(q, start, sizeof q);
   begun = seconds();
-  said = @{name}_solve(inputs, q, &info);
+  said = @{name}_solve(inputs, q, &workspace, &info);
   check(said, inputs, start, q, &info, seconds() - begun);
 }
 
@@ -109,7 +111,7 @@ static void follow(const double *from, const double *inputs, const double *start
   double q[N], begun;
   memcpy(q, start, sizeof q);
   begun = seconds();
-  said = @{name}_follow(from, inputs, q, &info);
+  said = @{name}_follow(from, inputs, q, &workspace, &info);
   check(said, inputs, start, q, &info, seconds() - begun);
 }
 
