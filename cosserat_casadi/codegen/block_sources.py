@@ -32,7 +32,8 @@ def dense_words(render: Render, basics: Words) -> Words:
         "linear_source": "linear_dense.c",
         "linear_sizes": "",
         "linear_members": "",
-        "factor_count": f"{basics['MACRO']}_UNKNOWNS * {basics['MACRO']}_UNKNOWNS",
+        "linear_reals": 0,
+        "factor_count": basics["unknowns"] ** 2,
     }
 
 
@@ -56,12 +57,15 @@ def block_words(render: Render, basics: Words, found: Assembled) -> Words:
         "interface_start": split.border_first,
         "max_order": max(front.order for front in split.fronts),
     }
+    most_entries = max(len(part.entries) for parted in parteds.values() for part in parted.parts)
+    work = [sizes["entries"], basics["unknowns"], basics["input_room"], most_entries]
+    work += [sizes["front_count"] * sizes["max_order"], sizes["interface"]]
     members = {
         **sizes,
         "real": f"{basics['name']}_real",
         "macro": basics["MACRO"],
         "input_room": basics["input_room"],
-        "most_entries": max(len(part.entries) for parted in parteds.values() for part in parted.parts),
+        "most_entries": most_entries,
     }
     return {
         "equations": render("block_equations.c.in", words),
@@ -69,8 +73,9 @@ def block_words(render: Render, basics: Words, found: Assembled) -> Words:
         "linear_source": "linear_blocks.c",
         "linear_sizes": "\n".join(f"#define SOLVER_{word.upper()} {size}" for word, size in sizes.items()),
         "linear_members": MEMBERS.format(**members),
+        "linear_reals": sum(work),
         # The fallback eliminates the matrix as a whole in the same room.
-        "factor_count": str(max(split.pattern.size1() ** 2, split.room)),
+        "factor_count": max(split.pattern.size1() ** 2, split.room),
     }
 
 

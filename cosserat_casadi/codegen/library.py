@@ -14,6 +14,7 @@ import numpy as np
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
+from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import input_macro, input_struct_words, pose_name, result_struct_words
@@ -113,7 +114,7 @@ def _words(
         **_unknown_words(model),
         **rods[0],
         "first_pose": pose_name(names, "tip", names.rods[0]),
-        "workspace_kb": 0,
+        "workspace_kb": _workspace_kb(sizes, linear),
         **_pose_words(names),
         **linear,
         "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
@@ -139,7 +140,6 @@ def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
 
 
 def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
-    header = "".join(text for file, text in generated.items() if file.endswith(".h"))
     return {
         "name": names.name,
         "MACRO": names.macro,
@@ -150,20 +150,17 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "poses": len(names.rods) + len(names.bodies),
         # C has no array without entries.
         "input_room": max(model.inputs.size, 1),
-        "kernel_reals": _largest(header, "W") + 1,
-        "kernel_integers": _largest(header, "IW") + 1,
+        "kernel_reals": largest_room(generated, "W") + 1,
+        "kernel_integers": largest_room(generated, "IW") + 1,
         "max_reuses": newton.KEPT_STEPS,
-        "stack_kb": _stack(generated),
+        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
     }
 
 
-def _largest(header: str, what: str) -> int:
-    """The most that any kernel asks for."""
-    return max(int(size) for size in re.findall(rf"_SZ_{what} (\d+)", header))
-
-
-def _stack(generated: Mapping[str, str]) -> int:
-    return 0
+def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any]) -> str:
+    room = (sizes["kernel_reals"], sizes["kernel_integers"])
+    counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
+    return f"{workspace_bytes(*counts, room, linear['linear_reals']) / 1000:.1f}"
 
 
 def _solver_constants() -> dict[str, Any]:
@@ -211,7 +208,7 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
         "inputs_functions": render("inputs.c.in", named) if entries else "\n",
         "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
-        "defaults": _listed(values) or "0",
+        "defaults": ", ".join(_initialiser(value, names) for value in values) or "0",
         "axes_note": "Polynomials along the rod are Legendre coefficients in 2X − 1, three numbers for each degree."
         if polynomial
         else "Section axes turn with the rod.",
@@ -302,6 +299,12 @@ def _accuracy_note(model: Model, error_estimate: float | None) -> str:
 
 def _listed(numbers: list[float]) -> str:
     return ", ".join(f"{number:g}" if float(f"{number:g}") == number else repr(number) for number in numbers)
+
+
+def _initialiser(value: float, names: Names) -> str:
+    """A number that float and double take without a word from the compiler."""
+    written = _listed([value])
+    return written if float(np.float32(value)) == value else f"({names.name}_real){written}"
 
 
 def _comment(text: str) -> str:

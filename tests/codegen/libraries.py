@@ -57,6 +57,10 @@ WRISTS = [
     {"body": "hand", "rod": "left", "kind": "fixed", "position": [0.1, 0.0, 0.0]},
     {"body": "hand", "rod": "right", "kind": "fixed", "position": [-0.1, 0.0, 0.0]},
 ]
+LEGS = [
+    rod("reissner", name="left", base={"position": [0.1, 0.0, 0.0]}),
+    rod("reissner", name="right", base={"position": [-0.1, 0.0, 0.0]}),
+]
 LOAD = {"name": "load", "kind": "body_wrench", "body": "hand", "force": [0.2, 0.0, -0.3]}
 
 
@@ -84,6 +88,7 @@ RECIPES = {
     "fixed": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar", inputs=[]), 2, 4),
     "tendons": Recipe(scene(push(), strain="reissner", actuators=[TENDON, HELD, CHAMBER]), 2, 4),
     "robot": Recipe(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS), 2, 4),
+    "gripper": Recipe(scene(LOAD, rods=LEGS, bodies=[HAND], joints=WRISTS), 2, 4),
     "cables": Recipe(three_cables(), 2, 4),
     "loops": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar"), 2, 4, "permuted"),
 }
