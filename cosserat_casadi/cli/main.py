@@ -225,9 +225,12 @@ def export(
     scene: SceneFile,
     output: Annotated[Path, typer.Option(help="Folder to write: new, empty, or of an earlier export.")],
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
+    derivatives: Annotated[
+        bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
+    ] = False,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources: equations, derivatives, solver. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources: equations, Jacobians, solver. Exit codes: 0 written, 2 refused, 3 not solved.
 
     Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
     """
@@ -239,7 +242,7 @@ def export(
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
-    export_model(solution.model, output, chosen, error_estimate=solution.error_estimate)
+    export_model(solution.model, output, chosen, error_estimate=solution.error_estimate, derivatives=derivatives)
     report.print_export(Console(), solution, output)
 
 

@@ -1,4 +1,4 @@
-"""An exported folder, compiled: CasADi functions with exact derivatives, and the solver in C."""
+"""An exported folder, compiled: the solver in C, and CasADi functions, with exact derivatives where it holds them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.plain import PlainFunction, pointer
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
@@ -33,6 +34,9 @@ from cosserat_casadi.numerics.outcome import Outcome
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
+
+POSE = {"position": 3, "quaternion": 4}
+"""Length of each result of a pose."""
 
 
 class _Info(ctypes.Structure):
@@ -85,29 +89,38 @@ class Compiled:
     _names: Names = field(repr=False)
 
     @cached_property
+    def differentiable(self) -> bool:
+        """Whether the functions below have derivatives: whether the folder was exported with them."""
+        return f"{self._names.name}_derivatives.c" in self.manifest["files"]
+
+    @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual, with exact first and second derivatives."""
-        return self._external("residual")
+        """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`."""
+        return self._casadi_function("residual", None, {"residual": self.size}, workspace=True)
 
     @cached_property
     def tip(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ (position, quaternion) of the tip, with exact derivatives."""
-        return {rod: self._external("tip", rod) for rod in self._names.rods}
+        """For each rod (x, inputs) ↦ (position, quaternion) of the tip; derivatives as of :attr:`residual`."""
+        return {rod: self._casadi_function("tip", rod, POSE) for rod in self._names.rods}
 
     @cached_property
     def shape(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs, X) ↦ (position, quaternion), with exact derivatives."""
-        return {rod: self._external("shape", rod) for rod in self._names.rods}
+        """For each rod (x, inputs, X) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
+        return {rod: self._casadi_function("shape", rod, POSE, abscissa=True) for rod in self._names.rods}
 
     @cached_property
     def actuator(self) -> dict[str, ca.Function]:
         """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
-        return {name: self._external("actuator", name) for name in self._names.actuators}
+        found = {}
+        for entry in self.manifest.get("actuators", []):
+            results = {entry["effort"]: 1, entry["extent"]: 1, f"{entry['extent']}_jacobian": self.size}
+            found[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
+        return found
 
     @cached_property
     def body(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ (position, quaternion), with exact derivatives."""
-        return {name: self._external("body", name) for name in self._names.bodies}
+        """For each rigid body (x, inputs) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
+        return {name: self._casadi_function("body", name, POSE) for name in self._names.bodies}
 
     @property
     def size(self) -> int:
@@ -204,8 +217,39 @@ class Compiled:
         doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
         return (ctypes.c_double * doubles)()
 
-    def _external(self, word: str, owner: str | None = None) -> ca.Function:
-        return ca.external(self._names.differentiable(word, owner), str(self.library))
+    def _casadi_function(
+        self,
+        word: str,
+        owner: str | None,
+        results: dict[str, int],
+        *,
+        abscissa: bool = False,
+        workspace: bool = False,
+    ) -> ca.Function:
+        """A function of the library, with derivatives where the folder holds them.
+
+        Args:
+            word: what it gives.
+            owner: rod, actuator or body.
+            results: length of each result by name.
+            abscissa: whether it has the abscissa X as a third argument.
+            workspace: whether it works in a workspace.
+        """
+        if self.differentiable:
+            return ca.external(self._names.differentiable(word, owner), str(self.library))
+        in_c = getattr(self._handle, self._names.function(word, owner))
+
+        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
+            given: list[Any] = [pointer(argument) for argument in arguments]
+            if abscissa:
+                given[-1] = ctypes.c_double(arguments[-1][0])
+            found = [np.empty(size) for size in results.values()]
+            work = [self._workspace()] if workspace else []
+            in_c(*given, *map(pointer, found), *work)
+            return found
+
+        sizes = {"x": self.size, "inputs": len(self.defaults), **({"X": 1} if abscissa else {})}
+        return PlainFunction(self._names.differentiable(word, owner), sizes, results, evaluate)
 
 
 def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
@@ -226,7 +270,10 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
-    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
+    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels")]
+    derivatives = f"{names.name}_derivatives.c"
+    if derivatives in described["files"]:
+        sources.append(folder / derivatives)
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
     headers += [folder / file for file in described["files"] if file in VERBATIM]
     return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
@@ -342,9 +389,10 @@ def _is_manifest(described: Any) -> bool:
         library_names(described["name"])
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+        files = all(isinstance(file, str) for file in described["files"])
     except (ExportError, KeyError, TypeError, ValueError):
         return False
-    return rods and all(value.ndim == 1 for value in numbers)
+    return rods and files and all(value.ndim == 1 for value in numbers)
 
 
 def _read(path: Path) -> bytes:
@@ -359,11 +407,6 @@ def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     if len(vector) != size:
         raise ValueError(f"{name} must have {size} numbers, got {len(vector)}")
     return vector
-
-
-def pointer(array: FloatArray) -> Any:
-    """An array as an argument of a function in C."""
-    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
 def _solution(q: FloatArray, info: _Info) -> CompiledSolution:

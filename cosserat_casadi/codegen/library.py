@@ -58,7 +58,13 @@ ROLES = {
 
 
 def library_sources(
-    model: Model, names: Names, parts: Assembled | None, generated: Mapping[str, str], error_estimate: float | None
+    model: Model,
+    names: Names,
+    parts: Assembled | None,
+    generated: Mapping[str, str],
+    error_estimate: float | None,
+    *,
+    derivatives: bool = False,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -68,8 +74,10 @@ def library_sources(
         parts: the equations of an assembly in parts.
         generated: source and header of the kernels by file name.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
+        derivatives: whether the folder holds the derivatives too.
     """
     words = _words(model, names, parts, generated, error_estimate)
+    words["file_rows"] = _file_rows(names, parts, derivatives=derivatives)
     name = names.name
     verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS))
     return {
@@ -125,7 +133,6 @@ def _words(
         "version": version("cosserat-casadi"),
         **_version_words(),
         "casadi_version": ca.CasadiMeta.version(),
-        "file_rows": _file_rows(names, parts),
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
 
@@ -281,8 +288,10 @@ def _further_results(actuators: list[dict[str, Any]], bodies: list[dict[str, Any
     return "\n".join(["", "## Actuators and bodies", "", "| function | what it gives |", "|---|---|", *rows, ""])
 
 
-def _file_rows(names: Names, parts: Assembled | None) -> str:
+def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
+    if not derivatives:
+        absent.add("{name}_derivatives.c")
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 

@@ -10,10 +10,11 @@ from functools import cache
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler, pointer
+from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
 from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene import Scene

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix, rotate
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.couplings import Carrier
 from cosserat_casadi.model.system import Arguments, DiscreteScene, System, balance, ratio_of, rod_actions
 from cosserat_casadi.rod import kinematics
@@ -23,6 +23,10 @@ Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magn
 
 RESOLVED_NORM = 1e-2
 """Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
+
+
+NOISE = 1e-14
+"""Share of the largest entry of a linear response below which an entry is rounding."""
 
 
 def _arguments(discrete: DiscreteScene) -> Arguments:
@@ -108,9 +112,16 @@ def path_tangent(discrete: DiscreteScene) -> ca.Function:
         slope = ca.Function("slope", [inputs], [ca.jacobian(rate(unloaded, inputs, 0.0, still, 1.0), inputs)])
         rates[:, 1:][:, geometry] = rates[:, :1] + slope(discrete.layout.pack()).full()[:, geometry]
     response = -np.linalg.solve(jacobian.full(), rates) if discrete.size else rates
-    matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
+    matrix = ca.sparsify(ca.DM(_without_noise(response[:, 1:] - response[:, :1])))
     moved = inputs - ca.DM(rest) if geometry else inputs
-    return ca.Function("path_tangent", [inputs], [ca.DM(response[:, 0]) + matrix @ moved], ["inputs"], ["tangent"])
+    constant = ca.DM(_without_noise(response[:, 0]))
+    return ca.Function("path_tangent", [inputs], [constant + matrix @ moved], ["inputs"], ["tangent"])
+
+
+def _without_noise(values: FloatArray) -> FloatArray:
+    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return np.where(np.abs(values) < NOISE * largest, 0.0, values)
 
 
 def igm(discrete: DiscreteScene, rod: str) -> ca.Function:

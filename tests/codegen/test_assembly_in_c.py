@@ -39,7 +39,7 @@ def test_two_rods_and_a_body_vs_python(tmp_path: Path) -> None:
         "loads": [LOAD],
     }
     model = build(scene_from_dict(tables))
-    export(model, tmp_path / "two")
+    export(model, tmp_path / "two", derivatives=True)
     library = load(tmp_path / "two")
     found = library.solve()
     assert_allclose(found.q, solve(model).x, rtol=0, atol=1e-9)
