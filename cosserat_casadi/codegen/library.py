@@ -226,15 +226,16 @@ def _unknown_words(model: Model) -> dict[str, str]:
     lines, rows = [], ["| entries | what |", "|---|---|"]
     for entry in unknown_entries(model):
         last = entry["first"] + entry["count"] - 1
-        what = _unknown_word(entry)
+        what = _unknown_word(model, entry)
         lines.append(f"   {entry['first']} .. {last}: {what}")
         rows.append(f"| {entry['first']} … {last} | {what} |")
     return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
 
 
-def _unknown_word(entry: dict[str, Any]) -> str:
+def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
     if "strain" in entry:
-        return f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
+        basis = model.discrete.rods[entry["rod"]].properties.basis.capitalize()
+        return f"{basis} coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
     if "support" in entry:
         return f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
     if "tendon" in entry:
