@@ -37,24 +37,24 @@ def dense_words(render: Render, basics: Words) -> Words:
     }
 
 
-def block_words(render: Render, basics: Words, found: Assembled) -> Words:
+def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     """Words of a solver that eliminates rod after rod."""
-    split = found.blocks
-    parteds = {"residual": found.residual, "jacobian": found.jacobian, "input": found.input_jacobian}
+    split = partition.blocks
+    parteds = {"residual": partition.residual, "jacobian": partition.jacobian, "input": partition.input_jacobian}
     words = {
         "part_functions": "".join(_functions(render, parted) for parted in parteds.values()),
         "part_tables": "".join(_tables(word, parted) for word, parted in parteds.items()),
         "front_tables": _fronts(split.fronts),
-        "front_indices": numbers(split.places),
-        "dense_indices": numbers(split.dense_places),
-        "interface_members": numbers(split.border),
+        "front_indices": numbers(split.front_indices),
+        "dense_indices": numbers(split.dense_indices),
+        "interface_members": numbers(split.interface),
     }
     sizes = {
         "entries": split.pattern.nnz(),
         "front_count": len(split.fronts),
-        "fronts_size": split.room,
-        "interface": len(split.border),
-        "interface_start": split.border_first,
+        "fronts_size": split.fronts_size,
+        "interface": len(split.interface),
+        "interface_start": split.interface_start,
         "max_order": max(front.order for front in split.fronts),
     }
     most_entries = max(len(part.entries) for parted in parteds.values() for part in parted.parts)
@@ -75,7 +75,7 @@ def block_words(render: Render, basics: Words, found: Assembled) -> Words:
         "linear_members": MEMBERS.format(**members),
         "linear_reals": sum(work),
         # The fallback eliminates the matrix as a whole in the same room.
-        "factor_count": max(split.pattern.size1() ** 2, split.room),
+        "factor_count": max(split.pattern.size1() ** 2, split.fronts_size),
     }
 
 
@@ -110,9 +110,9 @@ def _tables(word: str, parted: Parted) -> str:
 def _fronts(fronts: Sequence[Front]) -> str:
     lines, rows = list[str](), list[str]()
     for i, front in enumerate(fronts):
-        lines += [_table(f"MEMBERS_{i}", front.members), _table(f"EDGES_{i}", front.edges)]
-        edges = f"EDGES_{i}" if front.edges else "0"
-        rows.append(f"  {{MEMBERS_{i}, {edges}, {len(front.members)}, {len(front.edges)}, {front.first}}}")
+        lines += [_table(f"MEMBERS_{i}", front.members), _table(f"TOUCHED_{i}", front.interface)]
+        touched = f"TOUCHED_{i}" if front.interface else "0"
+        rows.append(f"  {{MEMBERS_{i}, {touched}, {len(front.members)}, {len(front.interface)}, {front.start}}}")
     listed = ",\n".join(rows)
     return "".join(lines) + f"static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n"
 

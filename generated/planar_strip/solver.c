@@ -41,8 +41,9 @@ static void apply_inverse(const updated_jacobian *jacobian, const real *vector, 
   }
 }
 
-/* The quasi-Newton step at an iterate with this residual; zero where it is not finite. Broyden's inverse is applied from
-   the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
+/* The quasi-Newton step at an iterate with this residual; zero where it is not finite. The update is C. G. Broyden's
+   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for
+   Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
 static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
   apply_inverse(jacobian, residual, step, work);
   if (jacobian->count > 0) {

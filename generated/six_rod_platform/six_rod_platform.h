@@ -1,6 +1,6 @@
 /* Six-rod parallel robot: steel rods clamped in base and platform, a hand on the platform
 
-   Statics of Cosserat rods: equations, solver and sensitivities. C99 or C++, libm alone, no allocation, no global state:
+   Statics of Cosserat rods: equations, solver and sensitivities. C99 and C++20, libm alone, no allocation, no global state:
    every function may be called from any number of threads at once, each with a workspace of its own.
 
    Vectors are plain arrays, matrices are stored column after column. SI units, radians. Quaternions are w x y z and

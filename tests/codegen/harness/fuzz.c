@@ -16,6 +16,7 @@ static @{name}_workspace workspace;
 
 static long counts[STATUSES];
 static int most_iterations;
+static long lost, tracked;
 static double longest;
 
 /* Of this process, so that a busy machine changes nothing. */
@@ -115,6 +116,27 @@ static void follow(const double *from, const double *inputs, const double *start
   check(said, inputs, start, q, &info, seconds() - begun);
 }
 
+/* A turn of a control loop from any start, with whatever the turn before has left. */
+static void track(const double *inputs, const double *start) {
+  static @{name}_memory memory;
+  const @{name}_options options = {12, 6};
+  const @{name}_options *chosen = uniform() < 0.5 ? 0 : &options;
+  @{name}_info info;
+  double q[N], d_q[N * INPUTS], d_tip[7 * INPUTS], begun;
+  memcpy(q, start, sizeof q);
+  begun = seconds();
+  const @{name}_status said = @{name}_track(inputs, q, &memory, chosen, d_q, d_tip, &workspace, &info);
+  if (chosen && info.iterations > options.max_iterations) fail("more work than allowed", inputs, start, q, &info);
+  if (said == @{MACRO}_LOST_TRACK || said == @{MACRO}_NOT_FINITE) {
+    lost += said == @{MACRO}_LOST_TRACK;
+    if (said == @{MACRO}_LOST_TRACK && memcmp(q, start, sizeof q)) fail("lost, and moved", inputs, start, q, &info);
+    return;
+  }
+  tracked += said == @{MACRO}_CONVERGED;
+  /* At a limit point the solution has no derivatives. */
+  check(said == @{MACRO}_SINGULAR ? info.status : said, inputs, start, q, &info, seconds() - begun);
+}
+
 int main(int count, char **words) {
   const double special[] = {NAN,     INFINITY, -INFINITY, 1e300,    -1e300, DBL_MAX, -DBL_MAX, 1e154, -1e154, 1e77, 1e16,
                             DBL_MIN, 4e-320,   -4.9e-324, DBL_EPSILON, 0.0, -0.0,    1.0,      -1.0};
@@ -140,6 +162,7 @@ int main(int count, char **words) {
         for (i = 0; i < N; i++) start[i] = i == place ? special[a] : special[b];
         for (i = 0; i < INPUTS; i++) inputs[i] = 0.1 * (i + 1);
         solve(inputs, start);
+        track(inputs, start);
         follow(inputs, inputs, start);
       }
     }
@@ -155,9 +178,10 @@ int main(int count, char **words) {
     for (i = 0; i < N; i++) start[i] = k % 3 == 0 ? any_magnitude() : k % 3 == 1 ? 4 * uniform() - 2 : 0;
     solve(inputs, start);
     if (k % 8 == 0) follow(other, inputs, start);
+    track(inputs, start);
   }
   printf("{\"most_iterations\": %d, \"longest\": %.3g, \"counts\": [", most_iterations, longest);
   for (i = 0; i < STATUSES; i++) printf("%s%ld", i ? ", " : "", counts[i]);
-  printf("]}\n");
+  printf("], \"lost\": %ld, \"tracked\": %ld}\n", lost, tracked);
   return 0;
 }
