@@ -143,7 +143,8 @@ def _version_words() -> dict[str, str]:
 
 
 def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
-    return "".join(render(template, words) for template, wordings in entries.items() for words in wordings)
+    texts = [render(template, words) for template, wordings in entries.items() for words in wordings]
+    return "".join(texts)
 
 
 def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
@@ -278,12 +279,12 @@ def _further_results(actuators: list[dict[str, Any]], bodies: list[dict[str, Any
     """A section on actuators and bodies; nothing where there are none."""
     rows = [
         f"| `{words['actuator']}` | {words['effort']} ({words['effort_unit']}) and {words['extent']} "
-        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d q |"
+        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d x |"
         for words in actuators
     ]
     for words in bodies:
         rows.append(f"| `{words['body']}` | pose of the body {words['called']} |")
-        rows.append(f"| `{words['body_jacobian']}` | its derivatives with q and with the inputs |")
+        rows.append(f"| `{words['body_jacobian']}` | its derivatives with x and with the inputs |")
     if not rows:
         return ""
     return "\n".join(["", "## Actuators and bodies", "", "| function | what it gives |", "|---|---|", *rows, ""])
