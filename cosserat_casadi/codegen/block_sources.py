@@ -89,7 +89,9 @@ def _function(kernel: str) -> str:
 
 
 def _tables(word: str, parted: Parted) -> str:
-    stem, lines, rows = word.upper(), list[str](), list[str]()
+    stem = word.upper()
+    lines = list[str]()
+    rows = list[str]()
     for i, part in enumerate(parted.parts):
         tables: dict[str, Sequence[float]] = {
             "UNKNOWNS": part.x,
@@ -108,7 +110,8 @@ def _tables(word: str, parted: Parted) -> str:
 
 
 def _fronts(fronts: Sequence[Front]) -> str:
-    lines, rows = list[str](), list[str]()
+    lines = list[str]()
+    rows = list[str]()
     for i, front in enumerate(fronts):
         lines += [_table(f"MEMBERS_{i}", front.members), _table(f"TOUCHED_{i}", front.interface)]
         touched = f"TOUCHED_{i}" if front.interface else "0"

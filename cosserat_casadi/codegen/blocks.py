@@ -131,15 +131,16 @@ def blocks(discrete: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
 
 
 def _owners(discrete: DiscreteScene) -> list[int]:
-    numbers, owners = {rod: i for i, rod in enumerate(discrete.rods)}, [INTERFACE] * discrete.size
+    numbers = {rod: i for i, rod in enumerate(discrete.rods)}
+    owners = [INTERFACE] * discrete.size
     owned: list[tuple[str, slice]] = list(discrete.rod_slices.items())
     owned += _with_rods([support.rod for support, _ in discrete.holds], discrete.hold_slices)
     owned += [(tie.rod, discrete.tie_slices[tie.where]) for tie in discrete.couplings.ties]
     owned += _with_rods([tendon.rod for tendon, _ in discrete.cables], discrete.tension_slices)
-    for rod, place in owned:
-        owners[place] = [numbers[rod]] * (place.stop - place.start)
+    for rod, indices in owned:
+        owners[indices] = [numbers[rod]] * (indices.stop - indices.start)
     return owners
 
 
-def _with_rods(rods: Sequence[str], places: Sequence[slice]) -> list[tuple[str, slice]]:
-    return list(zip(rods, places, strict=True))
+def _with_rods(rods: Sequence[str], slices: Sequence[slice]) -> list[tuple[str, slice]]:
+    return list(zip(rods, slices, strict=True))

@@ -111,11 +111,11 @@ class Compiled:
     @cached_property
     def actuator(self) -> dict[str, ca.Function]:
         """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
-        found = {}
+        functions = {}
         for entry in self.manifest.get("actuators", []):
             results = {entry["effort"]: 1, entry["extent"]: 1, f"{entry['extent']}_jacobian": self.size}
-            found[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
-        return found
+            functions[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
+        return functions
 
     @cached_property
     def body(self) -> dict[str, ca.Function]:
@@ -156,7 +156,8 @@ class Compiled:
         """
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
-        q, info = _vector(start, self.size, "start").copy(), _Info()
+        q = _vector(start, self.size, "start").copy()
+        info = _Info()
         self._function("follow")(pointer(old), pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
         return _solution(q, info)
 
@@ -169,7 +170,8 @@ class Compiled:
         given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
-        q, infos = np.zeros((len(given), self.size)), (_Info * len(given))()
+        q = np.zeros((len(given), self.size))
+        infos = (_Info * len(given))()
         self._function("solve_batch")(len(given), pointer(given), pointer(q), self._workspace(), 1, infos)
         return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
 
@@ -179,10 +181,10 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        found = self._sensitivity(inputs, q)
-        if found is None:
+        sensitivity = self._sensitivity(inputs, q)
+        if sensitivity is None:
             return None
-        d_q, d_poses = found
+        d_q, d_poses = sensitivity
         return d_q, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
 
     def body_sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> dict[str, FloatArray] | None:
@@ -191,19 +193,25 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        found = self._sensitivity(inputs, q)
-        return None if found is None else dict(zip(self._names.bodies, found[1][len(self._names.rods) :], strict=True))
+        sensitivity = self._sensitivity(inputs, q)
+        if sensitivity is None:
+            return None
+        _, d_poses = sensitivity
+        return dict(zip(self._names.bodies, d_poses[len(self._names.rods) :], strict=True))
 
     def _sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
         """The dq/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
         given = _vector(inputs, len(self.defaults), "inputs")
         unknowns = _vector(q, self.size, "q")
         count = len(self._names.rods) + len(self._names.bodies)
-        d_q, d_poses = np.zeros((len(given), self.size)), np.zeros((count, len(given), 7))
+        d_q = np.zeros((len(given), self.size))
+        d_poses = np.zeros((count, len(given), 7))
         status = self._function("solve_sensitivity")(
             pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses), self._workspace()
         )
-        return None if status != 0 else (d_q.T, [pose.T for pose in d_poses])
+        if status != 0:
+            return None
+        return d_q.T, [pose.T for pose in d_poses]
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:
@@ -243,10 +251,10 @@ class Compiled:
             given: list[Any] = [pointer(argument) for argument in arguments]
             if abscissa:
                 given[-1] = ctypes.c_double(arguments[-1][0])
-            found = [np.empty(size) for size in results.values()]
+            vectors = [np.empty(size) for size in results.values()]
             work = [self._workspace()] if workspace else []
-            in_c(*given, *map(pointer, found), *work)
-            return found
+            in_c(*given, *map(pointer, vectors), *work)
+            return vectors
 
         sizes = {"x": self.size, "inputs": len(self.defaults), **({"X": 1} if abscissa else {})}
         return PlainFunction(self._names.differentiable(word, owner), sizes, results, evaluate)
@@ -363,9 +371,9 @@ def find_compiler(wanted: str | None = None) -> str:
     """
     asked = wanted or os.environ.get("CC")
     for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
-        found = shutil.which(candidate)
-        if found:
-            return found
+        path = shutil.which(candidate)
+        if path:
+            return path
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
     raise ExportError(Problem("compiler", problem, REMEDY))
 

@@ -36,8 +36,8 @@ def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Func
     for body in names.bodies:
         wanted[names.kernel("body", body)] = body_pose(model, body)
         wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
-    found = [kernel(model, function, name) for name, function in wanted.items()]
-    return found if parts is None else [*parts.kernels, *found]
+    of_model = [kernel(model, function, name) for name, function in wanted.items()]
+    return of_model if parts is None else [*parts.kernels, *of_model]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:

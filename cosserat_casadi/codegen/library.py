@@ -196,7 +196,8 @@ def _solver_constants() -> dict[str, Any]:
 
 def _input_words(model: Model, names: Names) -> dict[str, str]:
     entries = input_entries(model)
-    macros, rows = list[str](), list[str]()
+    macros = list[str]()
+    rows = list[str]()
     for entry in entries:
         macro = input_macro(names, entry["name"])
         count = len(entry["value"])
@@ -224,7 +225,8 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
 
 
 def _unknown_words(model: Model) -> dict[str, str]:
-    lines, rows = [], ["| entries | what |", "|---|---|"]
+    lines = list[str]()
+    rows = ["| entries | what |", "|---|---|"]
     for entry in unknown_entries(model):
         last = entry["first"] + entry["count"] - 1
         what = _unknown_word(model, entry)

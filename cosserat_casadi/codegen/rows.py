@@ -57,10 +57,10 @@ class RowLibrary:
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
-        found = np.empty((len(given), self.results))
-        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(found)):
+        results = np.empty((len(given), self.results))
+        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
-        return found
+        return results
 
 
 def row_library(model: Model) -> RowLibrary:
@@ -87,7 +87,7 @@ def row_library(model: Model) -> RowLibrary:
 def row_results(scene: Scene) -> tuple[str, ...]:
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
-    states = [f"{one.name}.{word}" for one in scene.actuators for word in _state(one.kind)]
+    states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator.kind)]
     return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
 
 
@@ -98,14 +98,15 @@ def _state(kind: str) -> tuple[str, str]:
 def _rows_source(model: Model, names: Names, results: int) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
-    lines, place = list[str](), len(JUDGED)
+    lines = list[str]()
+    column = len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(x, given, row + {place}, row + {place + 3});")
-        place += len(POSE)
+        lines.append(f"    {function}(x, given, row + {column}, row + {column + 3});")
+        column += len(POSE)
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(x, given, row + {place}, row + {place + 1}, 0);")
-        place += 2
+        lines.append(f"    {function}(x, given, row + {column}, row + {column + 1}, 0);")
+        column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
     return render("rows.c.in", words)
 

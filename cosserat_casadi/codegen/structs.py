@@ -15,9 +15,12 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
         names: what things are called.
         entries: inputs as in the manifest.
     """
-    members, pack, unpack = [], [], []
+    members = list[str]()
+    pack = list[str]()
+    unpack = list[str]()
     for entry in entries:
-        member, macro = member_name(entry["name"]), input_macro(names, entry["name"])
+        member = member_name(entry["name"])
+        macro = input_macro(names, entry["name"])
         members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
         pack.append(f"  memcpy(inputs + {macro}, named->{member}, sizeof named->{member});")
         unpack.append(f"  memcpy(named->{member}, inputs + {macro}, sizeof named->{member});")
@@ -43,7 +46,8 @@ def result_struct_words(names: Names, actuators: list[dict[str, Any]]) -> dict[s
         for member, function in poses.items()
     ]
     for entry in actuators:
-        effort, conjugate = entry["effort"], entry["extent"]
+        effort = entry["effort"]
+        conjugate = entry["extent"]
         members += [
             f"  {names.name}_real {quantity}_{entry['name']}; /* {UNITS[quantity]} */"
             for quantity in (effort, conjugate)
