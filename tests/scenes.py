@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from cosserat_casadi import Scene, scene_from_dict
+from cosserat_casadi.maths.typing import FloatArray
 
 STIFFNESS = {"bending_x": 1.0, "bending_y": 1.4, "torsion": 0.7, "shear_x": 40.0, "shear_y": 60.0, "extension": 90.0}
 
@@ -36,3 +39,32 @@ HOOK = {"name": "hook", "kind": "point_wrench", "rod": "rod", "at": 0.4, "force"
 def scene(*loads: dict[str, Any], strain: str | list[str] = "kirchhoff", **changes: Any) -> Scene:
     """A scene of one rod with these loads; ``rods``, ``accuracy``, ``supports`` and ``inputs`` may be given."""
     return scene_from_dict({"schema": 1, "rods": [rod(strain)], "loads": list(loads), **changes})
+
+
+CABLE_OFFSET = 0.006
+"""Distance of the three cables from the axis, m."""
+
+
+def three_cables() -> Scene:
+    """A rod that three cables of given lengths bend: 0.2 mm move its strains by 0.047, its tensions by 1.8 units."""
+    angles = [2 * np.pi * k / 3 for k in range(3)]
+    cables = [
+        {
+            "name": f"cable_{k}",
+            "kind": "tendon",
+            "rod": "rod",
+            "length": 0.8,
+            "offset": [CABLE_OFFSET * np.cos(angle), CABLE_OFFSET * np.sin(angle)],
+        }
+        for k, angle in enumerate(angles)
+    ]
+    load = push(force=[0.05, 0.02, 0.0])
+    lengths = [f"cable_{k}.length" for k in range(3)]
+    return scene(load, strain="reissner", actuators=cables, inputs=lengths)
+
+
+def cable_lengths(step: float, turns: int) -> FloatArray:
+    """Lengths that go round a circle, no cable by more than a step in a turn, shape (turns, 3)."""
+    amplitude = 0.003
+    phase = np.arange(turns)[:, None] * step / amplitude + 2 * np.pi * np.arange(3) / 3
+    return 0.8 - 0.001 + amplitude * np.cos(phase)

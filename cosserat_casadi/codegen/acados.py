@@ -82,12 +82,13 @@ def acados_functions(model: Model, name: str) -> list[ca.Function]:
     count = model.inputs.size
     by_z, value = model.jacobian(dae.z, dae.x)
     by_x = model.input_jacobian(dae.z, dae.x)
-    none, one = ca.SX(count, count), ca.SX.eye(count)
+    zeros = ca.SX(count, count)
+    identity = ca.SX.eye(count)
     blocks = {
         "fun": ca.vertcat(dae.xdot - dae.u, value),
-        "jac_x": ca.vertcat(none, by_x),
-        "jac_xdot": ca.vertcat(one, ca.SX(model.size, count)),
-        "jac_u": ca.vertcat(-one, ca.SX(model.size, count)),
+        "jac_x": ca.vertcat(zeros, by_x),
+        "jac_xdot": ca.vertcat(identity, ca.SX(model.size, count)),
+        "jac_u": ca.vertcat(-identity, ca.SX(model.size, count)),
         "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
     }
     wanted = {

@@ -20,7 +20,7 @@ class Assembled:
         blocks: of the Jacobian.
         residual: the residual in parts.
         jacobian: entries of ∂ residual / ∂x in parts.
-        input_jacobian: ∂ residual / ∂ inputs in parts, entries by their places in the dense matrix.
+        input_jacobian: ∂ residual / ∂ inputs in parts, entries by their index in the dense matrix.
     """
 
     blocks: Blocks
@@ -36,19 +36,19 @@ class Assembled:
 
 def assembled(model: Model, names: Names) -> Assembled | None:
     """The equations of an assembly in parts; None where one dense Jacobian does."""
-    found = blocks(model.discrete, model.path_jacobian.sparsity_out(0))
-    if found is None:
+    partition = blocks(model.discrete, model.path_jacobian.sparsity_out(0))
+    if partition is None:
         return None
     residual = _path_function(model.path_residual, dense=True)
     inputs = model.input_jacobian
     rows, columns = inputs.sparsity_out(0).get_triplet()
-    by_inputs = parted(_path_function(inputs), [found.owners[i] for i in rows], names.kernel("input_jacobian"))
-    places = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
-    parts = [replace(part, entries=[places[k] for k in part.entries]) for part in by_inputs.parts]
+    by_inputs = parted(_path_function(inputs), [partition.owners[i] for i in rows], names.kernel("input_jacobian"))
+    dense_indices = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
+    parts = [replace(part, entries=[dense_indices[k] for k in part.entries]) for part in by_inputs.parts]
     return Assembled(
-        found,
-        parted(residual, found.owners, names.kernel("residual")),
-        parted(model.path_jacobian, found.entry_owners, names.kernel("jacobian")),
+        partition,
+        parted(residual, partition.owners, names.kernel("residual")),
+        parted(model.path_jacobian, partition.entry_owners, names.kernel("jacobian")),
         replace(by_inputs, parts=parts),
     )
 

@@ -10,62 +10,73 @@ from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.blocks import Front
 from cosserat_casadi.codegen.parts import Parted
 
-Render = Callable[[str, dict[str, Any]], str]
+Words = dict[str, Any]
 
-DENSE_IRREGULAR = """  for (i = 0; i < N; i++) {{
-    if (kept->own.factors[i * N + i] == 0) return {macro}_SINGULAR;
-  }}
+Render = Callable[[str, Words], str]
+
+MEMBERS = """  {real} entries[{entries}];
+  {real} part_unknowns[{macro}_UNKNOWNS];
+  {real} part_inputs[{input_room}];
+  {real} part_entries[{most_entries}];
+  {real} front_values[{front_count}][{max_order}];
+  {real} interface_values[{interface}];
 """
+"""What the block elimination works in, as members of the workspace."""
 
 
-def dense_words(render: Render, basics: dict[str, Any]) -> dict[str, Any]:
+def dense_words(render: Render, basics: Words) -> Words:
     """Words of a solver with one dense Jacobian."""
     return {
         "equations": render("dense_equations.c.in", basics),
-        "factors": render("dense_factors.c.in", basics),
-        "public_equations": render("dense_public.c.in", basics),
-        "product": render("dense_product.c.in", basics),
-        "factor_fields": _fields(basics, f"{basics['MACRO']}_UNKNOWNS * {basics['MACRO']}_UNKNOWNS"),
-        "kept_factors": "kept->own.factors, kept->own.pivots",
-        "irregular": DENSE_IRREGULAR.format(macro=basics["MACRO"]),
+        "linear_header": "",
+        "linear_source": "linear_dense.c",
+        "linear_sizes": "",
+        "linear_members": "",
+        "linear_reals": 0,
+        "factor_count": basics["unknowns"] ** 2,
     }
 
 
-def block_words(render: Render, basics: dict[str, Any], found: Assembled) -> dict[str, Any]:
+def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     """Words of a solver that eliminates rod after rod."""
-    split = found.blocks
-    room = max(split.pattern.size1() ** 2, split.room)
-    parteds = {"residual": found.residual, "jacobian": found.jacobian, "input": found.input_jacobian}
+    split = partition.blocks
+    parteds = {"residual": partition.residual, "jacobian": partition.jacobian, "input": partition.input_jacobian}
     words = {
-        **basics,
-        "entries": split.pattern.nnz(),
-        "fronts": split.room,
-        "border": len(split.border),
-        "border_first": split.border_first,
-        "largest": max(front.order for front in split.fronts),
-        "most_entries": max(len(part.entries) for one in parteds.values() for part in one.parts),
-        "part_functions": "".join(_functions(render, one) for one in parteds.values()),
-        "part_tables": "".join(_tables(word, one) for word, one in parteds.items()),
+        "part_functions": "".join(_functions(render, parted) for parted in parteds.values()),
+        "part_tables": "".join(_tables(word, parted) for word, parted in parteds.items()),
         "front_tables": _fronts(split.fronts),
-        "front_places": _numbers(split.places),
-        "dense_places": _numbers(split.dense_places),
-        "border_members": _numbers(split.border),
-        **{f"{word}_parts": len(one.parts) for word, one in parteds.items()},
+        "front_indices": numbers(split.front_indices),
+        "dense_indices": numbers(split.dense_indices),
+        "interface_members": numbers(split.interface),
+    }
+    sizes = {
+        "entries": split.pattern.nnz(),
+        "front_count": len(split.fronts),
+        "fronts_size": split.fronts_size,
+        "interface": len(split.interface),
+        "interface_start": split.interface_start,
+        "max_order": max(front.order for front in split.fronts),
+    }
+    most_entries = max(len(part.entries) for parted in parteds.values() for part in parted.parts)
+    work = [sizes["entries"], basics["unknowns"], basics["input_room"], most_entries]
+    work += [sizes["front_count"] * sizes["max_order"], sizes["interface"]]
+    members = {
+        **sizes,
+        "real": f"{basics['name']}_real",
+        "macro": basics["MACRO"],
+        "input_room": basics["input_room"],
+        "most_entries": most_entries,
     }
     return {
         "equations": render("block_equations.c.in", words),
-        "factors": render("block_factors.c.in", words),
-        "public_equations": render("block_public.c.in", words),
-        "product": render("block_product.c.in", basics),
-        "factor_fields": _fields(basics, str(room)) + "  int dense;\n  int regular;\n",
-        "kept_factors": "kept",
-        "irregular": f"  if (!kept->own.regular) return {basics['MACRO']}_SINGULAR;\n",
+        "linear_header": '#include "linear_blocks.h"\n',
+        "linear_source": "linear_blocks.c",
+        "linear_sizes": "\n".join(f"#define SOLVER_{word.upper()} {size}" for word, size in sizes.items()),
+        "linear_members": MEMBERS.format(**members),
+        "linear_reals": sum(work),
+        # The fallback eliminates the matrix as a whole in the same room.
+        "factor_count": max(split.pattern.size1() ** 2, split.fronts_size),
     }
-
-
-def _fields(basics: dict[str, Any], room: str) -> str:
-    """Members of a struct: a factorised matrix."""
-    return f"  {basics['name']}_real factors[{room}];\n  int pivots[{basics['MACRO']}_UNKNOWNS];\n"
 
 
 def _functions(render: Render, parted: Parted) -> str:
@@ -78,7 +89,9 @@ def _function(kernel: str) -> str:
 
 
 def _tables(word: str, parted: Parted) -> str:
-    stem, lines, rows = word.upper(), list[str](), list[str]()
+    stem = word.upper()
+    lines = list[str]()
+    rows = list[str]()
     for i, part in enumerate(parted.parts):
         tables: dict[str, Sequence[float]] = {
             "UNKNOWNS": part.x,
@@ -92,17 +105,19 @@ def _tables(word: str, parted: Parted) -> str:
         rows.append(f"  {{{', '.join([_function(parted.kernels[part.kernel].name()), *names, *counts])}}}")
     # A scene without inputs has no part to list, and C no array without entries.
     listed = ",\n".join(rows or ["  {0, 0, 0, 0, 0, 0, 0, 0}"])
-    return "".join(lines) + f"static const part {stem}_PARTS[] = {{\n{listed},\n}};\n"
+    count = f"enum {{ {stem}_PART_COUNT = {len(rows)} }};\n"
+    return "".join(lines) + f"static const part {stem}_PARTS[] = {{\n{listed},\n}};\n{count}"
 
 
 def _fronts(fronts: Sequence[Front]) -> str:
-    lines, rows = list[str](), list[str]()
+    lines = list[str]()
+    rows = list[str]()
     for i, front in enumerate(fronts):
-        lines += [_table(f"MEMBERS_{i}", front.members), _table(f"EDGES_{i}", front.edges)]
-        edges = f"EDGES_{i}" if front.edges else "0"
-        rows.append(f"  {{MEMBERS_{i}, {edges}, {len(front.members)}, {len(front.edges)}, {front.first}}}")
+        lines += [_table(f"MEMBERS_{i}", front.members), _table(f"TOUCHED_{i}", front.interface)]
+        touched = f"TOUCHED_{i}" if front.interface else "0"
+        rows.append(f"  {{MEMBERS_{i}, {touched}, {len(front.members)}, {len(front.interface)}, {front.start}}}")
     listed = ",\n".join(rows)
-    return "".join(lines) + f"static const front FRONT_LIST[RODS] = {{\n{listed},\n}};\n"
+    return "".join(lines) + f"static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n"
 
 
 def _table(name: str, values: Sequence[float]) -> str:
@@ -110,9 +125,10 @@ def _table(name: str, values: Sequence[float]) -> str:
     if not values:
         return ""
     kind = "int" if isinstance(values[0], int) else "real"
-    return f"static const {kind} {name}[] = {{{_numbers(values)}}};\n"
+    return f"static const {kind} {name}[] = {{{numbers(values)}}};\n"
 
 
-def _numbers(values: Sequence[float]) -> str:
+def numbers(values: Sequence[float]) -> str:
+    """Entries of a constant array."""
     text = ", ".join(str(value) if isinstance(value, int) else f"(real){value!r}" for value in values)
     return text if len(text) < 60 else "\n" + textwrap.fill(text, 116, initial_indent="  ", subsequent_indent="  ")

@@ -1,8 +1,9 @@
-"""How the Jacobian of an assembly falls into blocks, one for each rod, with moving frames as their border.
+"""How the Jacobian of an assembly falls into blocks, one for each rod, with moving frames as their interface.
 
 A rod's strains, the multipliers of what holds it and the tensions in it meet the other rods through moving frames
-alone. So each block is eliminated on its own, with its rows and columns of the border, and what is left of the border
-is eliminated last: the work is linear in the number of rods. A front is a block with the border that it touches.
+alone. So each block is eliminated on its own, with its rows and columns of the interface, and what is left of the
+interface is eliminated last: the work is linear in the number of rods. A front is a block with the interface unknowns
+that it touches.
 """
 
 from __future__ import annotations
@@ -15,28 +16,28 @@ import numpy as np
 
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 
-BORDER = -1
+INTERFACE = -1
 """Owner of what belongs to no rod."""
 
 
 @dataclass(frozen=True)
 class Front:
-    """A block with the part of the border that it touches.
+    """A block with the part of the interface that it touches.
 
     Attributes:
         members: unknowns of the block.
-        edges: places in the border, not in x.
-        first: where its matrix begins among all fronts.
+        interface: interface unknowns that it touches, as numbers within the interface, not within x.
+        start: first entry of its matrix among those of all fronts.
     """
 
     members: list[int]
-    edges: list[int]
-    first: int
+    interface: list[int]
+    start: int
 
     @property
     def order(self) -> int:
         """Rows of its matrix."""
-        return len(self.members) + len(self.edges)
+        return len(self.members) + len(self.interface)
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Blocks:
     """Blocks of a Jacobian.
 
     Attributes:
-        owners: for each unknown the number of its rod, or BORDER.
+        owners: for each unknown the number of its rod, or INTERFACE.
         pattern: sparsity of the Jacobian.
     """
 
@@ -53,81 +54,84 @@ class Blocks:
 
     @cached_property
     def entry_owners(self) -> list[int]:
-        """For each entry of the Jacobian the rod that it belongs to, or BORDER."""
+        """For each entry of the Jacobian the rod that it belongs to, or INTERFACE."""
         rows, columns = self.pattern.get_triplet()
         return [max(self.owners[i], self.owners[j]) for i, j in zip(rows, columns, strict=True)]
 
     @property
     def separate(self) -> bool:
-        """Whether no entry couples two blocks without the border."""
+        """Whether no entry couples two blocks without the interface."""
         rows, columns = self.pattern.get_triplet()
-        pairs = ({self.owners[i], self.owners[j]} - {BORDER} for i, j in zip(rows, columns, strict=True))
+        pairs = ({self.owners[i], self.owners[j]} - {INTERFACE} for i, j in zip(rows, columns, strict=True))
         return all(len(pair) < 2 for pair in pairs)
 
     @cached_property
-    def border(self) -> list[int]:
-        """Unknowns of the border."""
-        return [i for i, owner in enumerate(self.owners) if owner == BORDER]
+    def interface(self) -> list[int]:
+        """Unknowns of the interface."""
+        return [i for i, owner in enumerate(self.owners) if owner == INTERFACE]
 
     @cached_property
     def fronts(self) -> list[Front]:
         """Fronts of the rods."""
         rows, columns = map(np.array, self.pattern.get_triplet())
-        owners, place = np.array(self.owners), {k: i for i, k in enumerate(self.border)}
-        found, first = list[Front](), 0
-        for rod in sorted(set(self.owners) - {BORDER}):
+        owners = np.array(self.owners)
+        number = {unknown: i for i, unknown in enumerate(self.interface)}
+        fronts = list[Front]()
+        start = 0
+        for rod in sorted(set(self.owners) - {INTERFACE}):
             touched = {*columns[owners[rows] == rod].tolist(), *rows[owners[columns] == rod].tolist()}
-            edges = sorted(place[k] for k in touched if k in place)
-            found.append(Front(np.flatnonzero(owners == rod).tolist(), edges, first))
-            first += found[-1].order ** 2
-        return found
+            shared = sorted(number[unknown] for unknown in touched if unknown in number)
+            front = Front(np.flatnonzero(owners == rod).tolist(), shared, start)
+            fronts.append(front)
+            start += front.order**2
+        return fronts
 
     @property
-    def border_first(self) -> int:
-        """Where the border's own matrix begins."""
+    def interface_start(self) -> int:
+        """First entry of the interface's own matrix, behind those of the fronts."""
         return sum(front.order**2 for front in self.fronts)
 
     @property
-    def room(self) -> int:
-        """Numbers in all fronts and the border."""
-        return self.border_first + len(self.border) ** 2
+    def fronts_size(self) -> int:
+        """Numbers in the matrices of all fronts and of the interface."""
+        return self.interface_start + len(self.interface) ** 2
 
     @cached_property
-    def places(self) -> list[int]:
-        """Where each entry of the Jacobian stands in the fronts."""
-        border = {k: i for i, k in enumerate(self.border)}
-        local = [
-            {k: i for i, k in enumerate([*front.members, *(self.border[e] for e in front.edges)])}
-            for front in self.fronts
-        ]
-        places = []
+    def front_indices(self) -> list[int]:
+        """For each entry of the Jacobian its index among the entries of the fronts."""
+        number = {unknown: i for i, unknown in enumerate(self.interface)}
+        local = list[dict[int, int]]()
+        for front in self.fronts:
+            unknowns = [*front.members, *(self.interface[i] for i in front.interface)]
+            local.append({unknown: i for i, unknown in enumerate(unknowns)})
+        indices = []
         for i, j, owner in zip(*self.pattern.get_triplet(), self.entry_owners, strict=True):
-            if owner == BORDER:
-                places.append(self.border_first + border[i] + border[j] * len(border))
+            if owner == INTERFACE:
+                indices.append(self.interface_start + number[i] + number[j] * len(self.interface))
             else:
-                front, own = self.fronts[owner], local[owner]
-                places.append(front.first + own[i] + own[j] * front.order)
-        return places
+                front = self.fronts[owner]
+                indices.append(front.start + local[owner][i] + local[owner][j] * front.order)
+        return indices
 
     @cached_property
-    def dense_places(self) -> list[int]:
-        """Where each entry stands in the dense matrix, column after column."""
+    def dense_indices(self) -> list[int]:
+        """For each entry its index in the dense matrix, column after column."""
         rows, columns = self.pattern.get_triplet()
         return [i + j * self.pattern.size1() for i, j in zip(rows, columns, strict=True)]
 
 
-def blocks(frame: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
-    """Blocks of a scene's Jacobian; None where there is one rod alone, or nothing couples them, or too much does."""
-    literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in frame.rods.values())
-    if len(frame.rods) < 2 or not frame.frames or literal:
+def blocks(discrete: DiscreteScene, pattern: ca.Sparsity) -> Blocks | None:
+    """Blocks of a scene's Jacobian; None for one rod alone, where nothing couples the rods, or where too much does."""
+    literal = any(discrete_rod.discretisation.transport == "permuted" for discrete_rod in discrete.rods.values())
+    if len(discrete.rods) < 2 or not discrete.frames or literal:
         return None
-    found = Blocks(_owners(frame), pattern)
-    return found if found.separate else None
+    partition = Blocks(_owners(discrete), pattern)
+    return partition if partition.separate else None
 
 
-def _owners(frame: DiscreteScene) -> list[int]:
-    numbers: dict[str | None, int] = {rod: i for i, rod in enumerate(frame.rods)}
+def _owners(discrete: DiscreteScene) -> list[int]:
+    numbers: dict[str | None, int] = {rod: i for i, rod in enumerate(discrete.rods)}
     owners = []
-    for block in frame.unknowns.blocks:
-        owners += [numbers.get(block.rod, BORDER)] * block.size
+    for block in discrete.unknowns.blocks:
+        owners += [numbers.get(block.rod, INTERFACE)] * block.size
     return owners

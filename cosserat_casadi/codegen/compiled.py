@@ -1,4 +1,4 @@
-"""An exported folder, compiled: CasADi functions with exact derivatives, and the solver in C."""
+"""An exported folder, compiled: the solver in C, and CasADi functions, with exact derivatives where it holds them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -22,8 +22,10 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import Names, library_names
+from cosserat_casadi.codegen.plain import PlainFunction, pointer
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
@@ -32,6 +34,9 @@ from cosserat_casadi.numerics.outcome import Outcome
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
+
+POSE = {"position": 3, "quaternion": 4}
+"""Length of each result of a pose."""
 
 
 class _Info(ctypes.Structure):
@@ -84,29 +89,38 @@ class Compiled:
     _names: Names = field(repr=False)
 
     @cached_property
+    def differentiable(self) -> bool:
+        """Whether the functions below have derivatives: whether the folder was exported with them."""
+        return f"{self._names.name}_derivatives.c" in self.manifest["files"]
+
+    @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual, with exact first and second derivatives."""
-        return self._external("residual")
+        """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`."""
+        return self._casadi_function("residual", None, {"residual": self.size}, workspace=True)
 
     @cached_property
     def tip(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ (position, quaternion) of the tip, with exact derivatives."""
-        return {rod: self._external("tip", rod) for rod in self._names.rods}
+        """For each rod (x, inputs) ↦ (position, quaternion) of the tip; derivatives as of :attr:`residual`."""
+        return {rod: self._casadi_function("tip", rod, POSE) for rod in self._names.rods}
 
     @cached_property
     def shape(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs, X) ↦ (position, quaternion), with exact derivatives."""
-        return {rod: self._external("shape", rod) for rod in self._names.rods}
+        """For each rod (x, inputs, X) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
+        return {rod: self._casadi_function("shape", rod, POSE, abscissa=True) for rod in self._names.rods}
 
     @cached_property
     def actuator(self) -> dict[str, ca.Function]:
         """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
-        return {name: self._external("actuator", name) for name in self._names.actuators}
+        functions = {}
+        for entry in self.manifest.get("actuators", []):
+            results = {entry["effort"]: 1, entry["extent"]: 1, f"{entry['extent']}_jacobian": self.size}
+            functions[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
+        return functions
 
     @cached_property
     def body(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ (position, quaternion), with exact derivatives."""
-        return {name: self._external("body", name) for name in self._names.bodies}
+        """For each rigid body (x, inputs) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
+        return {name: self._casadi_function("body", name, POSE) for name in self._names.bodies}
 
     @property
     def size(self) -> int:
@@ -131,7 +145,7 @@ class Compiled:
         given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(pointer(given), pointer(q), ctypes.byref(info))
+        self._function("solve")(pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
         return _solution(q, info)
 
     def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
@@ -142,8 +156,9 @@ class Compiled:
         """
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
-        q, info = _vector(start, self.size, "start").copy(), _Info()
-        self._function("follow")(pointer(old), pointer(given), pointer(q), ctypes.byref(info))
+        q = _vector(start, self.size, "start").copy()
+        info = _Info()
+        self._function("follow")(pointer(old), pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
         return _solution(q, info)
 
     def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
@@ -155,8 +170,9 @@ class Compiled:
         given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
-        q, infos = np.zeros((len(given), self.size)), (_Info * len(given))()
-        self._function("solve_batch")(len(given), pointer(given), pointer(q), infos)
+        q = np.zeros((len(given), self.size))
+        infos = (_Info * len(given))()
+        self._function("solve_batch")(len(given), pointer(given), pointer(q), self._workspace(), 1, infos)
         return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
 
     def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
@@ -165,10 +181,10 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        found = self._sensitivity(inputs, q)
-        if found is None:
+        sensitivity = self._sensitivity(inputs, q)
+        if sensitivity is None:
             return None
-        d_q, d_poses = found
+        d_q, d_poses = sensitivity
         return d_q, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
 
     def body_sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> dict[str, FloatArray] | None:
@@ -177,17 +193,25 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        found = self._sensitivity(inputs, q)
-        return None if found is None else dict(zip(self._names.bodies, found[1][len(self._names.rods) :], strict=True))
+        sensitivity = self._sensitivity(inputs, q)
+        if sensitivity is None:
+            return None
+        _, d_poses = sensitivity
+        return dict(zip(self._names.bodies, d_poses[len(self._names.rods) :], strict=True))
 
     def _sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
         """The dq/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
         given = _vector(inputs, len(self.defaults), "inputs")
         unknowns = _vector(q, self.size, "q")
         count = len(self._names.rods) + len(self._names.bodies)
-        d_q, d_poses = np.zeros((len(given), self.size)), np.zeros((count, len(given), 7))
-        status = self._function("solve_sensitivity")(pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses))
-        return None if status != 0 else (d_q.T, [pose.T for pose in d_poses])
+        d_q = np.zeros((len(given), self.size))
+        d_poses = np.zeros((count, len(given), 7))
+        status = self._function("solve_sensitivity")(
+            pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses), self._workspace()
+        )
+        if status != 0:
+            return None
+        return d_q.T, [pose.T for pose in d_poses]
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:
@@ -196,8 +220,44 @@ class Compiled:
     def _function(self, word: str) -> Any:
         return getattr(self._handle, self._names.function(word))
 
-    def _external(self, word: str, owner: str | None = None) -> ca.Function:
-        return ca.external(self._names.differentiable(word, owner), str(self.library))
+    def _workspace(self) -> Any:
+        """Memory for one call, so that several threads may call at once."""
+        doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
+        return (ctypes.c_double * doubles)()
+
+    def _casadi_function(
+        self,
+        word: str,
+        owner: str | None,
+        results: dict[str, int],
+        *,
+        abscissa: bool = False,
+        workspace: bool = False,
+    ) -> ca.Function:
+        """A function of the library, with derivatives where the folder holds them.
+
+        Args:
+            word: what it gives.
+            owner: rod, actuator or body.
+            results: length of each result by name.
+            abscissa: whether it has the abscissa X as a third argument.
+            workspace: whether it works in a workspace.
+        """
+        if self.differentiable:
+            return ca.external(self._names.differentiable(word, owner), str(self.library))
+        in_c = getattr(self._handle, self._names.function(word, owner))
+
+        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
+            given: list[Any] = [pointer(argument) for argument in arguments]
+            if abscissa:
+                given[-1] = ctypes.c_double(arguments[-1][0])
+            vectors = [np.empty(size) for size in results.values()]
+            work = [self._workspace()] if workspace else []
+            in_c(*given, *map(pointer, vectors), *work)
+            return vectors
+
+        sizes = {"x": self.size, "inputs": len(self.defaults), **({"X": 1} if abscissa else {})}
+        return PlainFunction(self._names.differentiable(word, owner), sizes, results, evaluate)
 
 
 def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
@@ -218,8 +278,12 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
-    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels", "_derivatives")]
-    headers = [folder / f"{names.name}{part}.h" for part in ("", "_kernels")]
+    sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels")]
+    derivatives = f"{names.name}_derivatives.c"
+    if derivatives in described["files"]:
+        sources.append(folder / derivatives)
+    headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
+    headers += [folder / file for file in described["files"] if file in VERBATIM]
     return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
 
 
@@ -261,13 +325,21 @@ def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], c
     return target
 
 
-def compiled_texts(name: str, texts: Mapping[str, str], compiler: str) -> Path:
-    """As :func:`shared_object`, of sources and headers that are texts by file name."""
+def compiled_texts(name: str, texts: Mapping[str, str], compiler: str, included: Collection[str] = frozenset()) -> Path:
+    """As :func:`shared_object`, of sources and headers that are texts by file name.
+
+    Args:
+        name: what the name of the object begins with.
+        texts: content by file name.
+        compiler: path of a C compiler.
+        included: files that others include: they are not compiled by themselves.
+    """
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / file for file in texts]
         for path in paths:
             path.write_text(texts[path.name], encoding="utf-8")
-        sources, headers = ([path for path in paths if path.suffix == suffix] for suffix in (".c", ".h"))
+        sources = [path for path in paths if path.suffix == ".c" and path.name not in included]
+        headers = [path for path in paths if path not in sources]
         return shared_object(name, sources, headers, compiler)
 
 
@@ -299,9 +371,9 @@ def find_compiler(wanted: str | None = None) -> str:
     """
     asked = wanted or os.environ.get("CC")
     for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
-        found = shutil.which(candidate)
-        if found:
-            return found
+        path = shutil.which(candidate)
+        if path:
+            return path
     problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
     raise ExportError(Problem("compiler", problem, REMEDY))
 
@@ -325,9 +397,10 @@ def _is_manifest(described: Any) -> bool:
         library_names(described["name"])
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+        files = all(isinstance(file, str) for file in described["files"])
     except (ExportError, KeyError, TypeError, ValueError):
         return False
-    return rods and all(value.ndim == 1 for value in numbers)
+    return rods and files and all(value.ndim == 1 for value in numbers)
 
 
 def _read(path: Path) -> bytes:
@@ -342,11 +415,6 @@ def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     if len(vector) != size:
         raise ValueError(f"{name} must have {size} numbers, got {len(vector)}")
     return vector
-
-
-def pointer(array: FloatArray) -> Any:
-    """An array as an argument of a function in C."""
-    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
 
 
 def _solution(q: FloatArray, info: _Info) -> CompiledSolution:

@@ -11,22 +11,22 @@ from cosserat_casadi.model.build import Model
 
 def external_functions(model: Model, names: Names) -> dict[str, ca.Function]:
     """Functions that a loaded library offers, by symbol: residual, tips and shapes, actuators and bodies."""
-    found = {names.differentiable("residual"): model.residual}
+    functions = {names.differentiable("residual"): model.residual}
     for rod in names.rods:
-        found[names.differentiable("tip", rod)] = tip(model, rod)
-        found[names.differentiable("shape", rod)] = model.shape[rod]
+        functions[names.differentiable("tip", rod)] = tip(model, rod)
+        functions[names.differentiable("shape", rod)] = model.shape[rod]
     for actuator in names.actuators:
-        found[names.differentiable("actuator", actuator)] = model.actuator[actuator]
+        functions[names.differentiable("actuator", actuator)] = model.actuator[actuator]
     for body in names.bodies:
-        found[names.differentiable("body", body)] = body_pose(model, body)
-    return found
+        functions[names.differentiable("body", body)] = body_pose(model, body)
+    return functions
 
 
 def differentiable(model: Model, names: Names) -> list[ca.Function]:
     """Each function with its forward and reverse derivatives, and the forward derivative of the latter."""
-    found = []
+    functions = []
     for symbol, function in external_functions(model, names).items():
         plain = kernel(model, function, symbol)
         reverse = plain.reverse(1)
-        found += [plain, plain.forward(1), reverse, reverse.forward(1)]
-    return found
+        functions += [plain, plain.forward(1), reverse, reverse.forward(1)]
+    return functions

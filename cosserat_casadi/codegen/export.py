@@ -5,15 +5,12 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Sequence
 from pathlib import Path
-
-import casadi as ca
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
-from cosserat_casadi.codegen.kernels import kernels, sources
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.names import Names, library_names, scene_names
@@ -28,14 +25,17 @@ def export(
     name: str | None = None,
     *,
     error_estimate: float | None = None,
+    derivatives: bool = False,
 ) -> Path:
-    """Write a model as a folder of C99 sources: equations, derivatives, solver, demo, build file, README.
+    """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
     Args:
         model: what to export, with its discretisation.
         directory: the folder, new, empty, or of an earlier export; its name is that of the library unless given.
         name: what every symbol begins with, a C identifier.
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
+        derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
+            :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again.
 
     Returns:
         the folder.
@@ -46,7 +46,7 @@ def export(
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
-    write_folder(folder, folder_files(model, chosen, error_estimate), stale)
+    write_folder(folder, folder_files(model, chosen, error_estimate, derivatives=derivatives), stale)
     return folder
 
 
@@ -74,28 +74,35 @@ def check_export(directory: Path, name: str) -> set[str]:
     return stale
 
 
-def folder_files(model: Model, name: str, error_estimate: float | None = None) -> dict[str, str]:
-    """Text of every file of an exported folder by name; the manifest, which lists the others, is last."""
+def folder_files(
+    model: Model, name: str, error_estimate: float | None = None, *, derivatives: bool = False
+) -> dict[str, str]:
+    """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
+
+    Args:
+        model: what is exported.
+        name: the library.
+        error_estimate: as for :func:`export`.
+        derivatives: as for :func:`export`.
+    """
     names = scene_names(name, model.scene)
     parts = assembled(model, names)
     functions = kernels(model, names, parts)
-    # casadi.external expects the integers that CasADi itself was built with.
-    derivatives = sources(differentiable(model, names), f"{name}_derivatives", "long long int")
+    generated = kernel_sources(functions, names)
     files = {
-        **library_sources(model, names, parts, error_estimate),
-        **kernel_sources(functions, names),
-        f"{name}_derivatives.c": derivatives[f"{name}_derivatives.c"],
+        **library_sources(model, names, parts, generated, error_estimate, derivatives=derivatives),
+        **generated,
         "scene.toml": scene_text(model.scene),
     }
+    if derivatives:
+        files |= _derivative_source(model, names)
     described = manifest(model, names, functions, error_estimate)
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files
 
 
-def kernel_sources(functions: Sequence[ca.Function], names: Names) -> dict[str, str]:
-    """Source and header of the kernels by file name; they compute in float when the library does."""
-    stem = f"{names.name}_kernels"
-    generated = sources(functions, stem, "int")
-    prologue = f"#ifdef {names.macro}_SINGLE\n#define casadi_real float\n#endif\n"
-    return {**generated, f"{stem}.c": prologue + generated[f"{stem}.c"]}
+def _derivative_source(model: Model, names: Names) -> dict[str, str]:
+    file = f"{names.name}_derivatives.c"
+    # casadi.external expects the integers that CasADi itself was built with.
+    return {file: sources(differentiable(model, names), f"{names.name}_derivatives", "long long int")[file]}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +11,7 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.names import QUERIES, Names
 from cosserat_casadi.model.build import Model
 
 GENERATOR = {"with_header": True, "static_aux": True}
@@ -23,7 +24,7 @@ def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Func
         **(whole if parts is None else {}),
         names.kernel("rate"): model.path_rate,
         names.kernel("tangent"): model.path_tangent,
-        names.kernel("coarseness"): model.coarseness,
+        names.kernel("resolution_index"): model.coarseness,
     }
     for rod in names.rods:
         wanted[names.kernel("igm", rod)] = model.igm[rod]
@@ -35,8 +36,8 @@ def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Func
     for body in names.bodies:
         wanted[names.kernel("body", body)] = body_pose(model, body)
         wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
-    found = [kernel(model, function, name) for name, function in wanted.items()]
-    return found if parts is None else [*parts.kernels, *found]
+    of_model = [kernel(model, function, name) for name, function in wanted.items()]
+    return of_model if parts is None else [*parts.kernels, *of_model]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
@@ -84,3 +85,54 @@ def sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[s
     with tempfile.TemporaryDirectory() as folder:
         generator.generate(f"{folder}/")
         return {name: (Path(folder) / name).read_text() for name in (f"{stem}.c", f"{stem}.h")}
+
+
+PROLOGUE = """#ifdef {macro}_SINGLE
+#define casadi_real float
+#endif
+/* Kernels are seen by the library alone. */
+#if defined(__GNUC__) && !defined(_WIN32)
+#define CASADI_SYMBOL_EXPORT __attribute__((visibility("hidden")))
+#else
+#define CASADI_SYMBOL_EXPORT
+#endif
+"""
+
+FILE_QUERIES = ("casadi_version", "casadi_int_size", "casadi_real_size")
+"""What CasADi says of a whole file."""
+
+
+def kernel_sources(functions: Sequence[ca.Function], names: Names, stem: str | None = None) -> dict[str, str]:
+    """Source and header of the kernels by file name; they compute in float when the library does.
+
+    CasADi appends to each function a dozen others that describe it to ``casadi.external``. The library asks for none:
+    they are left out.
+
+    Args:
+        functions: the kernels.
+        names: of the library.
+        stem: of the file names.
+    """
+    stem = stem or f"{names.name}_kernels"
+    generated = sources(functions, stem, "int")
+    source = _without_unused_patterns(_without_queries(generated[f"{stem}.c"]))
+    prototypes = re.sub(rf"^[^#\n]*_({_queries()})\(.*\);\n", "", generated[f"{stem}.h"], flags=re.M)
+    return {f"{stem}.c": PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
+
+
+def _queries() -> str:
+    return "|".join([*(word for word in QUERIES.split() if word.islower()), *FILE_QUERIES])
+
+
+def _without_queries(source: str) -> str:
+    """A source without the functions that describe functions: on one line each, or up to a brace at its beginning."""
+    head = rf"^CASADI_SYMBOL_EXPORT [^\n]*_(?:{_queries()})\([^\n]*\) \{{"
+    return re.sub(rf"{head}(?:[^\n]*\}}|\n(?:[^}}\n][^\n]*\n)*\}})\n+", "", source, flags=re.M)
+
+
+def _without_unused_patterns(source: str) -> str:
+    """A source without the sparsity patterns that no function reads."""
+    for pattern in re.findall(r"^static const casadi_int (casadi_s\d+)\[", source, re.M):
+        if len(re.findall(rf"\b{pattern}\b", source)) == 2:
+            source = re.sub(rf"^(#define {pattern} |static const casadi_int {pattern}\[).*\n", "", source, flags=re.M)
+    return source

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from importlib import resources
 from importlib.metadata import version
-from itertools import pairwise
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.block_sources import block_words, dense_words
+from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
 from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
+from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
 from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
-from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.codegen.status import status_words
+from cosserat_casadi.codegen.structs import input_macro, input_struct_words, pose_name, result_struct_words
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import first_step, step_weights
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.equilibrium.load_path import first_step
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
@@ -27,84 +28,147 @@ from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSetting
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
 
-NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
+TRACK_ITERATIONS, TRACK_STEPS = 40, 20
+"""Budget of a turn of a control loop where the caller names none; turns that go well take two to five iterations."""
+
+SHARED = ("solver.h", "solver.c")
+DENSE = ("linear_dense.c",)
+BLOCKS = ("linear_blocks.h", "linear_blocks.c")
+VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS})
+"""Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {
-    ".h": "what you include: sizes, inputs, status, every function",
-    ".c": "the solver",
-    "_kernels.c": "the equations of the rods, generated",
-    "_kernels.h": "their prototypes",
-    "_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
-    "_demo.c": "solves once, times it, prints JSON",
+    "{name}.h": "what you include: sizes, inputs, status, every function",
+    "{name}.c": "the equations of this scene, and by inclusion the solver: compile this",
+    "{name}_config.h": "sizes and limits that the solver is compiled with",
+    "solver.c": "the solver, the same in every folder",
+    "solver.h": "what its parts share",
+    "linear_dense.c": "factorisation of the Jacobian as a whole",
+    "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
+    "linear_blocks.h": "types of the tables for it",
+    "{name}_kernels.c": "the equations of the rods, generated: compile this",
+    "{name}_kernels.h": "their prototypes",
+    "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
+    "{name}_demo.c": "solves once, times it, prints JSON",
+    "CMakeLists.txt": "library, demo, install, `find_package`",
+    "manifest.json": "the same facts as data",
+    "scene.toml": "the scene all of this was made from",
 }
+"""What each file is for."""
 
 
 def library_sources(
-    model: Model, names: Names, parts: Assembled | None, error_estimate: float | None
+    model: Model,
+    names: Names,
+    parts: Assembled | None,
+    generated: Mapping[str, str],
+    error_estimate: float | None,
+    *,
+    derivatives: bool = False,
 ) -> dict[str, str]:
-    """Hand-readable files of a folder by name."""
-    words = _words(model, names, parts, error_estimate)
+    """Hand-readable files of a folder by name.
+
+    Args:
+        model: what is exported.
+        names: what things are called.
+        parts: the equations of an assembly in parts.
+        generated: source and header of the kernels by file name.
+        error_estimate: of the tip's pose at the scene's inputs, relative to the length.
+        derivatives: whether the folder holds the derivatives too.
+    """
+    words = _words(model, names, parts, generated, error_estimate)
+    words["file_rows"] = _file_rows(names, parts, derivatives=derivatives)
     name = names.name
+    verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS))
     return {
         f"{name}.h": render("library.h.in", words),
         f"{name}.c": render("library.c.in", words),
+        f"{name}_config.h": render("config.h.in", words),
         f"{name}_demo.c": render("demo.c.in", words),
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
+        **{file: _resource("c", file) for file in verbatim},
     }
 
 
 def render(template: str, words: dict[str, Any]) -> str:
     """A template of this package with its words filled in."""
-    text = (resources.files("cosserat_casadi.codegen") / "templates" / template).read_text(encoding="utf-8")
-    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
+    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), _resource("templates", template))
 
 
-def _words(model: Model, names: Names, parts: Assembled | None, error_estimate: float | None) -> dict[str, Any]:
-    basics = {"name": names.name, "MACRO": names.macro}
+def _resource(folder: str, file: str) -> str:
+    return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
+
+
+def _words(
+    model: Model, names: Names, parts: Assembled | None, generated: Mapping[str, str], error_estimate: float | None
+) -> dict[str, Any]:
+    sizes = _sizes(model, names, generated)
+    linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     rods = [_rod_words(model, names, rod) for rod in names.rods]
     actuators = [_actuator_words(model, names, i) for i in range(len(names.actuators))]
     bodies = [_body_words(names, body) for body in names.bodies]
+    pose_derivatives = [*(words["tip_jacobian"] for words in rods), *(words["body_jacobian"] for words in bodies)]
+    weights = model.discrete.unknowns.step_weights
     return {
-        **_sizes(model, names),
+        **sizes,
         **_solver_constants(),
-        "step_share": _step_share(step_weights(model)),
+        "step_weights": numbers(weights.tolist()),
+        "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
-        **_texts(),
+        **status_words(names),
         **_input_words(model, names),
+        **result_struct_words(names, actuator_entries(model)),
         **_unknown_words(model),
         **rods[0],
+        "first_pose": pose_name(names, "tip", names.rods[0]),
+        "workspace_kb": _workspace_kb(sizes, linear),
         **_pose_words(names),
-        **(dense_words(render, basics) if parts is None else block_words(render, basics, parts)),
+        **linear,
         "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
         "functions": _rendered({"rod.c.in": rods, "actuator.c.in": actuators, "body.c.in": bodies}),
-        "pose_jacobians": ", ".join(
-            [*(words["tip_jacobian"] for words in rods), *(words["body_jacobian"] for words in bodies)]
-        ),
+        "pose_derivatives": "".join(f"    {function},\n" for function in pose_derivatives),
         "further_results": _further_results(actuators, bodies),
         "title": _comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
+        **_version_words(),
         "casadi_version": ca.CasadiMeta.version(),
-        "file_rows": _file_rows(names),
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
 
 
+def _version_words() -> dict[str, str]:
+    major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
+    return {"version_major": major, "version_minor": minor, "version_patch": patch}
+
+
 def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
-    return "".join(render(template, words) for template, wordings in entries.items() for words in wordings)
+    texts = [render(template, words) for template, wordings in entries.items() for words in wordings]
+    return "".join(texts)
 
 
-def _sizes(model: Model, names: Names) -> dict[str, Any]:
-    # Newton holds two factorisations' worth of memory, the kernels their scalars, twelve steps are kept.
-    doubles = 2 * model.size**2 + 40 * model.size + 8 * 2000
+def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
     return {
         "name": names.name,
         "MACRO": names.macro,
         "unknowns": model.size,
         "inputs": model.inputs.size,
         "rods": len(names.rods),
-        "stack_kb": int(np.ceil(doubles * 8 / 1000 / 50) * 50),
+        "bodies": len(names.bodies),
+        "poses": len(names.rods) + len(names.bodies),
+        # C has no array without entries.
+        "input_room": max(model.inputs.size, 1),
+        "kernel_reals": largest_room(generated, "W") + 1,
+        "kernel_integers": largest_room(generated, "IW") + 1,
+        "max_reuses": newton.KEPT_STEPS,
+        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
     }
+
+
+def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any]) -> str:
+    room = (sizes["kernel_reals"], sizes["kernel_integers"])
+    counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
+    return f"{workspace_bytes(*counts, room, linear['linear_reals']) / 1000:.1f}"
 
 
 def _solver_constants() -> dict[str, Any]:
@@ -120,43 +184,40 @@ def _solver_constants() -> dict[str, Any]:
         "quick": limits.grow_below,
         "slow": limits.reject_above,
         "near": MAX_DISTANCE,
-        "kept_steps": newton.KEPT_STEPS,
         "kept_decrease": newton.KEPT_DECREASE,
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
+        "default_iterations": TRACK_ITERATIONS,
+        "default_continuation_steps": TRACK_STEPS,
         **SINGLE,
     }
 
 
-def _step_share(shares: FloatArray) -> str:
-    """How much the i-th unknown counts in the length of a step, as a C expression."""
-    starts = [0, *(np.flatnonzero(np.diff(shares)) + 1)]
-    spans = [f"i < {end} ? (real){float(shares[start])!r} : " for start, end in pairwise(starts)]
-    return "".join(spans) + f"(real){float(shares[starts[-1]])!r}"
-
-
-def _texts() -> dict[str, str]:
-    return {"text_not_in_equilibrium": NOT_IN_EQUILIBRIUM, **{f"text_{o.label}": o.value for o in OUTCOMES}}
-
-
 def _input_words(model: Model, names: Names) -> dict[str, str]:
     entries = input_entries(model)
-    macros, rows = [], []
+    macros = list[str]()
+    rows = list[str]()
     for entry in entries:
-        macro = f"{names.macro}_INPUT_{entry['name'].replace('.', '_').upper()}"
-        count, axes = len(entry["value"]), "" if entry["axes"] == "none" else f", {entry['axes']} axes"
+        macro = input_macro(names, entry["name"])
+        count = len(entry["value"])
+        axes = "" if entry["axes"] == "none" else f", {entry['axes']} axes"
         numbered = "1 number" if count == 1 else f"{count} numbers"
         macros.append(f"#define {macro} {entry['first']} /* {numbered}, {entry['unit']}{axes} */")
+        macros.append(f"#define {macro}_SIZE {count}")
         span = f"{entry['first']} … {entry['first'] + count - 1}" if count > 1 else f"{entry['first']}"
         rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {_listed(entry['value'])} |")
-    numbers = [number for entry in entries for number in entry["value"]]
+    values = [number for entry in entries for number in entry["value"]]
     polynomial = any(entry["shape"][1] > 1 for entry in entries)
+    named = {"name": names.name, **input_struct_words(names, entries)}
     return {
         "input_macros": "\n".join(macros) or "/* This scene leaves none free. */",
+        # C has no struct without members.
+        "inputs_struct": render("inputs.h.in", named) if entries else "\n",
+        "inputs_functions": render("inputs.c.in", named) if entries else "\n",
         "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
-        "defaults": _listed(numbers) or "0",
+        "defaults": ", ".join(_initialiser(value, names) for value in values) or "0",
         "axes_note": "Polynomials along the rod are Legendre coefficients in 2X − 1, three numbers for each degree."
         if polynomial
         else "Section axes turn with the rod.",
@@ -164,18 +225,20 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
 
 
 def _unknown_words(model: Model) -> dict[str, str]:
-    lines, rows = [], ["| entries | what |", "|---|---|"]
+    lines = list[str]()
+    rows = ["| entries | what |", "|---|---|"]
     for entry in unknown_entries(model):
         last = entry["first"] + entry["count"] - 1
-        what = _unknown_word(entry)
+        what = _unknown_word(model, entry)
         lines.append(f"   {entry['first']} .. {last}: {what}")
         rows.append(f"| {entry['first']} … {last} | {what} |")
     return {"unknown_lines": "\n".join(lines), "unknown_rows": "\n".join(rows)}
 
 
-def _unknown_word(entry: dict[str, Any]) -> str:
+def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
     if "strain" in entry:
-        return f"Legendre coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
+        basis = model.discrete.rods[entry["rod"]].properties.basis.capitalize()
+        return f"{basis} coefficients of {entry['strain']} of rod {entry['rod']}, element after element"
     if "support" in entry:
         return f"multipliers of the support ({entry['support']}) of rod {entry['rod']}"
     if "tendon" in entry:
@@ -210,43 +273,31 @@ def _body_words(names: Names, body: str) -> dict[str, Any]:
 def _pose_words(names: Names) -> dict[str, Any]:
     """Whose poses the sensitivities are of."""
     if not names.bodies:
-        return {
-            "body_macro": "",
-            "poses": f"RODS = {names.macro}_RODS",
-            "pose_count": "RODS",
-            "pose_owners": "each rod: position, then quaternion",
-        }
-    return {
-        "body_macro": f"\n#define {names.macro}_BODIES {len(names.bodies)}",
-        "poses": f"RODS = {names.macro}_RODS, POSES = RODS + {names.macro}_BODIES",
-        "pose_count": "POSES",
-        "pose_owners": "each rod,\n   then each body: position, then quaternion",
-    }
+        return {"pose_owners": "each rod: position, then quaternion"}
+    return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
 
 
 def _further_results(actuators: list[dict[str, Any]], bodies: list[dict[str, Any]]) -> str:
     """A section on actuators and bodies; nothing where there are none."""
     rows = [
         f"| `{words['actuator']}` | {words['effort']} ({words['effort_unit']}) and {words['extent']} "
-        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d q |"
+        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d x |"
         for words in actuators
     ]
     for words in bodies:
         rows.append(f"| `{words['body']}` | pose of the body {words['called']} |")
-        rows.append(f"| `{words['body_jacobian']}` | its derivatives with q and with the inputs |")
+        rows.append(f"| `{words['body_jacobian']}` | its derivatives with x and with the inputs |")
     if not rows:
         return ""
     return "\n".join(["", "## Actuators and bodies", "", "| function | what it gives |", "|---|---|", *rows, ""])
 
 
-def _file_rows(names: Names) -> str:
-    rows = [f"| `{names.name}{ending}` | {role} |" for ending, role in ROLES.items()]
-    rows += [
-        "| `CMakeLists.txt` | library, demo, install, `find_package` |",
-        "| `manifest.json` | the same facts as data |",
-        "| `scene.toml` | the scene all of this was made from |",
-    ]
-    return "\n".join(rows)
+def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool) -> str:
+    absent = {*(BLOCKS if parts is None else DENSE)}
+    if not derivatives:
+        absent.add("{name}_derivatives.c")
+    roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
+    return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 
 
 def _accuracy_note(model: Model, error_estimate: float | None) -> str:
@@ -261,6 +312,12 @@ def _accuracy_note(model: Model, error_estimate: float | None) -> str:
 
 def _listed(numbers: list[float]) -> str:
     return ", ".join(f"{number:g}" if float(f"{number:g}") == number else repr(number) for number in numbers)
+
+
+def _initialiser(value: float, names: Names) -> str:
+    """A number that float and double take without a word from the compiler."""
+    written = _listed([value])
+    return written if float(np.float32(value)) == value else f"({names.name}_real){written}"
 
 
 def _comment(text: str) -> str:

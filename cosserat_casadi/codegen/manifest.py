@@ -70,22 +70,23 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
 def actuator_entries(model: Model) -> list[dict[str, Any]]:
     """Actuators in the order of the scene, with what they exert and what they work on."""
     entries = []
-    for one in model.scene.actuators:
-        effort, extent = (model.actuator[one.name].name_out(i) for i in range(2))
-        entries.append({"name": one.name, "kind": one.kind, "rod": one.rod, "effort": effort, "extent": extent})
+    for actuator in model.scene.actuators:
+        effort, conjugate = (model.actuator[actuator.name].name_out(i) for i in range(2))
+        described = {"name": actuator.name, "kind": actuator.kind, "rod": actuator.rod}
+        entries.append({**described, "effort": effort, "extent": conjugate})
     return entries
 
 
 def _output_entries(model: Model) -> dict[str, Any]:
     """Actuators, bodies and the order of the sensitivities, of scenes that have such."""
-    found: dict[str, Any] = {}
+    described: dict[str, Any] = {}
     if model.scene.actuators:
-        found["actuators"] = actuator_entries(model)
+        described["actuators"] = actuator_entries(model)
     if model.scene.bodies:
-        found["bodies"] = [body.name for body in model.scene.bodies]
+        described["bodies"] = [body.name for body in model.scene.bodies]
         rods = [{"rod": rod} for rod in model.discrete.rods]
-        found["sensitivities"] = [*rods, *({"body": body} for body in found["bodies"])]
-    return found
+        described["sensitivities"] = [*rods, *({"body": body} for body in described["bodies"])]
+    return described
 
 
 def unknown_entries(model: Model) -> list[dict[str, Any]]:

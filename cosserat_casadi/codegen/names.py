@@ -90,7 +90,7 @@ def scene_names(name: str, scene: Scene) -> Names:
         ExportError: as :func:`library_names`.
     """
     rods, actuators, bodies = (
-        tuple(one.name for one in tables) for tables in (scene.rods, scene.actuators, scene.bodies)
+        tuple(entry.name for entry in table) for table in (scene.rods, scene.actuators, scene.bodies)
     )
     return library_names(name, rods, scene.input_names(), actuators=actuators, bodies=bodies)
 
@@ -148,7 +148,8 @@ def _symbol_problems(names: Names) -> Iterator[Problem]:
 
 def _clashes(noun: str, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
     """Names of one table that no C symbol can hold, or that give two functions one name."""
-    table, taken = PLURALS[noun], dict[str, str]()
+    table = PLURALS[noun]
+    taken = dict[str, str]()
     for i, (owner, own) in enumerate(zip(owners, functions, strict=True)):
         where = f"{table}[{i}].name"
         if "__" in owner:
@@ -164,7 +165,7 @@ def _clashes(noun: str, owners: Sequence[str], functions: Sequence[list[str]]) -
 def _macro_problems(inputs: tuple[str, ...]) -> Iterator[Problem]:
     first: dict[str, str] = {}
     for name in inputs:
-        other = first.setdefault(name.upper(), name)
-        if other != name:
-            problem = f"{name!r} and {other!r} differ in case alone, macros in C do not"
+        earlier = first.setdefault(name.upper(), name)
+        if earlier != name:
+            problem = f"{name!r} and {earlier!r} differ in case alone, macros in C do not"
             yield Problem("inputs", problem, "rename one of the loads")

@@ -61,12 +61,13 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     """
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(3)]
     entries = function.call(symbols)[0].nonzeros()
-    groups: dict[tuple[object, ...], list[tuple[_Stream, list[int]]]] = {}
+    groups: dict[tuple[Line, ...], list[tuple[_Stream, list[int]]]] = {}
     for owner in sorted(set(owners)):
-        own = [i for i, other in enumerate(owners) if other == owner]
+        own = [i for i, entry_owner in enumerate(owners) if entry_owner == owner]
         stream = _Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])]))
         groups.setdefault(stream.key, []).append((stream, own))
-    kernels, parts = [], []
+    kernels = list[ca.Function]()
+    parts = list[Part]()
     for number, group in enumerate(groups.values()):
         kernel, constants = _shared([stream for stream, _ in group], f"{name}_{number}")
         kernels.append(kernel)
@@ -78,11 +79,19 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
 
 
 def _whole(function: ca.Function, name: str) -> Parted:
+    """The function as one part, in loops."""
     symbols = function.mx_in()
     result = function.call(symbols)[0].nz[:]
-    kernel = ca.Function(name, [*symbols, ca.MX(0, 1)], [ca.densify(result)], ARGUMENTS, ["entries"])
-    x, inputs, entries = (list(range(n)) for n in (function.size1_in(0), function.size1_in(1), function.nnz_out(0)))
-    return Parted([kernel], [Part(0, x, inputs, [], entries)])
+    no_constants = ca.MX(0, 1)
+    kernel = ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"])
+    part = Part(
+        kernel=0,
+        x=list(range(function.size1_in(0))),
+        inputs=list(range(function.size1_in(1))),
+        constants=[],
+        entries=list(range(function.nnz_out(0))),
+    )
+    return Parted([kernel], [part])
 
 
 FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
@@ -98,6 +107,22 @@ CONSTANT = -1
 class _Stream:
     """The instructions of a scalar function, each value numbered once, with constants apart.
 
+    CasADi's own instructions write to work variables that are used again, and hold constants as instructions. Two legs
+    of a robot give the same lines here although their constants differ. For the map x ↦ 3 x₀ + x₄, say,
+
+    ========================  ================================  ==================
+    CasADi                    line                              constants
+    ========================  ================================  ==================
+    a0 = 3
+    a1 = input[0][0]          (OP_INPUT, (0, 0), 1): value 0
+    a0 = a0 * a1              (OP_MUL, (CONSTANT, 0), 1): 1     [3]
+    a1 = input[0][4]          (OP_INPUT, (0, 1), 1): value 2
+    a0 = a0 + a1              (OP_ADD, (1, 2), 1): value 3
+    output[0][0] = a0         (OP_OUTPUT, (3, 0), 0)
+    ========================  ================================  ==================
+
+    x₄ is read as the second of the unknowns that this part reads, x = [0, 4].
+
     Attributes:
         function: map (x, inputs, factor) ↦ entries.
         x: unknowns that are read.
@@ -108,29 +133,35 @@ class _Stream:
 
     def __init__(self, function: ca.Function) -> None:
         self.function = function
-        codes = [function.instruction_id(i) for i in range(function.n_instructions())]
-        read = {tuple(function.instruction_input(i)) for i, code in enumerate(codes) if code == ca.OP_INPUT}
-        self.x, self.inputs = (sorted(entry for argument, entry in read if argument == a) for a in range(2))
         self.lines: list[Line] = []
         self.constants: list[float] = []
-        self._places = [{entry: i for i, entry in enumerate(own)} for own in (self.x, self.inputs, [0])]
-        self._values: dict[int, int] = {}
-        self._fixed: dict[int, float] = {}
-        self._count = 0
-        for i, code in enumerate(codes):
-            self._add(i, code)
+        codes = [function.instruction_id(k) for k in range(function.n_instructions())]
+        read = {tuple(function.instruction_input(k)) for k, code in enumerate(codes) if code == ca.OP_INPUT}
+        self.x = sorted(entry for argument, entry in read if argument == 0)
+        self.inputs = sorted(entry for argument, entry in read if argument == 1)
+        # Of the load factor there is one entry.
+        arguments = (self.x, self.inputs, [0])
+        self._local = [{entry: i for i, entry in enumerate(argument)} for argument in arguments]
+        self._value_of: dict[int, int] = {}
+        self._constant_of: dict[int, float] = {}
+        self._value_count = 0
+        for k, code in enumerate(codes):
+            self._add(k, code)
 
     @property
     def key(self) -> tuple[Line, ...]:
         """What streams share that compute alike."""
         return tuple(self.lines)
 
-    def _add(self, place: int, code: int) -> None:
-        inputs, outputs = self.function.instruction_input(place), self.function.instruction_output(place)
+    def _add(self, k: int, code: int) -> None:
+        """Append the line of the k-th instruction."""
+        inputs = self.function.instruction_input(k)
+        outputs = self.function.instruction_output(k)
         if code == ca.OP_CONST:
-            self._fixed[outputs[0]] = self.function.instruction_constant(place)
+            self._constant_of[outputs[0]] = self.function.instruction_constant(k)
         elif code == ca.OP_INPUT:
-            self._write(code, (inputs[0], self._places[inputs[0]][inputs[1]]), outputs)
+            argument, entry = inputs
+            self._write(code, (argument, self._local[argument][entry]), outputs)
         elif code == ca.OP_OUTPUT:
             self.lines.append((code, (self._operand(inputs[0]), outputs[1]), 0))
         elif code in FACTORS:
@@ -138,17 +169,19 @@ class _Stream:
         elif code == ca.OP_INV:
             self._write(ca.OP_DIV, (self._constant(1.0), self._operand(inputs[0])), outputs)
         else:
-            self._write(code, tuple(self._operand(k) for k in inputs), outputs)
+            self._write(code, tuple(self._operand(variable) for variable in inputs), outputs)
 
     def _write(self, code: int, operands: tuple[int, ...], outputs: Sequence[int]) -> None:
         self.lines.append((code, operands, len(outputs)))
-        for k in outputs:
-            self._fixed.pop(k, None)
-            self._values[k] = self._count
-            self._count += 1
+        for variable in outputs:
+            self._constant_of.pop(variable, None)
+            self._value_of[variable] = self._value_count
+            self._value_count += 1
 
-    def _operand(self, k: int) -> int:
-        return self._constant(self._fixed[k]) if k in self._fixed else self._values[k]
+    def _operand(self, variable: int) -> int:
+        if variable in self._constant_of:
+            return self._constant(self._constant_of[variable])
+        return self._value_of[variable]
 
     def _constant(self, value: float) -> int:
         self.constants.append(value)
@@ -156,38 +189,46 @@ class _Stream:
 
 
 def _shared(streams: Sequence[_Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
-    """One function for streams that compute alike, and the constants of each."""
+    """One function for streams that compute alike, and the constants of each.
+
+    Constants that are the same in all streams stay in the code; uses that vary alike share one argument.
+    """
     first = streams[0]
-    values = list(zip(*(stream.constants for stream in streams), strict=True))
-    varied = list(dict.fromkeys(value for value in values if len(set(value)) > 1))
+    uses = list(zip(*(stream.constants for stream in streams), strict=True))
+    varied = list(dict.fromkeys(values for values in uses if len(set(values)) > 1))
     symbols = [
         ca.SX.sym("x", len(first.x)),
         ca.SX.sym("inputs", len(first.inputs)),
         ca.SX.sym("factor"),
         ca.SX.sym("constants", len(varied)),
     ]
-    slots = dict(zip(varied, _entries(symbols[3]), strict=True))
-    constants = [slots[value] if value in slots else ca.SX(value[0]) for value in values]
+    symbol_of = dict(zip(varied, _entries(symbols[3]), strict=True))
+    constants = [symbol_of[values] if values in symbol_of else ca.SX(values[0]) for values in uses]
     kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), ARGUMENTS, ["entries"])
-    return kernel, [[value[i] for value in varied] for i in range(len(streams))]
+    return kernel, [[values[i] for values in varied] for i in range(len(streams))]
 
 
 def _replay(stream: _Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
     """The result of a stream in new symbols and constants."""
-    f, following = stream.function, iter(constants)
-    called = {(g.nnz_in(), g.nnz_out()): g for g in f.find_functions(0)}
-    given, values = [_entries(symbol) for symbol in symbols], list[ca.SX]()
-    results = [ca.SX(0.0)] * f.nnz_out(0)
+    next_constant = iter(constants)
+    # A call is known by the number of its arguments and results alone.
+    called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in stream.function.find_functions(0)}
+    arguments = [_entries(symbol) for symbol in symbols]
+    values = list[ca.SX]()
+    results = [ca.SX(0.0)] * stream.function.nnz_out(0)
     for code, operands, count in stream.lines:
         if code == ca.OP_INPUT:
-            values.append(given[operands[0]][operands[1]])
+            argument, entry = operands
+            values.append(arguments[argument][entry])
         elif code == ca.OP_OUTPUT:
-            results[operands[1]] = next(following) if operands[0] == CONSTANT else values[operands[0]]
+            value, entry = operands
+            results[entry] = next(next_constant) if value == CONSTANT else values[value]
         else:
-            arguments = [next(following) if k == CONSTANT else values[k] for k in operands]
-            values += (
-                _call(called[len(arguments), count], arguments) if code == ca.OP_CALL else [_apply(code, arguments)]
-            )
+            given = [next(next_constant) if value == CONSTANT else values[value] for value in operands]
+            if code == ca.OP_CALL:
+                values += _call(called[len(given), count], given)
+            else:
+                values.append(_apply(code, given))
     return ca.vertcat(*results)
 
 
@@ -201,9 +242,11 @@ def _entries(vector: ca.SX) -> list[ca.SX]:
 
 def _call(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
     """Entries of all results of a function that is called with these entries."""
-    shaped, first = [], 0
+    shaped = list[ca.SX]()
+    start = 0
     for i in range(function.n_in()):
         pattern = function.sparsity_in(i)
-        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[first : first + pattern.nnz()])))
-        first += pattern.nnz()
+        end = start + pattern.nnz()
+        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[start:end])))
+        start = end
     return [entry for result in function.call(shaped, False, True) for entry in result.nonzeros()]

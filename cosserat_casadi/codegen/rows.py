@@ -10,11 +10,11 @@ from functools import cache
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler, pointer
-from cosserat_casadi.codegen.export import kernel_sources
-from cosserat_casadi.codegen.kernels import kernels
-from cosserat_casadi.codegen.library import library_sources, render
+from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
 from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene import Scene
@@ -52,13 +52,15 @@ class RowLibrary:
 
         Raises:
             ExportError: there is no C compiler, or it fails.
+            MemoryError: there is none for the workspace.
         """
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
-        found = np.empty((len(given), self.results))
-        _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(found))
-        return found
+        results = np.empty((len(given), self.results))
+        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
+            raise MemoryError("there is no memory for the solver's workspace")
+        return results
 
 
 def row_library(model: Model) -> RowLibrary:
@@ -69,20 +71,23 @@ def row_library(model: Model) -> RowLibrary:
     """
     names = scene_names(NAME, model.scene)
     parts = assembled(model, names)
-    written = {
-        **library_sources(model, names, parts, None),
-        **kernel_sources(kernels(model, names, parts), names),
-    }
+    generated = kernel_sources(kernels(model, names, parts), names)
     columns = row_results(model.scene)
-    wanted = [f"{NAME}.h", f"{NAME}.c", f"{NAME}_kernels.h", f"{NAME}_kernels.c"]
-    files = [(name, written[name]) for name in wanted] + [(f"{NAME}_rows.c", _rows_source(model, names, len(columns)))]
-    return RowLibrary(tuple(files), model.inputs.size, len(columns))
+    files = {
+        **library_sources(model, names, parts, generated, None),
+        **generated,
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns)),
+    }
+    wanted = [
+        (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
+    ]
+    return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
 
 
 def row_results(scene: Scene) -> tuple[str, ...]:
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
-    states = [f"{one.name}.{word}" for one in scene.actuators for word in _state(one.kind)]
+    states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator.kind)]
     return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
 
 
@@ -93,16 +98,15 @@ def _state(kind: str) -> tuple[str, str]:
 def _rows_source(model: Model, names: Names, results: int) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
-    lines, place = list[str](), len(JUDGED)
+    lines = list[str]()
+    column = len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(q, given, here + {place}, here + {place + 3});")
-        place += len(POSE)
-    if names.actuators:
-        lines.append(f"    {names.name}_real slope[{names.macro}_UNKNOWNS];")
+        lines.append(f"    {function}(x, given, row + {column}, row + {column + 3});")
+        column += len(POSE)
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(q, given, here + {place}, here + {place + 1}, slope);")
-        place += 2
+        lines.append(f"    {function}(x, given, row + {column}, row + {column + 1}, 0);")
+        column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
     return render("rows.c.in", words)
 
@@ -115,4 +119,4 @@ def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 @cache
 def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler())))
+    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), VERBATIM)))

@@ -24,7 +24,7 @@ from cosserat_casadi.numerics.newton import NewtonResult, NewtonSettings, length
 from cosserat_casadi.numerics.outcome import Outcome
 
 MAX_DISTANCE = 0.5
-"""Longest way of the unknowns (2-norm) that a correction may go and still count as the same branch."""
+"""Most that a correction may move strains and poses of frames (2-norm) and still count as on the same branch."""
 
 ASIDE = 0.05
 """Way along a neutral variation on which an equilibrium alike is looked for (2-norm of the unknowns)."""
@@ -191,8 +191,10 @@ def correct(model: Model, inputs: FloatArray, start: FloatArray, settings: Newto
     corrected = newton(full_load.at(1.0), start, settings)
     if corrected.outcome is not Outcome.CONVERGED or corrected.damped:
         return None
-    # Newton converges from afar too, but then to any equilibrium.
-    distance = length_of(corrected.x - start)
+    # Newton converges from afar too, but then to any equilibrium. Multipliers and tensions may jump where a stiff rod
+    # moves by a hair: they tell nothing of the branch.
+    moved = corrected.x - start
+    distance = length_of(moved[model.discrete.unknowns.differential])
     if distance > MAX_DISTANCE:
         return None
     return corrected

@@ -12,7 +12,7 @@ import numpy as np
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
@@ -32,6 +32,9 @@ Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magn
 
 RESOLVED_NORM = 1e-2
 """Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
+
+NOISE = 1e-14
+"""Share of the largest entry of a linear response below which an entry is rounding."""
 
 PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
@@ -228,9 +231,16 @@ def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
         slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
         rates[:, 1:][:, geometry] = rates[:, :1] + slope(discrete.layout.pack()).full()[:, geometry]
     response = -np.linalg.solve(jacobian.full(), rates) if discrete.size else rates
-    matrix = ca.sparsify(ca.DM(response[:, 1:] - response[:, :1]))
+    constant = ca.DM(_without_noise(response[:, 0]))
+    matrix = ca.sparsify(ca.DM(_without_noise(response[:, 1:] - response[:, :1])))
     moved = inputs - ca.DM(origin) if geometry else inputs
-    return ca.DM(response[:, 0]) + matrix @ moved
+    return constant + matrix @ moved
+
+
+def _without_noise(values: FloatArray) -> FloatArray:
+    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return np.where(np.abs(values) < NOISE * largest, 0.0, values)
 
 
 def _resolution_index(written: Expressions) -> Matrix:

@@ -6,7 +6,10 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """Every way a solve can end. Only CONVERGED carries a result to build on."""
+    """Every way a solve can end. Only CONVERGED carries a result to build on.
+
+    The order is that of the numbers in C and in the tables of sweeps: new members come last.
+    """
 
     CONVERGED = "Equilibrium found: the residual is below its tolerance."
     MAX_ITERATIONS = "No equilibrium found: the iterations ran out before the residual was small enough."
@@ -19,6 +22,11 @@ class Outcome(Enum):
     UNRESOLVED = (
         "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: "
         "allow more of them, or a larger tolerance."
+    )
+    NOT_IN_EQUILIBRIUM = "The unknowns are no equilibrium for these inputs: solve first."
+    LOST_TRACK = (
+        "The solution of the last turn could not be followed to these inputs within the bounds of one turn: "
+        "move the inputs less in a turn, or solve anew."
     )
 
     @property

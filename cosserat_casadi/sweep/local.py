@@ -79,5 +79,6 @@ def available_cores() -> int:
 
 def _ready(waiting: dict[Future[FloatArray], Chunk]) -> Iterator[tuple[Chunk, FloatArray]]:
     done, _ = wait(waiting, return_when=FIRST_COMPLETED)
-    for future in done:
+    # Several that are ready at once come in the order of their chunks: a sweep that is stopped keeps the first ones.
+    for future in [future for future in waiting if future in done]:
         yield waiting.pop(future), future.result()

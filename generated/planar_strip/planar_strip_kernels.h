@@ -18,170 +18,50 @@ extern "C" {
 #endif
 
 int planar_strip_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_residual_checkout(void);
-void planar_strip_k_residual_release(int mem);
-void planar_strip_k_residual_incref(void);
-void planar_strip_k_residual_decref(void);
-casadi_int planar_strip_k_residual_n_in(void);
-casadi_int planar_strip_k_residual_n_out(void);
-casadi_real planar_strip_k_residual_default_in(casadi_int i);
-const char* planar_strip_k_residual_name_in(casadi_int i);
-const char* planar_strip_k_residual_name_out(casadi_int i);
-const casadi_int* planar_strip_k_residual_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_residual_sparsity_out(casadi_int i);
-int planar_strip_k_residual_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_residual_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_residual_SZ_ARG 8
 #define planar_strip_k_residual_SZ_RES 4
 #define planar_strip_k_residual_SZ_IW 0
 #define planar_strip_k_residual_SZ_W 30
 int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_jacobian_checkout(void);
-void planar_strip_k_jacobian_release(int mem);
-void planar_strip_k_jacobian_incref(void);
-void planar_strip_k_jacobian_decref(void);
-casadi_int planar_strip_k_jacobian_n_in(void);
-casadi_int planar_strip_k_jacobian_n_out(void);
-casadi_real planar_strip_k_jacobian_default_in(casadi_int i);
-const char* planar_strip_k_jacobian_name_in(casadi_int i);
-const char* planar_strip_k_jacobian_name_out(casadi_int i);
-const casadi_int* planar_strip_k_jacobian_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_jacobian_sparsity_out(casadi_int i);
-int planar_strip_k_jacobian_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_jacobian_SZ_ARG 8
 #define planar_strip_k_jacobian_SZ_RES 4
 #define planar_strip_k_jacobian_SZ_IW 0
 #define planar_strip_k_jacobian_SZ_W 34
 int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_rate_checkout(void);
-void planar_strip_k_rate_release(int mem);
-void planar_strip_k_rate_incref(void);
-void planar_strip_k_rate_decref(void);
-casadi_int planar_strip_k_rate_n_in(void);
-casadi_int planar_strip_k_rate_n_out(void);
-casadi_real planar_strip_k_rate_default_in(casadi_int i);
-const char* planar_strip_k_rate_name_in(casadi_int i);
-const char* planar_strip_k_rate_name_out(casadi_int i);
-const casadi_int* planar_strip_k_rate_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_rate_sparsity_out(casadi_int i);
-int planar_strip_k_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_rate_SZ_ARG 16
 #define planar_strip_k_rate_SZ_RES 4
 #define planar_strip_k_rate_SZ_IW 0
 #define planar_strip_k_rate_SZ_W 42
 int planar_strip_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_tangent_checkout(void);
-void planar_strip_k_tangent_release(int mem);
-void planar_strip_k_tangent_incref(void);
-void planar_strip_k_tangent_decref(void);
-casadi_int planar_strip_k_tangent_n_in(void);
-casadi_int planar_strip_k_tangent_n_out(void);
-casadi_real planar_strip_k_tangent_default_in(casadi_int i);
-const char* planar_strip_k_tangent_name_in(casadi_int i);
-const char* planar_strip_k_tangent_name_out(casadi_int i);
-const casadi_int* planar_strip_k_tangent_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_tangent_sparsity_out(casadi_int i);
-int planar_strip_k_tangent_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_tangent_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_tangent_SZ_ARG 1
 #define planar_strip_k_tangent_SZ_RES 1
 #define planar_strip_k_tangent_SZ_IW 0
 #define planar_strip_k_tangent_SZ_W 0
-int planar_strip_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_coarseness_checkout(void);
-void planar_strip_k_coarseness_release(int mem);
-void planar_strip_k_coarseness_incref(void);
-void planar_strip_k_coarseness_decref(void);
-casadi_int planar_strip_k_coarseness_n_in(void);
-casadi_int planar_strip_k_coarseness_n_out(void);
-casadi_real planar_strip_k_coarseness_default_in(casadi_int i);
-const char* planar_strip_k_coarseness_name_in(casadi_int i);
-const char* planar_strip_k_coarseness_name_out(casadi_int i);
-const casadi_int* planar_strip_k_coarseness_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_coarseness_sparsity_out(casadi_int i);
-int planar_strip_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define planar_strip_k_coarseness_SZ_ARG 2
-#define planar_strip_k_coarseness_SZ_RES 1
-#define planar_strip_k_coarseness_SZ_IW 0
-#define planar_strip_k_coarseness_SZ_W 0
+int planar_strip_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_resolution_index_SZ_ARG 2
+#define planar_strip_k_resolution_index_SZ_RES 1
+#define planar_strip_k_resolution_index_SZ_IW 0
+#define planar_strip_k_resolution_index_SZ_W 0
 int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_igm_checkout(void);
-void planar_strip_k_igm_release(int mem);
-void planar_strip_k_igm_incref(void);
-void planar_strip_k_igm_decref(void);
-casadi_int planar_strip_k_igm_n_in(void);
-casadi_int planar_strip_k_igm_n_out(void);
-casadi_real planar_strip_k_igm_default_in(casadi_int i);
-const char* planar_strip_k_igm_name_in(casadi_int i);
-const char* planar_strip_k_igm_name_out(casadi_int i);
-const casadi_int* planar_strip_k_igm_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_igm_sparsity_out(casadi_int i);
-int planar_strip_k_igm_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_igm_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_igm_SZ_ARG 9
 #define planar_strip_k_igm_SZ_RES 6
 #define planar_strip_k_igm_SZ_IW 0
 #define planar_strip_k_igm_SZ_W 30
 int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_tip_checkout(void);
-void planar_strip_k_tip_release(int mem);
-void planar_strip_k_tip_incref(void);
-void planar_strip_k_tip_decref(void);
-casadi_int planar_strip_k_tip_n_in(void);
-casadi_int planar_strip_k_tip_n_out(void);
-casadi_real planar_strip_k_tip_default_in(casadi_int i);
-const char* planar_strip_k_tip_name_in(casadi_int i);
-const char* planar_strip_k_tip_name_out(casadi_int i);
-const casadi_int* planar_strip_k_tip_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_tip_sparsity_out(casadi_int i);
-int planar_strip_k_tip_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_tip_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_tip_SZ_ARG 3
 #define planar_strip_k_tip_SZ_RES 5
 #define planar_strip_k_tip_SZ_IW 0
 #define planar_strip_k_tip_SZ_W 19
 int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_tip_jacobian_checkout(void);
-void planar_strip_k_tip_jacobian_release(int mem);
-void planar_strip_k_tip_jacobian_incref(void);
-void planar_strip_k_tip_jacobian_decref(void);
-casadi_int planar_strip_k_tip_jacobian_n_in(void);
-casadi_int planar_strip_k_tip_jacobian_n_out(void);
-casadi_real planar_strip_k_tip_jacobian_default_in(casadi_int i);
-const char* planar_strip_k_tip_jacobian_name_in(casadi_int i);
-const char* planar_strip_k_tip_jacobian_name_out(casadi_int i);
-const casadi_int* planar_strip_k_tip_jacobian_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_tip_jacobian_sparsity_out(casadi_int i);
-int planar_strip_k_tip_jacobian_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_tip_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_tip_jacobian_SZ_ARG 7
 #define planar_strip_k_tip_jacobian_SZ_RES 5
 #define planar_strip_k_tip_jacobian_SZ_IW 0
 #define planar_strip_k_tip_jacobian_SZ_W 34
 int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int planar_strip_k_shape_checkout(void);
-void planar_strip_k_shape_release(int mem);
-void planar_strip_k_shape_incref(void);
-void planar_strip_k_shape_decref(void);
-casadi_int planar_strip_k_shape_n_in(void);
-casadi_int planar_strip_k_shape_n_out(void);
-casadi_real planar_strip_k_shape_default_in(casadi_int i);
-const char* planar_strip_k_shape_name_in(casadi_int i);
-const char* planar_strip_k_shape_name_out(casadi_int i);
-const casadi_int* planar_strip_k_shape_sparsity_in(casadi_int i);
-const casadi_int* planar_strip_k_shape_sparsity_out(casadi_int i);
-int planar_strip_k_shape_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int planar_strip_k_shape_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define planar_strip_k_shape_SZ_ARG 4
 #define planar_strip_k_shape_SZ_RES 5
 #define planar_strip_k_shape_SZ_IW 0
 #define planar_strip_k_shape_SZ_W 19
-void planar_strip_kernels_casadi_version(int* major, int* minor, int* patch);
-int planar_strip_kernels_casadi_int_size(void);
-int planar_strip_kernels_casadi_real_size(void);
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

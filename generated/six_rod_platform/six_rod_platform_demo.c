@@ -1,5 +1,7 @@
 /* Solves six_rod_platform once and times it: prints one JSON object. */
+#if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 199309L
+#endif
 #include "six_rod_platform.h"
 
 #include <math.h>
@@ -12,14 +14,19 @@ enum { N = SIX_ROD_PLATFORM_UNKNOWNS, INPUTS = SIX_ROD_PLATFORM_INPUTS, ROOM = I
 
 typedef six_rod_platform_real real;
 
-static const real DEFAULTS[ROOM] = {1, 0.5, -2, 0, 0, 0, 0.42, 0.43, 0.45, 0.44, 0.41, 0.43};
-static const char *const WORDS[] = {"converged", "max_iterations", "not_finite", "singular", "load_stalled",
-                                    "unresolved", "not_in_equilibrium"};
+static const real DEFAULTS[ROOM] = SIX_ROD_PLATFORM_DEFAULTS;
+
+/* Too large for the stack of a thread. */
+static six_rod_platform_workspace workspace;
 
 static double now_us(void) {
+#if defined(__unix__) || defined(__APPLE__)
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
+#else
+  return 1e6 * (double)clock() / CLOCKS_PER_SEC;
+#endif
 }
 
 static int usage(const char *problem, const char *word) {
@@ -46,59 +53,74 @@ static void print_field(const char *word, double value) {
 }
 
 /* Best time of several runs, us. */
-enum { COLD, WARM, IGM, JACOBIAN, TASKS };
+enum { COLD, WARM, IGM, JACOBIAN };
+
+static void perform(int task, const real *inputs, const real *near_inputs, real *x) {
+  static real jacobian[N * N], residual[N];
+  const real base_position[3] = {0, 0, 0}, base_quaternion[4] = {1, 0, 0, 0};
+  real force[3], moment[3];
+  switch (task) {
+    case COLD:
+      memset(x, 0, N * sizeof *x);
+      six_rod_platform_solve(inputs, x, &workspace, 0);
+      break;
+    case WARM:
+      six_rod_platform_solve(near_inputs, x, &workspace, 0);
+      break;
+    case IGM:
+      six_rod_platform_igm_leg_1(x, base_position, base_quaternion, inputs, residual, force, moment);
+      break;
+    default:
+      six_rod_platform_residual_jacobian(x, inputs, jacobian, residual, &workspace);
+  }
+}
 
 static double best_of(int task, int repeat, const real *inputs, const real *solution) {
-  double best = INFINITY;
-  real q[N], near_inputs[ROOM], base_position[3] = {0, 0, 0}, base_quaternion[4] = {1, 0, 0, 0};
-  real jacobian[N * N], residual[N], force[3], moment[3];
-  int i, k;
-  for (k = 0; k < repeat; k++) {
-    double start, took;
-    for (i = 0; i < INPUTS; i++) near_inputs[i] = inputs[i] * (real)(k % 2 ? 0.99 : 1.01);
-    memcpy(q, solution, sizeof q);
-    if (task == COLD) memset(q, 0, sizeof q);
-    start = now_us();
-    if (task == COLD) six_rod_platform_solve(inputs, q, 0);
-    if (task == WARM) six_rod_platform_solve(near_inputs, q, 0);
-    if (task == IGM) six_rod_platform_igm_leg_1(q, base_position, base_quaternion, inputs, residual, force, moment);
-    if (task == JACOBIAN) six_rod_platform_residual_jacobian(q, inputs, jacobian, residual);
-    took = now_us() - start;
-    if (took < best) best = took;
+  double best = HUGE_VAL;
+  for (int k = 0; k < repeat; k++) {
+    real x[N], near_inputs[ROOM];
+    for (int i = 0; i < INPUTS; i++) near_inputs[i] = inputs[i] * (real)(k % 2 ? 0.99 : 1.01);
+    memcpy(x, solution, sizeof x);
+    const double start = now_us();
+    perform(task, inputs, near_inputs, x);
+    const double duration = now_us() - start;
+    if (duration < best) best = duration;
   }
   return best;
 }
 
 int main(int count, char **words) {
-  real inputs[ROOM], q[N] = {0}, position[3], quaternion[4];
+  real inputs[ROOM], x[N] = {0}, position[3], quaternion[4];
   six_rod_platform_info info;
-  int i, first = 1, repeat = 200, sound = 1;
+  int first = 1, repeat = 200, sound = 1;
   memcpy(inputs, DEFAULTS, sizeof inputs);
   if (count > 1 && strcmp(words[1], "--repeat") == 0) {
     const double wanted = count > 2 ? parse(words[2], &sound) : 0;
-    if (!sound || !(wanted >= 1 && wanted <= 1e9)) return usage("--repeat takes a number of at least 1", count > 2 ? words[2] : "none");
+    if (!sound || !(wanted >= 1 && wanted <= 1e9)) {
+      return usage("--repeat takes a number of at least 1", count > 2 ? words[2] : "none");
+    }
     repeat = (int)wanted;
     first = 3;
   }
   if (count != first && count != first + INPUTS) return usage("the wrong number of input values", "give all or none");
-  for (i = 0; i < count - first; i++) {
+  for (int i = 0; i < count - first; i++) {
     inputs[i] = (real)parse(words[first + i], &sound);
     if (!sound) return usage("not a number", words[first + i]);
   }
-  six_rod_platform_solve(inputs, q, &info);
-  six_rod_platform_tip_leg_1(q, inputs, position, quaternion);
-  printf("{\"status\": \"%s\", \"iterations\": %d, \"tip\": [", WORDS[info.status], info.iterations);
-  for (i = 0; i < 3; i++) {
+  six_rod_platform_solve(inputs, x, &workspace, &info);
+  six_rod_platform_tip_leg_1(x, inputs, position, quaternion);
+  printf("{\"status\": \"%s\", \"iterations\": %d, \"tip\": [", six_rod_platform_status_label(info.status), info.iterations);
+  for (int i = 0; i < 3; i++) {
     if (i) printf(", ");
     print_number((double)position[i]);
   }
   printf("], \"load_factor\": ");
   print_number((double)info.load_factor);
   print_field("residual_norm", (double)info.residual_norm);
-  print_field("cold_us", best_of(COLD, repeat, inputs, q));
-  print_field("warm_us", best_of(WARM, repeat, inputs, q));
-  print_field("igm_us", best_of(IGM, repeat, inputs, q));
-  print_field("jacobian_us", best_of(JACOBIAN, repeat, inputs, q));
+  print_field("cold_us", best_of(COLD, repeat, inputs, x));
+  print_field("warm_us", best_of(WARM, repeat, inputs, x));
+  print_field("igm_us", best_of(IGM, repeat, inputs, x));
+  print_field("jacobian_us", best_of(JACOBIAN, repeat, inputs, x));
   printf("}\n");
   return info.status == SIX_ROD_PLATFORM_CONVERGED ? 0 : 3;
 }

@@ -18,782 +18,215 @@ extern "C" {
 #endif
 
 int six_rod_platform_k_residual_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_residual_0_checkout(void);
-void six_rod_platform_k_residual_0_release(int mem);
-void six_rod_platform_k_residual_0_incref(void);
-void six_rod_platform_k_residual_0_decref(void);
-casadi_int six_rod_platform_k_residual_0_n_in(void);
-casadi_int six_rod_platform_k_residual_0_n_out(void);
-casadi_real six_rod_platform_k_residual_0_default_in(casadi_int i);
-const char* six_rod_platform_k_residual_0_name_in(casadi_int i);
-const char* six_rod_platform_k_residual_0_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_0_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_0_sparsity_out(casadi_int i);
-int six_rod_platform_k_residual_0_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_residual_0_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_residual_0_SZ_ARG 4
 #define six_rod_platform_k_residual_0_SZ_RES 1
 #define six_rod_platform_k_residual_0_SZ_IW 0
 #define six_rod_platform_k_residual_0_SZ_W 0
 int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_residual_1_checkout(void);
-void six_rod_platform_k_residual_1_release(int mem);
-void six_rod_platform_k_residual_1_incref(void);
-void six_rod_platform_k_residual_1_decref(void);
-casadi_int six_rod_platform_k_residual_1_n_in(void);
-casadi_int six_rod_platform_k_residual_1_n_out(void);
-casadi_real six_rod_platform_k_residual_1_default_in(casadi_int i);
-const char* six_rod_platform_k_residual_1_name_in(casadi_int i);
-const char* six_rod_platform_k_residual_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_residual_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_residual_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_residual_1_SZ_ARG 9
 #define six_rod_platform_k_residual_1_SZ_RES 4
 #define six_rod_platform_k_residual_1_SZ_IW 0
 #define six_rod_platform_k_residual_1_SZ_W 50
 int six_rod_platform_k_residual_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_residual_2_checkout(void);
-void six_rod_platform_k_residual_2_release(int mem);
-void six_rod_platform_k_residual_2_incref(void);
-void six_rod_platform_k_residual_2_decref(void);
-casadi_int six_rod_platform_k_residual_2_n_in(void);
-casadi_int six_rod_platform_k_residual_2_n_out(void);
-casadi_real six_rod_platform_k_residual_2_default_in(casadi_int i);
-const char* six_rod_platform_k_residual_2_name_in(casadi_int i);
-const char* six_rod_platform_k_residual_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_residual_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_residual_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_residual_2_SZ_ARG 9
 #define six_rod_platform_k_residual_2_SZ_RES 4
 #define six_rod_platform_k_residual_2_SZ_IW 0
 #define six_rod_platform_k_residual_2_SZ_W 50
 int six_rod_platform_k_residual_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_residual_3_checkout(void);
-void six_rod_platform_k_residual_3_release(int mem);
-void six_rod_platform_k_residual_3_incref(void);
-void six_rod_platform_k_residual_3_decref(void);
-casadi_int six_rod_platform_k_residual_3_n_in(void);
-casadi_int six_rod_platform_k_residual_3_n_out(void);
-casadi_real six_rod_platform_k_residual_3_default_in(casadi_int i);
-const char* six_rod_platform_k_residual_3_name_in(casadi_int i);
-const char* six_rod_platform_k_residual_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_residual_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_residual_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_residual_3_SZ_ARG 9
 #define six_rod_platform_k_residual_3_SZ_RES 4
 #define six_rod_platform_k_residual_3_SZ_IW 0
 #define six_rod_platform_k_residual_3_SZ_W 50
 int six_rod_platform_k_residual_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_residual_4_checkout(void);
-void six_rod_platform_k_residual_4_release(int mem);
-void six_rod_platform_k_residual_4_incref(void);
-void six_rod_platform_k_residual_4_decref(void);
-casadi_int six_rod_platform_k_residual_4_n_in(void);
-casadi_int six_rod_platform_k_residual_4_n_out(void);
-casadi_real six_rod_platform_k_residual_4_default_in(casadi_int i);
-const char* six_rod_platform_k_residual_4_name_in(casadi_int i);
-const char* six_rod_platform_k_residual_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_residual_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_residual_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_residual_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_residual_4_SZ_ARG 9
 #define six_rod_platform_k_residual_4_SZ_RES 4
 #define six_rod_platform_k_residual_4_SZ_IW 0
 #define six_rod_platform_k_residual_4_SZ_W 50
 int six_rod_platform_k_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_jacobian_0_checkout(void);
-void six_rod_platform_k_jacobian_0_release(int mem);
-void six_rod_platform_k_jacobian_0_incref(void);
-void six_rod_platform_k_jacobian_0_decref(void);
-casadi_int six_rod_platform_k_jacobian_0_n_in(void);
-casadi_int six_rod_platform_k_jacobian_0_n_out(void);
-casadi_real six_rod_platform_k_jacobian_0_default_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_0_name_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_0_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_0_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_0_sparsity_out(casadi_int i);
-int six_rod_platform_k_jacobian_0_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_jacobian_0_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_jacobian_0_SZ_RES 1
 #define six_rod_platform_k_jacobian_0_SZ_IW 0
 #define six_rod_platform_k_jacobian_0_SZ_W 0
 int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_jacobian_1_checkout(void);
-void six_rod_platform_k_jacobian_1_release(int mem);
-void six_rod_platform_k_jacobian_1_incref(void);
-void six_rod_platform_k_jacobian_1_decref(void);
-casadi_int six_rod_platform_k_jacobian_1_n_in(void);
-casadi_int six_rod_platform_k_jacobian_1_n_out(void);
-casadi_real six_rod_platform_k_jacobian_1_default_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_1_name_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_jacobian_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_jacobian_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_jacobian_1_SZ_ARG 9
 #define six_rod_platform_k_jacobian_1_SZ_RES 4
 #define six_rod_platform_k_jacobian_1_SZ_IW 0
 #define six_rod_platform_k_jacobian_1_SZ_W 96
-int six_rod_platform_k_jacobian_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_jacobian_2_checkout(void);
-void six_rod_platform_k_jacobian_2_release(int mem);
-void six_rod_platform_k_jacobian_2_incref(void);
-void six_rod_platform_k_jacobian_2_decref(void);
-casadi_int six_rod_platform_k_jacobian_2_n_in(void);
-casadi_int six_rod_platform_k_jacobian_2_n_out(void);
-casadi_real six_rod_platform_k_jacobian_2_default_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_2_name_in(casadi_int i);
-const char* six_rod_platform_k_jacobian_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_jacobian_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_jacobian_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_jacobian_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define six_rod_platform_k_jacobian_2_SZ_ARG 9
-#define six_rod_platform_k_jacobian_2_SZ_RES 4
-#define six_rod_platform_k_jacobian_2_SZ_IW 0
-#define six_rod_platform_k_jacobian_2_SZ_W 96
 int six_rod_platform_k_input_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_0_checkout(void);
-void six_rod_platform_k_input_jacobian_0_release(int mem);
-void six_rod_platform_k_input_jacobian_0_incref(void);
-void six_rod_platform_k_input_jacobian_0_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_0_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_0_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_0_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_0_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_0_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_0_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_0_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_0_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_0_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_input_jacobian_0_SZ_RES 1
 #define six_rod_platform_k_input_jacobian_0_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_0_SZ_W 0
 int six_rod_platform_k_input_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_1_checkout(void);
-void six_rod_platform_k_input_jacobian_1_release(int mem);
-void six_rod_platform_k_input_jacobian_1_incref(void);
-void six_rod_platform_k_input_jacobian_1_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_1_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_1_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_1_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_1_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_1_SZ_ARG 15
 #define six_rod_platform_k_input_jacobian_1_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_1_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_1_SZ_W 92
 int six_rod_platform_k_input_jacobian_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_2_checkout(void);
-void six_rod_platform_k_input_jacobian_2_release(int mem);
-void six_rod_platform_k_input_jacobian_2_incref(void);
-void six_rod_platform_k_input_jacobian_2_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_2_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_2_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_2_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_2_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_2_SZ_ARG 15
 #define six_rod_platform_k_input_jacobian_2_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_2_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_2_SZ_W 92
 int six_rod_platform_k_input_jacobian_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_3_checkout(void);
-void six_rod_platform_k_input_jacobian_3_release(int mem);
-void six_rod_platform_k_input_jacobian_3_incref(void);
-void six_rod_platform_k_input_jacobian_3_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_3_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_3_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_3_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_3_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_3_SZ_ARG 15
 #define six_rod_platform_k_input_jacobian_3_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_3_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_3_SZ_W 92
 int six_rod_platform_k_input_jacobian_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_4_checkout(void);
-void six_rod_platform_k_input_jacobian_4_release(int mem);
-void six_rod_platform_k_input_jacobian_4_incref(void);
-void six_rod_platform_k_input_jacobian_4_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_4_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_4_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_4_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_4_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_4_SZ_ARG 15
 #define six_rod_platform_k_input_jacobian_4_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_4_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_4_SZ_W 92
 int six_rod_platform_k_input_jacobian_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_input_jacobian_5_checkout(void);
-void six_rod_platform_k_input_jacobian_5_release(int mem);
-void six_rod_platform_k_input_jacobian_5_incref(void);
-void six_rod_platform_k_input_jacobian_5_decref(void);
-casadi_int six_rod_platform_k_input_jacobian_5_n_in(void);
-casadi_int six_rod_platform_k_input_jacobian_5_n_out(void);
-casadi_real six_rod_platform_k_input_jacobian_5_default_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_5_name_in(casadi_int i);
-const char* six_rod_platform_k_input_jacobian_5_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_5_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_input_jacobian_5_sparsity_out(casadi_int i);
-int six_rod_platform_k_input_jacobian_5_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_input_jacobian_5_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_input_jacobian_5_SZ_ARG 15
 #define six_rod_platform_k_input_jacobian_5_SZ_RES 4
 #define six_rod_platform_k_input_jacobian_5_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_5_SZ_W 92
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_rate_checkout(void);
-void six_rod_platform_k_rate_release(int mem);
-void six_rod_platform_k_rate_incref(void);
-void six_rod_platform_k_rate_decref(void);
-casadi_int six_rod_platform_k_rate_n_in(void);
-casadi_int six_rod_platform_k_rate_n_out(void);
-casadi_real six_rod_platform_k_rate_default_in(casadi_int i);
-const char* six_rod_platform_k_rate_name_in(casadi_int i);
-const char* six_rod_platform_k_rate_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_rate_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_rate_sparsity_out(casadi_int i);
-int six_rod_platform_k_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_rate_SZ_ARG 16
 #define six_rod_platform_k_rate_SZ_RES 4
 #define six_rod_platform_k_rate_SZ_IW 0
 #define six_rod_platform_k_rate_SZ_W 92
 int six_rod_platform_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tangent_checkout(void);
-void six_rod_platform_k_tangent_release(int mem);
-void six_rod_platform_k_tangent_incref(void);
-void six_rod_platform_k_tangent_decref(void);
-casadi_int six_rod_platform_k_tangent_n_in(void);
-casadi_int six_rod_platform_k_tangent_n_out(void);
-casadi_real six_rod_platform_k_tangent_default_in(casadi_int i);
-const char* six_rod_platform_k_tangent_name_in(casadi_int i);
-const char* six_rod_platform_k_tangent_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tangent_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tangent_sparsity_out(casadi_int i);
-int six_rod_platform_k_tangent_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tangent_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tangent_SZ_ARG 1
 #define six_rod_platform_k_tangent_SZ_RES 1
 #define six_rod_platform_k_tangent_SZ_IW 0
 #define six_rod_platform_k_tangent_SZ_W 0
-int six_rod_platform_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_coarseness_checkout(void);
-void six_rod_platform_k_coarseness_release(int mem);
-void six_rod_platform_k_coarseness_incref(void);
-void six_rod_platform_k_coarseness_decref(void);
-casadi_int six_rod_platform_k_coarseness_n_in(void);
-casadi_int six_rod_platform_k_coarseness_n_out(void);
-casadi_real six_rod_platform_k_coarseness_default_in(casadi_int i);
-const char* six_rod_platform_k_coarseness_name_in(casadi_int i);
-const char* six_rod_platform_k_coarseness_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_coarseness_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_coarseness_sparsity_out(casadi_int i);
-int six_rod_platform_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define six_rod_platform_k_coarseness_SZ_ARG 2
-#define six_rod_platform_k_coarseness_SZ_RES 1
-#define six_rod_platform_k_coarseness_SZ_IW 0
-#define six_rod_platform_k_coarseness_SZ_W 0
+int six_rod_platform_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_resolution_index_SZ_ARG 2
+#define six_rod_platform_k_resolution_index_SZ_RES 1
+#define six_rod_platform_k_resolution_index_SZ_IW 0
+#define six_rod_platform_k_resolution_index_SZ_W 0
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_1_checkout(void);
-void six_rod_platform_k_igm_leg_1_release(int mem);
-void six_rod_platform_k_igm_leg_1_incref(void);
-void six_rod_platform_k_igm_leg_1_decref(void);
-casadi_int six_rod_platform_k_igm_leg_1_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_1_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_1_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_1_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_1_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_1_SZ_RES 6
 #define six_rod_platform_k_igm_leg_1_SZ_IW 0
 #define six_rod_platform_k_igm_leg_1_SZ_W 50
 int six_rod_platform_k_tip_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_1_checkout(void);
-void six_rod_platform_k_tip_leg_1_release(int mem);
-void six_rod_platform_k_tip_leg_1_incref(void);
-void six_rod_platform_k_tip_leg_1_decref(void);
-casadi_int six_rod_platform_k_tip_leg_1_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_1_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_1_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_1_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_1_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_1_SZ_RES 5
 #define six_rod_platform_k_tip_leg_1_SZ_IW 0
 #define six_rod_platform_k_tip_leg_1_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_1_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_1_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_1_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_1_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_1_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_1_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_1_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_1_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 96
 int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_1_checkout(void);
-void six_rod_platform_k_shape_leg_1_release(int mem);
-void six_rod_platform_k_shape_leg_1_incref(void);
-void six_rod_platform_k_shape_leg_1_decref(void);
-casadi_int six_rod_platform_k_shape_leg_1_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_1_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_1_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_1_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_1_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_1_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_1_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_1_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_1_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_1_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_1_SZ_RES 5
 #define six_rod_platform_k_shape_leg_1_SZ_IW 0
 #define six_rod_platform_k_shape_leg_1_SZ_W 30
 int six_rod_platform_k_igm_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_2_checkout(void);
-void six_rod_platform_k_igm_leg_2_release(int mem);
-void six_rod_platform_k_igm_leg_2_incref(void);
-void six_rod_platform_k_igm_leg_2_decref(void);
-casadi_int six_rod_platform_k_igm_leg_2_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_2_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_2_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_2_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_2_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_2_SZ_RES 6
 #define six_rod_platform_k_igm_leg_2_SZ_IW 0
 #define six_rod_platform_k_igm_leg_2_SZ_W 50
 int six_rod_platform_k_tip_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_2_checkout(void);
-void six_rod_platform_k_tip_leg_2_release(int mem);
-void six_rod_platform_k_tip_leg_2_incref(void);
-void six_rod_platform_k_tip_leg_2_decref(void);
-casadi_int six_rod_platform_k_tip_leg_2_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_2_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_2_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_2_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_2_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_2_SZ_RES 5
 #define six_rod_platform_k_tip_leg_2_SZ_IW 0
 #define six_rod_platform_k_tip_leg_2_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_2_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_2_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_2_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_2_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_2_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_2_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_2_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_2_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 96
 int six_rod_platform_k_shape_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_2_checkout(void);
-void six_rod_platform_k_shape_leg_2_release(int mem);
-void six_rod_platform_k_shape_leg_2_incref(void);
-void six_rod_platform_k_shape_leg_2_decref(void);
-casadi_int six_rod_platform_k_shape_leg_2_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_2_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_2_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_2_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_2_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_2_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_2_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_2_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_2_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_2_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_2_SZ_RES 5
 #define six_rod_platform_k_shape_leg_2_SZ_IW 0
 #define six_rod_platform_k_shape_leg_2_SZ_W 30
 int six_rod_platform_k_igm_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_3_checkout(void);
-void six_rod_platform_k_igm_leg_3_release(int mem);
-void six_rod_platform_k_igm_leg_3_incref(void);
-void six_rod_platform_k_igm_leg_3_decref(void);
-casadi_int six_rod_platform_k_igm_leg_3_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_3_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_3_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_3_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_3_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_3_SZ_RES 6
 #define six_rod_platform_k_igm_leg_3_SZ_IW 0
 #define six_rod_platform_k_igm_leg_3_SZ_W 50
 int six_rod_platform_k_tip_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_3_checkout(void);
-void six_rod_platform_k_tip_leg_3_release(int mem);
-void six_rod_platform_k_tip_leg_3_incref(void);
-void six_rod_platform_k_tip_leg_3_decref(void);
-casadi_int six_rod_platform_k_tip_leg_3_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_3_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_3_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_3_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_3_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_3_SZ_RES 5
 #define six_rod_platform_k_tip_leg_3_SZ_IW 0
 #define six_rod_platform_k_tip_leg_3_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_3_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_3_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_3_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_3_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_3_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_3_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_3_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_3_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 96
 int six_rod_platform_k_shape_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_3_checkout(void);
-void six_rod_platform_k_shape_leg_3_release(int mem);
-void six_rod_platform_k_shape_leg_3_incref(void);
-void six_rod_platform_k_shape_leg_3_decref(void);
-casadi_int six_rod_platform_k_shape_leg_3_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_3_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_3_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_3_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_3_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_3_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_3_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_3_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_3_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_3_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_3_SZ_RES 5
 #define six_rod_platform_k_shape_leg_3_SZ_IW 0
 #define six_rod_platform_k_shape_leg_3_SZ_W 30
 int six_rod_platform_k_igm_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_4_checkout(void);
-void six_rod_platform_k_igm_leg_4_release(int mem);
-void six_rod_platform_k_igm_leg_4_incref(void);
-void six_rod_platform_k_igm_leg_4_decref(void);
-casadi_int six_rod_platform_k_igm_leg_4_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_4_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_4_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_4_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_4_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_4_SZ_RES 6
 #define six_rod_platform_k_igm_leg_4_SZ_IW 0
 #define six_rod_platform_k_igm_leg_4_SZ_W 50
 int six_rod_platform_k_tip_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_4_checkout(void);
-void six_rod_platform_k_tip_leg_4_release(int mem);
-void six_rod_platform_k_tip_leg_4_incref(void);
-void six_rod_platform_k_tip_leg_4_decref(void);
-casadi_int six_rod_platform_k_tip_leg_4_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_4_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_4_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_4_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_4_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_4_SZ_RES 5
 #define six_rod_platform_k_tip_leg_4_SZ_IW 0
 #define six_rod_platform_k_tip_leg_4_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_4_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_4_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_4_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_4_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_4_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_4_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_4_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_4_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 96
 int six_rod_platform_k_shape_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_4_checkout(void);
-void six_rod_platform_k_shape_leg_4_release(int mem);
-void six_rod_platform_k_shape_leg_4_incref(void);
-void six_rod_platform_k_shape_leg_4_decref(void);
-casadi_int six_rod_platform_k_shape_leg_4_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_4_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_4_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_4_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_4_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_4_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_4_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_4_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_4_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_4_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_4_SZ_RES 5
 #define six_rod_platform_k_shape_leg_4_SZ_IW 0
 #define six_rod_platform_k_shape_leg_4_SZ_W 30
 int six_rod_platform_k_igm_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_5_checkout(void);
-void six_rod_platform_k_igm_leg_5_release(int mem);
-void six_rod_platform_k_igm_leg_5_incref(void);
-void six_rod_platform_k_igm_leg_5_decref(void);
-casadi_int six_rod_platform_k_igm_leg_5_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_5_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_5_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_5_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_5_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_5_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_5_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_5_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_5_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_5_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_5_SZ_RES 6
 #define six_rod_platform_k_igm_leg_5_SZ_IW 0
 #define six_rod_platform_k_igm_leg_5_SZ_W 50
 int six_rod_platform_k_tip_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_5_checkout(void);
-void six_rod_platform_k_tip_leg_5_release(int mem);
-void six_rod_platform_k_tip_leg_5_incref(void);
-void six_rod_platform_k_tip_leg_5_decref(void);
-casadi_int six_rod_platform_k_tip_leg_5_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_5_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_5_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_5_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_5_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_5_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_5_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_5_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_5_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_5_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_5_SZ_RES 5
 #define six_rod_platform_k_tip_leg_5_SZ_IW 0
 #define six_rod_platform_k_tip_leg_5_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_5_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_5_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_5_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_5_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_5_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_5_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_5_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_5_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_5_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_5_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_5_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_5_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_5_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 96
 int six_rod_platform_k_shape_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_5_checkout(void);
-void six_rod_platform_k_shape_leg_5_release(int mem);
-void six_rod_platform_k_shape_leg_5_incref(void);
-void six_rod_platform_k_shape_leg_5_decref(void);
-casadi_int six_rod_platform_k_shape_leg_5_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_5_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_5_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_5_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_5_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_5_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_5_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_5_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_5_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_5_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_5_SZ_RES 5
 #define six_rod_platform_k_shape_leg_5_SZ_IW 0
 #define six_rod_platform_k_shape_leg_5_SZ_W 30
 int six_rod_platform_k_igm_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_igm_leg_6_checkout(void);
-void six_rod_platform_k_igm_leg_6_release(int mem);
-void six_rod_platform_k_igm_leg_6_incref(void);
-void six_rod_platform_k_igm_leg_6_decref(void);
-casadi_int six_rod_platform_k_igm_leg_6_n_in(void);
-casadi_int six_rod_platform_k_igm_leg_6_n_out(void);
-casadi_real six_rod_platform_k_igm_leg_6_default_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_6_name_in(casadi_int i);
-const char* six_rod_platform_k_igm_leg_6_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_6_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_igm_leg_6_sparsity_out(casadi_int i);
-int six_rod_platform_k_igm_leg_6_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_igm_leg_6_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_igm_leg_6_SZ_ARG 9
 #define six_rod_platform_k_igm_leg_6_SZ_RES 6
 #define six_rod_platform_k_igm_leg_6_SZ_IW 0
 #define six_rod_platform_k_igm_leg_6_SZ_W 50
 int six_rod_platform_k_tip_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_leg_6_checkout(void);
-void six_rod_platform_k_tip_leg_6_release(int mem);
-void six_rod_platform_k_tip_leg_6_incref(void);
-void six_rod_platform_k_tip_leg_6_decref(void);
-casadi_int six_rod_platform_k_tip_leg_6_n_in(void);
-casadi_int six_rod_platform_k_tip_leg_6_n_out(void);
-casadi_real six_rod_platform_k_tip_leg_6_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_6_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_leg_6_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_6_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_leg_6_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_leg_6_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_leg_6_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_leg_6_SZ_ARG 3
 #define six_rod_platform_k_tip_leg_6_SZ_RES 5
 #define six_rod_platform_k_tip_leg_6_SZ_IW 0
 #define six_rod_platform_k_tip_leg_6_SZ_W 30
 int six_rod_platform_k_tip_jacobian_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_tip_jacobian_leg_6_checkout(void);
-void six_rod_platform_k_tip_jacobian_leg_6_release(int mem);
-void six_rod_platform_k_tip_jacobian_leg_6_incref(void);
-void six_rod_platform_k_tip_jacobian_leg_6_decref(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_6_n_in(void);
-casadi_int six_rod_platform_k_tip_jacobian_leg_6_n_out(void);
-casadi_real six_rod_platform_k_tip_jacobian_leg_6_default_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_6_name_in(casadi_int i);
-const char* six_rod_platform_k_tip_jacobian_leg_6_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_6_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_tip_jacobian_leg_6_sparsity_out(casadi_int i);
-int six_rod_platform_k_tip_jacobian_leg_6_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_tip_jacobian_leg_6_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 7
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 5
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_IW 0
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 96
 int six_rod_platform_k_shape_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_shape_leg_6_checkout(void);
-void six_rod_platform_k_shape_leg_6_release(int mem);
-void six_rod_platform_k_shape_leg_6_incref(void);
-void six_rod_platform_k_shape_leg_6_decref(void);
-casadi_int six_rod_platform_k_shape_leg_6_n_in(void);
-casadi_int six_rod_platform_k_shape_leg_6_n_out(void);
-casadi_real six_rod_platform_k_shape_leg_6_default_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_6_name_in(casadi_int i);
-const char* six_rod_platform_k_shape_leg_6_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_6_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_shape_leg_6_sparsity_out(casadi_int i);
-int six_rod_platform_k_shape_leg_6_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_shape_leg_6_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_shape_leg_6_SZ_ARG 4
 #define six_rod_platform_k_shape_leg_6_SZ_RES 5
 #define six_rod_platform_k_shape_leg_6_SZ_IW 0
 #define six_rod_platform_k_shape_leg_6_SZ_W 30
 int six_rod_platform_k_body_platform(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_body_platform_checkout(void);
-void six_rod_platform_k_body_platform_release(int mem);
-void six_rod_platform_k_body_platform_incref(void);
-void six_rod_platform_k_body_platform_decref(void);
-casadi_int six_rod_platform_k_body_platform_n_in(void);
-casadi_int six_rod_platform_k_body_platform_n_out(void);
-casadi_real six_rod_platform_k_body_platform_default_in(casadi_int i);
-const char* six_rod_platform_k_body_platform_name_in(casadi_int i);
-const char* six_rod_platform_k_body_platform_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_body_platform_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_body_platform_sparsity_out(casadi_int i);
-int six_rod_platform_k_body_platform_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_body_platform_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_body_platform_SZ_ARG 2
 #define six_rod_platform_k_body_platform_SZ_RES 2
 #define six_rod_platform_k_body_platform_SZ_IW 0
 #define six_rod_platform_k_body_platform_SZ_W 0
 int six_rod_platform_k_body_jacobian_platform(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int six_rod_platform_k_body_jacobian_platform_checkout(void);
-void six_rod_platform_k_body_jacobian_platform_release(int mem);
-void six_rod_platform_k_body_jacobian_platform_incref(void);
-void six_rod_platform_k_body_jacobian_platform_decref(void);
-casadi_int six_rod_platform_k_body_jacobian_platform_n_in(void);
-casadi_int six_rod_platform_k_body_jacobian_platform_n_out(void);
-casadi_real six_rod_platform_k_body_jacobian_platform_default_in(casadi_int i);
-const char* six_rod_platform_k_body_jacobian_platform_name_in(casadi_int i);
-const char* six_rod_platform_k_body_jacobian_platform_name_out(casadi_int i);
-const casadi_int* six_rod_platform_k_body_jacobian_platform_sparsity_in(casadi_int i);
-const casadi_int* six_rod_platform_k_body_jacobian_platform_sparsity_out(casadi_int i);
-int six_rod_platform_k_body_jacobian_platform_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int six_rod_platform_k_body_jacobian_platform_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define six_rod_platform_k_body_jacobian_platform_SZ_ARG 2
 #define six_rod_platform_k_body_jacobian_platform_SZ_RES 2
 #define six_rod_platform_k_body_jacobian_platform_SZ_IW 0
 #define six_rod_platform_k_body_jacobian_platform_SZ_W 0
-void six_rod_platform_kernels_casadi_version(int* major, int* minor, int* patch);
-int six_rod_platform_kernels_casadi_int_size(void);
-int six_rod_platform_kernels_casadi_real_size(void);
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -18,242 +18,70 @@ extern "C" {
 #endif
 
 int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_residual_checkout(void);
-void tendon_robot_k_residual_release(int mem);
-void tendon_robot_k_residual_incref(void);
-void tendon_robot_k_residual_decref(void);
-casadi_int tendon_robot_k_residual_n_in(void);
-casadi_int tendon_robot_k_residual_n_out(void);
-casadi_real tendon_robot_k_residual_default_in(casadi_int i);
-const char* tendon_robot_k_residual_name_in(casadi_int i);
-const char* tendon_robot_k_residual_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_residual_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_residual_sparsity_out(casadi_int i);
-int tendon_robot_k_residual_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_residual_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_residual_SZ_ARG 8
 #define tendon_robot_k_residual_SZ_RES 4
 #define tendon_robot_k_residual_SZ_IW 0
 #define tendon_robot_k_residual_SZ_W 50
 int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_jacobian_checkout(void);
-void tendon_robot_k_jacobian_release(int mem);
-void tendon_robot_k_jacobian_incref(void);
-void tendon_robot_k_jacobian_decref(void);
-casadi_int tendon_robot_k_jacobian_n_in(void);
-casadi_int tendon_robot_k_jacobian_n_out(void);
-casadi_real tendon_robot_k_jacobian_default_in(casadi_int i);
-const char* tendon_robot_k_jacobian_name_in(casadi_int i);
-const char* tendon_robot_k_jacobian_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_jacobian_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_jacobian_sparsity_out(casadi_int i);
-int tendon_robot_k_jacobian_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_jacobian_SZ_ARG 8
 #define tendon_robot_k_jacobian_SZ_RES 4
 #define tendon_robot_k_jacobian_SZ_IW 0
 #define tendon_robot_k_jacobian_SZ_W 96
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_rate_checkout(void);
-void tendon_robot_k_rate_release(int mem);
-void tendon_robot_k_rate_incref(void);
-void tendon_robot_k_rate_decref(void);
-casadi_int tendon_robot_k_rate_n_in(void);
-casadi_int tendon_robot_k_rate_n_out(void);
-casadi_real tendon_robot_k_rate_default_in(casadi_int i);
-const char* tendon_robot_k_rate_name_in(casadi_int i);
-const char* tendon_robot_k_rate_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_rate_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_rate_sparsity_out(casadi_int i);
-int tendon_robot_k_rate_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_rate_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_rate_SZ_ARG 16
 #define tendon_robot_k_rate_SZ_RES 4
 #define tendon_robot_k_rate_SZ_IW 0
 #define tendon_robot_k_rate_SZ_W 92
 int tendon_robot_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_tangent_checkout(void);
-void tendon_robot_k_tangent_release(int mem);
-void tendon_robot_k_tangent_incref(void);
-void tendon_robot_k_tangent_decref(void);
-casadi_int tendon_robot_k_tangent_n_in(void);
-casadi_int tendon_robot_k_tangent_n_out(void);
-casadi_real tendon_robot_k_tangent_default_in(casadi_int i);
-const char* tendon_robot_k_tangent_name_in(casadi_int i);
-const char* tendon_robot_k_tangent_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_tangent_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_tangent_sparsity_out(casadi_int i);
-int tendon_robot_k_tangent_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_tangent_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_tangent_SZ_ARG 1
 #define tendon_robot_k_tangent_SZ_RES 1
 #define tendon_robot_k_tangent_SZ_IW 0
 #define tendon_robot_k_tangent_SZ_W 0
-int tendon_robot_k_coarseness(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_coarseness_checkout(void);
-void tendon_robot_k_coarseness_release(int mem);
-void tendon_robot_k_coarseness_incref(void);
-void tendon_robot_k_coarseness_decref(void);
-casadi_int tendon_robot_k_coarseness_n_in(void);
-casadi_int tendon_robot_k_coarseness_n_out(void);
-casadi_real tendon_robot_k_coarseness_default_in(casadi_int i);
-const char* tendon_robot_k_coarseness_name_in(casadi_int i);
-const char* tendon_robot_k_coarseness_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_coarseness_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_coarseness_sparsity_out(casadi_int i);
-int tendon_robot_k_coarseness_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_coarseness_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-#define tendon_robot_k_coarseness_SZ_ARG 2
-#define tendon_robot_k_coarseness_SZ_RES 1
-#define tendon_robot_k_coarseness_SZ_IW 0
-#define tendon_robot_k_coarseness_SZ_W 0
+int tendon_robot_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_resolution_index_SZ_ARG 2
+#define tendon_robot_k_resolution_index_SZ_RES 1
+#define tendon_robot_k_resolution_index_SZ_IW 0
+#define tendon_robot_k_resolution_index_SZ_W 0
 int tendon_robot_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_igm_checkout(void);
-void tendon_robot_k_igm_release(int mem);
-void tendon_robot_k_igm_incref(void);
-void tendon_robot_k_igm_decref(void);
-casadi_int tendon_robot_k_igm_n_in(void);
-casadi_int tendon_robot_k_igm_n_out(void);
-casadi_real tendon_robot_k_igm_default_in(casadi_int i);
-const char* tendon_robot_k_igm_name_in(casadi_int i);
-const char* tendon_robot_k_igm_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_igm_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_igm_sparsity_out(casadi_int i);
-int tendon_robot_k_igm_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_igm_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_igm_SZ_ARG 9
 #define tendon_robot_k_igm_SZ_RES 6
 #define tendon_robot_k_igm_SZ_IW 0
 #define tendon_robot_k_igm_SZ_W 50
 int tendon_robot_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_tip_checkout(void);
-void tendon_robot_k_tip_release(int mem);
-void tendon_robot_k_tip_incref(void);
-void tendon_robot_k_tip_decref(void);
-casadi_int tendon_robot_k_tip_n_in(void);
-casadi_int tendon_robot_k_tip_n_out(void);
-casadi_real tendon_robot_k_tip_default_in(casadi_int i);
-const char* tendon_robot_k_tip_name_in(casadi_int i);
-const char* tendon_robot_k_tip_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_tip_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_tip_sparsity_out(casadi_int i);
-int tendon_robot_k_tip_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_tip_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_tip_SZ_ARG 3
 #define tendon_robot_k_tip_SZ_RES 5
 #define tendon_robot_k_tip_SZ_IW 0
 #define tendon_robot_k_tip_SZ_W 30
 int tendon_robot_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_tip_jacobian_checkout(void);
-void tendon_robot_k_tip_jacobian_release(int mem);
-void tendon_robot_k_tip_jacobian_incref(void);
-void tendon_robot_k_tip_jacobian_decref(void);
-casadi_int tendon_robot_k_tip_jacobian_n_in(void);
-casadi_int tendon_robot_k_tip_jacobian_n_out(void);
-casadi_real tendon_robot_k_tip_jacobian_default_in(casadi_int i);
-const char* tendon_robot_k_tip_jacobian_name_in(casadi_int i);
-const char* tendon_robot_k_tip_jacobian_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_tip_jacobian_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_tip_jacobian_sparsity_out(casadi_int i);
-int tendon_robot_k_tip_jacobian_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_tip_jacobian_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_tip_jacobian_SZ_ARG 7
 #define tendon_robot_k_tip_jacobian_SZ_RES 5
 #define tendon_robot_k_tip_jacobian_SZ_IW 0
 #define tendon_robot_k_tip_jacobian_SZ_W 96
 int tendon_robot_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_shape_checkout(void);
-void tendon_robot_k_shape_release(int mem);
-void tendon_robot_k_shape_incref(void);
-void tendon_robot_k_shape_decref(void);
-casadi_int tendon_robot_k_shape_n_in(void);
-casadi_int tendon_robot_k_shape_n_out(void);
-casadi_real tendon_robot_k_shape_default_in(casadi_int i);
-const char* tendon_robot_k_shape_name_in(casadi_int i);
-const char* tendon_robot_k_shape_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_shape_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_shape_sparsity_out(casadi_int i);
-int tendon_robot_k_shape_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_shape_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_shape_SZ_ARG 4
 #define tendon_robot_k_shape_SZ_RES 5
 #define tendon_robot_k_shape_SZ_IW 0
 #define tendon_robot_k_shape_SZ_W 30
 int tendon_robot_k_actuator_lower_east(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_actuator_lower_east_checkout(void);
-void tendon_robot_k_actuator_lower_east_release(int mem);
-void tendon_robot_k_actuator_lower_east_incref(void);
-void tendon_robot_k_actuator_lower_east_decref(void);
-casadi_int tendon_robot_k_actuator_lower_east_n_in(void);
-casadi_int tendon_robot_k_actuator_lower_east_n_out(void);
-casadi_real tendon_robot_k_actuator_lower_east_default_in(casadi_int i);
-const char* tendon_robot_k_actuator_lower_east_name_in(casadi_int i);
-const char* tendon_robot_k_actuator_lower_east_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_lower_east_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_lower_east_sparsity_out(casadi_int i);
-int tendon_robot_k_actuator_lower_east_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_actuator_lower_east_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_actuator_lower_east_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_east_SZ_RES 3
 #define tendon_robot_k_actuator_lower_east_SZ_IW 0
 #define tendon_robot_k_actuator_lower_east_SZ_W 0
 int tendon_robot_k_actuator_lower_north(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_actuator_lower_north_checkout(void);
-void tendon_robot_k_actuator_lower_north_release(int mem);
-void tendon_robot_k_actuator_lower_north_incref(void);
-void tendon_robot_k_actuator_lower_north_decref(void);
-casadi_int tendon_robot_k_actuator_lower_north_n_in(void);
-casadi_int tendon_robot_k_actuator_lower_north_n_out(void);
-casadi_real tendon_robot_k_actuator_lower_north_default_in(casadi_int i);
-const char* tendon_robot_k_actuator_lower_north_name_in(casadi_int i);
-const char* tendon_robot_k_actuator_lower_north_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_lower_north_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_lower_north_sparsity_out(casadi_int i);
-int tendon_robot_k_actuator_lower_north_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_actuator_lower_north_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_actuator_lower_north_SZ_ARG 2
 #define tendon_robot_k_actuator_lower_north_SZ_RES 3
 #define tendon_robot_k_actuator_lower_north_SZ_IW 0
 #define tendon_robot_k_actuator_lower_north_SZ_W 0
 int tendon_robot_k_actuator_upper_west(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_actuator_upper_west_checkout(void);
-void tendon_robot_k_actuator_upper_west_release(int mem);
-void tendon_robot_k_actuator_upper_west_incref(void);
-void tendon_robot_k_actuator_upper_west_decref(void);
-casadi_int tendon_robot_k_actuator_upper_west_n_in(void);
-casadi_int tendon_robot_k_actuator_upper_west_n_out(void);
-casadi_real tendon_robot_k_actuator_upper_west_default_in(casadi_int i);
-const char* tendon_robot_k_actuator_upper_west_name_in(casadi_int i);
-const char* tendon_robot_k_actuator_upper_west_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_upper_west_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_upper_west_sparsity_out(casadi_int i);
-int tendon_robot_k_actuator_upper_west_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_actuator_upper_west_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_actuator_upper_west_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_west_SZ_RES 3
 #define tendon_robot_k_actuator_upper_west_SZ_IW 0
 #define tendon_robot_k_actuator_upper_west_SZ_W 0
 int tendon_robot_k_actuator_upper_south(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-int tendon_robot_k_actuator_upper_south_checkout(void);
-void tendon_robot_k_actuator_upper_south_release(int mem);
-void tendon_robot_k_actuator_upper_south_incref(void);
-void tendon_robot_k_actuator_upper_south_decref(void);
-casadi_int tendon_robot_k_actuator_upper_south_n_in(void);
-casadi_int tendon_robot_k_actuator_upper_south_n_out(void);
-casadi_real tendon_robot_k_actuator_upper_south_default_in(casadi_int i);
-const char* tendon_robot_k_actuator_upper_south_name_in(casadi_int i);
-const char* tendon_robot_k_actuator_upper_south_name_out(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_upper_south_sparsity_in(casadi_int i);
-const casadi_int* tendon_robot_k_actuator_upper_south_sparsity_out(casadi_int i);
-int tendon_robot_k_actuator_upper_south_work(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
-int tendon_robot_k_actuator_upper_south_work_bytes(casadi_int *sz_arg, casadi_int* sz_res, casadi_int *sz_iw, casadi_int *sz_w);
 #define tendon_robot_k_actuator_upper_south_SZ_ARG 2
 #define tendon_robot_k_actuator_upper_south_SZ_RES 3
 #define tendon_robot_k_actuator_upper_south_SZ_IW 0
 #define tendon_robot_k_actuator_upper_south_SZ_W 0
-void tendon_robot_kernels_casadi_version(int* major, int* minor, int* patch);
-int tendon_robot_kernels_casadi_int_size(void);
-int tendon_robot_kernels_casadi_real_size(void);
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -312,6 +312,15 @@ def test_export_writes_a_folder_and_says_how_to_go_on(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["c", "wire.toml"]
 
 
+def test_export_with_derivatives(wire: Path) -> None:
+    fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=10")
+    plain = cosserat("export", "wire.toml", "--output", "plain", *fixed, cwd=wire)
+    with_derivatives = cosserat("export", "wire.toml", "--output", "whole", "--derivatives", *fixed, cwd=wire)
+    assert plain.returncode == with_derivatives.returncode == 0
+    extra = {path.name for path in (wire / "whole").iterdir()} - {path.name for path in (wire / "plain").iterdir()}
+    assert extra == {"wire_derivatives.c"}
+
+
 def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> None:
     """The folder holds the scene as it was changed; a fixed discretisation is used as it is."""
     changes = ('wire.strain="planar"', "accuracy.modes=2", "accuracy.nodes=5")

@@ -20,7 +20,7 @@ import numpy as np
 
 from cosserat_casadi import Compiled, Model, Scene, Solution, build, discretise, export, solve
 from cosserat_casadi.codegen.names import Names, scene_names
-from tests.scenes import WEIGHT, push, rod, scene
+from tests.scenes import WEIGHT, push, rod, scene, three_cables
 
 HARNESS = Path(__file__).parent / "harness"
 
@@ -57,6 +57,10 @@ WRISTS = [
     {"body": "hand", "rod": "left", "kind": "fixed", "position": [0.1, 0.0, 0.0]},
     {"body": "hand", "rod": "right", "kind": "fixed", "position": [-0.1, 0.0, 0.0]},
 ]
+LEGS = [
+    rod("reissner", name="left", base={"position": [0.1, 0.0, 0.0]}),
+    rod("reissner", name="right", base={"position": [-0.1, 0.0, 0.0]}),
+]
 LOAD = {"name": "load", "kind": "body_wrench", "body": "hand", "force": [0.2, 0.0, -0.3]}
 
 
@@ -84,6 +88,8 @@ RECIPES = {
     "fixed": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar", inputs=[]), 2, 4),
     "tendons": Recipe(scene(push(), strain="reissner", actuators=[TENDON, HELD, CHAMBER]), 2, 4),
     "robot": Recipe(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS), 2, 4),
+    "gripper": Recipe(scene(LOAD, rods=LEGS, bodies=[HAND], joints=WRISTS), 2, 4),
+    "cables": Recipe(three_cables(), 2, 4),
     "loops": Recipe(scene(push(force=[0.9, 0.0, -0.4]), strain="planar"), 2, 4, "permuted"),
 }
 """Scenes by the name of their library: every strain model, supports, several rods, no inputs, loops in the kernels."""
@@ -157,11 +163,24 @@ class Exported:
 
     def program(self, harness: str, *flags: str) -> Path:
         """A program of the folder ``harness``, with the names of this library filled in."""
+        return self.link([self.source(harness)], *flags)
+
+    def source(self, harness: str) -> Path:
+        """A source of the folder ``harness``, with the names of this library filled in."""
         words = {"name": self.name, "MACRO": self.names.macro}
         text = re.sub(r"@\{(\w+)\}", lambda match: words[match[1]], (HARNESS / harness).read_text())
         source = self.scratch / f"{self.name}_{harness}"
         once(source, lambda path: path.write_text(text))
-        return self.link([source], *flags)
+        return source
+
+    def whole_program(self, harness: str, *flags: str) -> Path:
+        """A program of the folder ``harness`` that includes the library's own source, and so sees what is static."""
+        kernels = self.objects(*QUICK)[1]
+        target = self.scratch / f"{self.name}-{_digest([harness, *flags])}"
+        source = self.source(harness)
+        words = ("-std=c99", *flags, f"-I{self.folder}", source, kernels, "-lm", "-o")
+        once(target, lambda path: gcc(*words, path))
+        return target
 
     def solve(self, inputs: np.ndarray, start: np.ndarray | None = None) -> Solution:
         """Equilibrium by the solver in Python."""

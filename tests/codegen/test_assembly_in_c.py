@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, Discretisation, Model, build, export, load, parse_scene, scene_from_dict, solve
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.blocks import BORDER
+from cosserat_casadi.codegen.blocks import INTERFACE
 from cosserat_casadi.codegen.names import scene_names
 from tests.codegen.libraries import QUICK, Recipe, gcc
 from tests.conftest import ROOT
@@ -39,7 +39,7 @@ def test_two_rods_and_a_body_vs_python(tmp_path: Path) -> None:
         "loads": [LOAD],
     }
     model = build(scene_from_dict(tables))
-    export(model, tmp_path / "two")
+    export(model, tmp_path / "two", derivatives=True)
     library = load(tmp_path / "two")
     found = library.solve()
     assert_allclose(found.q, solve(model).x, rtol=0, atol=1e-9)
@@ -86,13 +86,13 @@ def test_blocks_of_a_chain() -> None:
     model = Recipe(scene({**push(), "rod": "c"}, rods=rods), 2, 4).model()
     found = assembled(model, scene_names("lib", model.scene))
     assert found is not None
-    assert [len(front.edges) for front in found.blocks.fronts] == [7, 14, 4]
-    assert found.blocks.owners.count(BORDER) == 14
+    assert [len(front.interface) for front in found.blocks.fronts] == [7, 14, 4]
+    assert found.blocks.owners.count(INTERFACE) == 14
 
 
 @pytest.mark.slow
 def test_platform_vs_python(tmp_path: Path) -> None:
-    """The committed platform, its legs drawn to other lengths: solution, pose, sensitivities by differences."""
+    """The platform of generated/, its legs drawn to other lengths: solution, pose, sensitivities by differences."""
     name = "six_rod_platform"
     folder = ROOT / "generated" / name
     described = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
@@ -101,7 +101,7 @@ def test_platform_vs_python(tmp_path: Path) -> None:
         for leg, kept in described["discretisation"].items()
     }
     model = build(parse_scene((folder / "scene.toml").read_text(encoding="utf-8")), chosen)
-    library = compiled(model, folder, name, tmp_path / f"{name}.so")
+    library = compiled(model, export(model, tmp_path / name), name, tmp_path / f"{name}.so")
     drawn = {f"leg_{i}.length": [0.43 + 0.01 * (-1) ** i] for i in range(1, 7)}
     inputs, step = model.pack(drawn), 1e-5
     solution, theirs = library.solve(inputs), solve(model, drawn)

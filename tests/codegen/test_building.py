@@ -26,11 +26,15 @@ BOTH = """
 #include "pair.h"
 #include <stdio.h>
 
+static planar_workspace planar_work;
+static pair_workspace pair_work;
+
 int main(void) {
   const double push[PLANAR_INPUTS] = {0.9, 0.0, -0.4};
   const double pull[PAIR_INPUTS] = {0.0, -0.8, 0.3, 0.2, 0.0, 0.0, 0.3, -0.2, -2.0};
   double q[PLANAR_UNKNOWNS] = {0}, p[PAIR_UNKNOWNS] = {0}, tip[3], turn[4];
-  if (planar_solve(push, q, 0) != PLANAR_CONVERGED || pair_solve(pull, p, 0) != PAIR_CONVERGED) return 1;
+  if (planar_solve(push, q, &planar_work, 0) != PLANAR_CONVERGED) return 1;
+  if (pair_solve(pull, p, &pair_work, 0) != PAIR_CONVERGED) return 1;
   planar_tip(q, push, tip, turn);
   printf("%.17g %.17g %.17g\\n", tip[0], tip[1], tip[2]);
   pair_tip_left(p, pull, tip, turn);

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import solve
+from cosserat_casadi import Outcome, solve
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import Exported
 
@@ -24,6 +24,11 @@ EACH = pytest.mark.parametrize(
 )
 
 CONVERGED, NOT_FINITE, NOT_IN_EQUILIBRIUM = 0, 2, 6
+
+
+def workspace(made: Exported) -> FloatArray:
+    """Memory that the solver works in."""
+    return np.zeros(-(-getattr(made.handle, f"{made.name}_workspace_size")() // 8))
 
 
 def call(made: Exported, symbol: str, *arguments: FloatArray | float | None) -> Any:
@@ -39,11 +44,15 @@ def call(made: Exported, symbol: str, *arguments: FloatArray | float | None) -> 
 
 
 def results(
-    made: Exported, symbol: str, arguments: list[FloatArray | float], shapes: list[tuple[int, ...]]
+    made: Exported,
+    symbol: str,
+    arguments: list[FloatArray | float],
+    shapes: list[tuple[int, ...]],
+    *last: FloatArray,
 ) -> list[Any]:
     """What a function writes; matrices are stored column after column."""
     rooms = [np.full(shape, np.nan, order="F") for shape in shapes]
-    call(made, symbol, *arguments, *rooms)
+    call(made, symbol, *arguments, *rooms, *last)
     return rooms
 
 
@@ -67,11 +76,13 @@ def points(made: Exported) -> list[tuple[FloatArray, FloatArray]]:
 def test_residual_and_its_jacobians_vs_model(library: Library, name: str) -> None:
     made = library(name)
     model, n, m = made.model, made.model.size, made.model.inputs.size
+    work = workspace(made)
     for q, inputs in points(made):
-        assert_as(results(made, f"{name}_residual", [q, inputs], [(n,)]), [model.residual(q, inputs)])
-        found = results(made, f"{name}_residual_jacobian", [q, inputs], [(n, n), (n,)])
+        assert_as(results(made, f"{name}_residual", [q, inputs], [(n,)], work), [model.residual(q, inputs)])
+        found = results(made, f"{name}_residual_jacobian", [q, inputs], [(n, n), (n,)], work)
         assert_as(found, list(model.jacobian(q, inputs)))
-        assert_as(results(made, f"{name}_input_jacobian", [q, inputs], [(n, m)]), [model.input_jacobian(q, inputs)])
+        found = results(made, f"{name}_input_jacobian", [q, inputs], [(n, m)], work)
+        assert_as(found, [model.input_jacobian(q, inputs)])
 
 
 @EACH
@@ -151,10 +162,10 @@ def test_sensitivity_at_what_is_no_equilibrium_writes_nothing(library: Library, 
     solved = made.compiled.solve(inputs).q
     for q, status in ((solved + 1e-3, NOT_IN_EQUILIBRIUM), (np.full(n, np.nan), NOT_FINITE)):
         rooms = [np.full(n * m + 1, 7.0), np.full(7 * m * rods + 1, 7.0)]
-        assert call(made, f"{name}_solve_sensitivity", inputs, q, *rooms) == status
+        assert call(made, f"{name}_solve_sensitivity", inputs, q, *rooms, workspace(made)) == status
         assert all(np.all(room == 7.0) for room in rooms)
     rooms = [np.full(n * m + 1, 7.0), np.full(7 * m * rods + 1, 7.0)]
-    assert call(made, f"{name}_solve_sensitivity", inputs, solved, *rooms) == CONVERGED
+    assert call(made, f"{name}_solve_sensitivity", inputs, solved, *rooms, workspace(made)) == CONVERGED
     for room in rooms:
         assert not np.any(room[:-1] == 7.0)
         assert room[-1] == 7.0
@@ -162,21 +173,21 @@ def test_sensitivity_at_what_is_no_equilibrium_writes_nothing(library: Library, 
 
 def test_results_that_may_be_null(library: Library) -> None:
     made = library("planar")
-    inputs, q = made.model.pack(), np.zeros(3)
-    assert call(made, "planar_solve", inputs, q, None) == CONVERGED
+    inputs, q, work = made.model.pack(), np.zeros(3), workspace(made)
+    assert call(made, "planar_solve", inputs, q, work, None) == CONVERGED
     assert_allclose(q, made.compiled.solve(inputs).q, rtol=0, atol=0)
-    assert call(made, "planar_solve_sensitivity", inputs, q, None, None) == CONVERGED
-    assert call(made, "planar_follow", inputs, 2 * inputs, q, None) == CONVERGED
+    assert call(made, "planar_solve_sensitivity", inputs, q, None, None, work) == CONVERGED
+    assert call(made, "planar_follow", inputs, 2 * inputs, q, work, None) == CONVERGED
     assert_allclose(q, made.compiled.solve(2 * inputs).q, rtol=0, atol=1e-10)
 
 
 def test_scene_without_inputs_needs_no_pointer_to_them(library: Library) -> None:
     made = library("fixed")
     q = np.zeros(made.model.size)
-    assert call(made, "fixed_solve", None, q, None) == CONVERGED
+    assert call(made, "fixed_solve", None, q, workspace(made), None) == CONVERGED
     assert_allclose(q, made.compiled.solve().q, rtol=0, atol=0)
     again = q.copy()
-    assert call(made, "fixed_follow", None, None, again, None) == CONVERGED
+    assert call(made, "fixed_follow", None, None, again, workspace(made), None) == CONVERGED
     assert_allclose(again, q, rtol=0, atol=1e-12)
 
 
@@ -184,7 +195,7 @@ def test_every_status_has_its_own_sentence(library: Library) -> None:
     made = library("planar")
     text = made.handle.planar_status_text
     text.restype = ctypes.c_char_p
-    sentences = [text(status).decode() for status in range(7)]
-    assert len(set(sentences)) == 7
-    assert sentences[0].startswith("Equilibrium found")
-    assert text(7) == text(-1) == b"No such status."
+    sentences = [text(status).decode() for status in range(8)]
+    assert len(set(sentences)) == 8
+    assert sentences == [outcome.value for outcome in Outcome]
+    assert text(8) == text(-1) == b"No such status."

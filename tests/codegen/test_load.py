@@ -61,7 +61,7 @@ def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     place = tmp_path_factory.mktemp(request.param)
     with pytest.MonkeyPatch.context() as patch:
         cached(place / "cache", patch)
-        folder = export(model, place / "arm")
+        folder = export(model, place / "arm", derivatives=True)
         return Pair(request.param, model, folder, cache_folder(), load(folder))
 
 
@@ -179,7 +179,7 @@ def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An exported folder beside an empty cache."""
     cached(tmp_path / "cache", monkeypatch)
     given = scene(push(), strain="planar")
-    return export(build(given, discretise(given, 2, 4)), tmp_path / "strip")
+    return export(build(given, discretise(given, 2, 4)), tmp_path / "strip", derivatives=True)
 
 
 def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -208,7 +208,7 @@ def test_the_object_is_compiled_once(strip: Path, tmp_path: Path) -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+@pytest.mark.parametrize("ending", [".c", ".h", "_config.h", "_kernels.c", "_kernels.h", "_derivatives.c"])
 def test_a_changed_source_gives_another_object(strip: Path, ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     made = pretended(monkeypatch)
     first = load(strip).library
@@ -330,16 +330,18 @@ FOREIGN = {
     "a number": 1,
     "a list": [{"name": "strip"}],
     "another table": {"name": "site", "start_url": "."},
-    "a name that is none": {"name": 3, "unknowns": [], "inputs": []},
-    "a name that leads elsewhere": {"name": "../strip", "unknowns": [], "inputs": []},
-    "unknowns are a number": {"name": "strip", "unknowns": 9, "inputs": []},
-    "unknowns are numbers": {"name": "strip", "unknowns": [9], "inputs": []},
-    "unknowns without a count": {"name": "strip", "unknowns": [{"rod": "rod"}], "inputs": []},
-    "a count that is none": {"name": "strip", "unknowns": [{"rod": "rod", "count": "2"}], "inputs": []},
-    "inputs are a number": {"name": "strip", "unknowns": [], "inputs": 3},
-    "inputs without values": {"name": "strip", "unknowns": [], "inputs": [{"name": "push.force"}]},
-    "values that are no numbers": {"name": "strip", "unknowns": [], "inputs": [{"value": ["a"]}]},
-    "values of two shapes": {"name": "strip", "unknowns": [], "inputs": [{"value": [[1], 2]}]},
+    "a name that is none": {"name": 3, "unknowns": [], "inputs": [], "files": []},
+    "a name that leads elsewhere": {"name": "../strip", "unknowns": [], "inputs": [], "files": []},
+    "unknowns are a number": {"name": "strip", "unknowns": 9, "inputs": [], "files": []},
+    "unknowns are numbers": {"name": "strip", "unknowns": [9], "inputs": [], "files": []},
+    "unknowns without a count": {"name": "strip", "unknowns": [{"rod": "rod"}], "inputs": [], "files": []},
+    "a count that is none": {"name": "strip", "unknowns": [{"rod": "rod", "count": "2"}], "inputs": [], "files": []},
+    "inputs are a number": {"name": "strip", "unknowns": [], "inputs": 3, "files": []},
+    "inputs without values": {"name": "strip", "unknowns": [], "inputs": [{"name": "push.force"}], "files": []},
+    "values that are no numbers": {"name": "strip", "unknowns": [], "inputs": [{"value": ["a"]}], "files": []},
+    "no list of files": {"name": "strip", "unknowns": [], "inputs": []},
+    "files that are numbers": {"name": "strip", "unknowns": [], "inputs": [], "files": [1]},
+    "values of two shapes": {"name": "strip", "unknowns": [], "inputs": [{"value": [[1], 2]}], "files": []},
 }
 
 
@@ -350,7 +352,54 @@ def test_manifest_of_something_else(tmp_path: Path, content: object) -> None:
 
 
 @needs_compiler
-@pytest.mark.parametrize("ending", [".c", ".h", "_kernels.c", "_kernels.h", "_derivatives.c"])
+@pytest.mark.parametrize("ending", [".c", ".h", "_config.h", "_kernels.c", "_kernels.h", "_derivatives.c"])
 def test_missing_source(strip: Path, ending: str) -> None:
     (strip / f"strip{ending}").unlink()
     assert refusal(strip) == (str(strip / f"strip{ending}"), "is missing", "export the folder anew")
+
+
+# Folders without derivatives
+
+
+@pytest.fixture
+def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Model, Compiled]:
+    """A model, and what is loaded of its folder without derivatives."""
+    cached(tmp_path / "cache", monkeypatch)
+    tendon = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.0]}
+    given = scene(push(), strain="planar", actuators=[tendon])
+    model = build(given, discretise(given, 2, 4))
+    folder = export(model, tmp_path / "bare")
+    assert not (folder / "bare_derivatives.c").exists()
+    assert "derivatives" not in (folder / "README.md").read_text().split("## Build")[0]
+    return model, load(folder)
+
+
+@needs_compiler
+def test_folder_without_derivatives_gives_solver_and_values(bare: tuple[Model, Compiled]) -> None:
+    model, loaded = bare
+    assert not loaded.differentiable
+    found = loaded.solve()
+    assert_allclose(found.q, solve(model).x, rtol=0, atol=1e-10)
+    x, inputs = np.array([0.3, -0.2]), model.pack() + 0.1
+    pairs = [
+        (loaded.residual(x, inputs), model.residual(x, inputs)),
+        *zip(loaded.tip["rod"](x, inputs), model.tip["rod"](x, inputs), strict=False),
+        *zip(loaded.shape["rod"](x, inputs, 0.4), model.shape["rod"](x, inputs, 0.4), strict=False),
+        *zip(loaded.actuator["pull"](x, inputs), model.actuator["pull"](x, inputs), strict=False),
+    ]
+    assert len(pairs) == 8
+    for ours, theirs in pairs:
+        assert_allclose(ours.full().ravel(), theirs.full().ravel(), rtol=1e-12, atol=1e-12)
+    for own, theirs in ((loaded.residual, model.residual), (loaded.shape["rod"], model.shape["rod"])):
+        assert own.name_in() == theirs.name_in()
+        assert own.name_out() == theirs.name_out()
+
+
+@needs_compiler
+def test_derivatives_that_the_folder_lacks_are_refused_with_a_remedy(bare: tuple[Model, Compiled]) -> None:
+    model, loaded = bare
+    x = ca.MX.sym("x", model.size)
+    refused = pytest.raises((RuntimeError, NotImplementedError), match=r"without derivatives: export .*derivatives")
+    for value in (loaded.residual(x, model.pack()), loaded.tip["rod"](x, model.pack())[0]):
+        with refused:
+            ca.Function("slope", [x], [ca.jacobian(value, x)])

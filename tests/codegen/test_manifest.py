@@ -170,14 +170,17 @@ def test_units_of_arguments_and_results(exported: Exported) -> None:
 def test_header_agrees_with_the_manifest(exported: Exported) -> None:
     model, files, manifest = exported
     macros = dict(re.findall(r"^#define LIB_(\w+) (\d+)", files["lib.h"], re.M))
-    sizes = {key: int(macros.pop(key)) for key in ("UNKNOWNS", "INPUTS", "RODS")}
+    macros = {key: number for key, number in macros.items() if not key.startswith(("VERSION", "POSE"))}
+    sizes = {key: int(macros.pop(key)) for key in ("UNKNOWNS", "INPUTS", "RODS", "BODIES")}
     assert sizes == {
+        "BODIES": len(model.scene.bodies),
         "UNKNOWNS": sum(entry["count"] for entry in manifest["unknowns"]),
         "INPUTS": sum(len(entry["value"]) for entry in manifest["inputs"]),
         "RODS": len(manifest["discretisation"]),
     }
     places = {f"INPUT_{e['name'].replace('.', '_').upper()}": str(e["first"]) for e in manifest["inputs"]}
-    assert macros == places
+    counts = {f"INPUT_{e['name'].replace('.', '_').upper()}_SIZE": str(len(e["value"])) for e in manifest["inputs"]}
+    assert macros == places | counts
     for entry in manifest["inputs"]:
         comment = f"/* {len(entry['value'])} numbers, {entry['unit']}, {entry['axes']} axes */"
         assert f"{entry['first']} {comment}" in files["lib.h"]
@@ -200,9 +203,10 @@ def test_readme_and_demo_agree_with_the_manifest(exported: Exported) -> None:
         )
     for name in files:
         assert f"`{name}`" in files["README.md"] or name == "README.md"
-    given = re.search(r"DEFAULTS\[\w+\] = \{(.*)\}", files["lib_demo.c"])
+    assert "DEFAULTS[ROOM] = LIB_DEFAULTS;" in files["lib_demo.c"]
+    given = re.search(r"LIB_DEFAULTS \{(.*)\}", files["lib.h"])
     assert given is not None
-    numbers = [float(word) for word in given[1].split(",")]
+    numbers = [float(word) for word in given[1].replace("(lib_real)", "").split(",")]
     assert_allclose(numbers, model.pack() if model.inputs.size else [0.0], rtol=0, atol=0)
 
 

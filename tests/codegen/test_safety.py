@@ -22,6 +22,8 @@ def fuzz(made: Exported, count: int) -> None:
     assert converged > 0
     assert not_finite > 0
     assert stalled > 0
+    assert printed["lost"] > 0
+    assert printed["tracked"] > 0
     assert printed["longest"] < 1.0
 
 

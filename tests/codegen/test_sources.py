@@ -11,11 +11,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi.codegen import library as library_module
+from cosserat_casadi.codegen.library import VERBATIM
 from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
 
 Library = Callable[[str], Exported]
 
 ALL = pytest.mark.parametrize("name", list(RECIPES))
+
+C_SOURCES = Path(library_module.__file__).parent / "c"
 
 STRICT = (*C99, "-Werror")
 
@@ -31,6 +35,70 @@ def test_hand_readable_sources_compile_without_a_warning(library: Library, name:
     for stem in (name, f"{name}_demo"):
         # Warnings about what may be uninitialised come from the optimiser.
         gcc(*STRICT, "-O2", "-c", made.folder / f"{stem}.c", "-o", tmp_path / "o")
+
+
+LINT = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
+"""What any compiler may complain of; MSVC knows no arrays of variable length."""
+
+KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
+"""Libraries with each kind of source: dense and by blocks, without inputs, with actuators and bodies."""
+
+
+@pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
+@pytest.mark.parametrize("language", ["c99", "c11", "c++20"])
+@pytest.mark.parametrize("name", KINDS)
+def test_solver_passes_every_lint_in_both_languages(
+    library: Library, name: str, language: str, single: bool, tmp_path: Path
+) -> None:
+    made = library(name)
+    if language == "c++20" and shutil.which("g++") is None:
+        pytest.skip("g++ is not installed")
+    compiler = ("g++", "-x", "c++") if language == "c++20" else ("gcc",)
+    chosen = [f"-D{made.names.macro}_SINGLE"] if single else []
+    for stem in (name, f"{name}_demo"):
+        run(*compiler, f"-std={language}", *LINT, *chosen, "-c", made.folder / f"{stem}.c", "-o", tmp_path / "o")
+    # CasADi's own sources: they compile, whatever a compiler says of them.
+    run(*compiler, f"-std={language}", "-w", *chosen, "-c", made.folder / f"{name}_kernels.c", "-o", tmp_path / "o")
+
+
+CORTEX = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard")
+
+
+@pytest.mark.skipif(shutil.which("arm-none-eabi-gcc") is None, reason="no compiler for Cortex-M (gcc-arm-none-eabi)")
+@pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
+@pytest.mark.parametrize("name", KINDS)
+def test_program_for_a_microcontroller(library: Library, name: str, single: bool, tmp_path: Path) -> None:
+    """The program of the README links for a Cortex-M: nothing beyond newlib is asked for."""
+    made = library(name)
+    chosen = [f"-D{made.names.macro}_SINGLE"] if single else []
+    words = ("arm-none-eabi-gcc", *CORTEX, "-std=c99", "-Os", *chosen)
+    (tmp_path / "main.c").write_text(readme_program(made))
+    objects = []
+    for stem, source in ((stem, made.folder / f"{stem}.c") for stem in (name, f"{name}_kernels")):
+        lint = () if stem.endswith("_kernels") else LINT
+        objects.append(tmp_path / f"{stem}.o")
+        run(*words, *lint, "-c", source, "-o", objects[-1])
+    include = ("-I", made.folder)
+    run(*words, *include, tmp_path / "main.c", *objects, "--specs=nosys.specs", "-lm", "-o", tmp_path / "program")
+
+
+@ALL
+def test_shared_library_shows_the_functions_of_the_header_alone(library: Library, name: str) -> None:
+    made = library(name)
+    lines = run("nm", "-D", "--defined-only", made.compiled.library).splitlines()
+    exported = {line.split()[-1] for line in lines}
+    declared = set(re.findall(rf"\b({name}_\w+)\(", (made.folder / f"{name}.h").read_text()))
+    assert exported - {"_init", "_fini"} == declared
+    kernels = (made.folder / f"{name}_kernels.h").read_text()
+    assert not re.search(r"_(checkout|incref|decref|n_in|name_out|sparsity_in|work)\(", kernels)
+
+
+@ALL
+def test_solver_is_the_same_file_in_every_folder(library: Library, name: str) -> None:
+    held = {path.name: path.read_text() for path in library(name).folder.iterdir() if path.name in VERBATIM}
+    assert {"solver.c", "solver.h"} < set(held)
+    for file, text in held.items():
+        assert text == (C_SOURCES / file).read_text(), file
 
 
 @pytest.mark.parametrize("flags", [("-DPLANAR_SINGLE",), ("-fopenmp",), ("-std=c11",)], ids=lambda flags: flags[0])
@@ -72,13 +140,18 @@ def test_library_holds_no_state_and_calls_only_mathematics(library: Library, nam
         assert all(word.startswith(f"{name}_") for word in public)
 
 
+def readme_program(made: Exported) -> str:
+    """The one program in C of a folder's README."""
+    blocks = re.findall(r"```c\n(.*?)```", (made.folder / "README.md").read_text(), re.DOTALL)
+    assert len(blocks) == 1
+    return str(blocks[0])
+
+
 @pytest.mark.parametrize("name", ["planar", "pair", "fixed"])
 def test_program_of_the_readme_vs_python(library: Library, name: str) -> None:
     made = library(name)
-    blocks = re.findall(r"```c\n(.*?)```", (made.folder / "README.md").read_text(), re.DOTALL)
-    assert len(blocks) == 1
     source = made.scratch / "readme.c"
-    source.write_text(blocks[0])
+    source.write_text(readme_program(made))
     gcc(*STRICT, "-O2", "-c", source, "-I", made.folder, "-o", made.scratch / "readme.o")
     printed = run(made.link([source], *QUICK))
     inputs = made.model.pack()

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
+from cosserat_casadi.codegen.library import TRACK_ITERATIONS, TRACK_STEPS
 from tests.codegen.libraries import QUICK, Exported, run
+from tests.scenes import cable_lengths
 
 Library = Callable[[str], Exported]
 
@@ -31,9 +35,63 @@ def test_track_vs_solve_and_sensitivity(library: Library, name: str) -> None:
     # Both residuals are below 1e-11; the tension of a short cable is softest to them.
     assert found["off"] < 1e-7
     assert found["off_slope"] == 0.0
-    assert (found["lost"], found["kept"]) == (2, 0)
+    # What was given no number keeps the solution and the Jacobian of the turn before.
+    assert (found["lost"], found["kept"]) == (2, 1)
 
 
 @pytest.mark.parametrize("name", ["spatial", "robot"])
 def test_small_turns_need_no_jacobian_but_that_of_the_derivatives(library: Library, name: str) -> None:
     assert loop(library(name), 0.02)["jacobians"] == 0
+
+
+WRAPPED = [f"-Wl,--wrap=cables_k_{kernel}" for kernel in ("residual", "jacobian", "rate", "tangent")]
+
+
+def cables(
+    made: Exported, inputs: np.ndarray, iterations: int = TRACK_ITERATIONS, steps: int = TRACK_STEPS
+) -> dict[str, Any]:
+    """Turns of a loop at these inputs, with this budget for a turn."""
+    text = f"{len(inputs)}\n" + "\n".join(" ".join(map(repr, row)) for row in inputs.tolist())
+    program = made.program("cables.c", *QUICK, *WRAPPED)
+    command = [str(program), str(iterations), str(steps)]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=True, timeout=100)
+    found: dict[str, Any] = json.loads(done.stdout)
+    # The bounds that the header states.
+    assert found["iterations"] <= iterations
+    assert found["residuals"] <= iterations + steps + 2
+    assert found["jacobians"] <= iterations + steps + 2
+    assert found["rates"] <= steps + 1
+    assert found["moved_when_lost"] == 0
+    return found
+
+
+@pytest.mark.parametrize("step", [2e-4, 6e-4])
+def test_cables_of_given_lengths_are_tracked_without_a_cold_start(library: Library, step: float) -> None:
+    """Tensions move by more than half a unit a turn, strains by a tenth: Newton stays on the branch."""
+    found = cables(library("cables"), cable_lengths(step, 500))
+    assert (found["failures"], found["lost"], found["warm_failures"], found["cold_starts"]) == (0, 0, 0, 0)
+    assert found["continuations"] == 0
+    assert found["iterations"] < 10
+    assert found["apart"] < 1e-8
+
+
+def test_a_turn_that_strays_is_followed_from_the_last_solution(library: Library) -> None:
+    """Steps of 4 mm move strains by nearly one: farther than one Newton is trusted."""
+    found = cables(library("cables"), cable_lengths(4e-3, 100))
+    assert (found["failures"], found["lost"]) == (0, 0)
+    assert found["continuations"] > 90
+    assert found["apart"] < 1e-8
+
+
+def test_track_that_is_lost_leaves_everything_as_it_was(library: Library) -> None:
+    """A jump too far for the budget is refused, again and again; the turn that asks for something nearer goes on."""
+    made = library("cables")
+    near = cable_lengths(2e-4, 20)
+    near[5:10] += [0.12, -0.06, -0.06]
+    found = cables(made, near, 6, 2)
+    assert (found["failures"], found["lost"]) == (0, 5)
+
+
+@pytest.mark.parametrize("budget", [(0, 0), (1, 0), (0, 5), (1, 1), (2, 3)])
+def test_no_budget_is_too_small_to_be_kept(library: Library, budget: tuple[int, int]) -> None:
+    assert cables(library("cables"), cable_lengths(6e-4, 50), *budget)["failures"] == 0

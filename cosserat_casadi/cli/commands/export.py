@@ -23,9 +23,12 @@ def export(
     scene: SceneFile,
     output: Annotated[Path, typer.Option(help="Folder to write: new, empty, or of an earlier export.")],
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
+    derivatives: Annotated[
+        bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
+    ] = False,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources: equations, derivatives, solver. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources: equations, Jacobians, solver. Exit codes: 0 written, 2 refused, 3 not solved.
 
     Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
     """
@@ -41,5 +44,5 @@ def export(
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
     # The folder keeps the estimate, which is for these inputs; tune gives one for a range of them.
-    export_model(solution.model, output, name, error_estimate=solution.error_estimate)
+    export_model(solution.model, output, name, error_estimate=solution.error_estimate, derivatives=derivatives)
     print_export(Console(), solution, output)

@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS };
+enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, THREADS = 4 };
+
+static @{name}_workspace workspaces[THREADS];
 
 int main(void) {
   int count, i, k;
@@ -18,7 +20,7 @@ int main(void) {
     if (scanf("%lf", &value) != 1) return 2;
     inputs[i] = (@{name}_real)value;
   }
-  fprintf(stderr, "%d\n", @{name}_solve_batch(count, inputs, q, info));
+  fprintf(stderr, "%d\n", @{name}_solve_batch(count, inputs, q, workspaces, THREADS, info));
   for (k = 0; k < count; k++) {
     printf("%d", (int)info[k].status);
     for (i = 0; i < N; i++) printf(" %.17g", (double)q[k * N + i]);

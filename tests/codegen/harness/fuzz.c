@@ -10,10 +10,13 @@
 #include <string.h>
 #include <time.h>
 
-enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 7 };
+enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 8 };
+
+static @{name}_workspace workspace;
 
 static long counts[STATUSES];
 static int most_iterations;
+static long lost, tracked;
 static double longest;
 
 /* Of this process, so that a busy machine changes nothing. */
@@ -85,10 +88,10 @@ static void check(@{name}_status said, const double *inputs, const double *start
   if (!finite(inputs, INPUTS) || !finite(q, N)) fail("converged, not finite", inputs, start, q, info);
   @{name}_tip(q, inputs, position, quaternion);
   if (!finite(position, 3) || !finite(quaternion, 4)) fail("tip is not finite", inputs, start, q, info);
-  @{name}_residual(q, inputs, residual);
+  @{name}_residual(q, inputs, residual, &workspace);
   if (!(norm(residual, N) <= 1e-10 * (1 + norm(q, N)))) fail("no equilibrium", inputs, start, q, info);
   if (!isfinite(norm(q, N))) fail("unknowns beyond all measure", inputs, start, q, info);
-  if (@{name}_solve_sensitivity(inputs, q, d_q, d_tip) == @{MACRO}_CONVERGED) {
+  if (@{name}_solve_sensitivity(inputs, q, d_q, d_tip, &workspace) == @{MACRO}_CONVERGED) {
     if (!finite(d_q, N * INPUTS) || !finite(d_tip, 7 * INPUTS)) fail("sensitivity is not finite", inputs, start, q, info);
   }
 }
@@ -99,7 +102,7 @@ static void solve(const double *inputs, const double *start) {
   double q[N], begun;
   memcpy(q, start, sizeof q);
   begun = seconds();
-  said = @{name}_solve(inputs, q, &info);
+  said = @{name}_solve(inputs, q, &workspace, &info);
   check(said, inputs, start, q, &info, seconds() - begun);
 }
 
@@ -109,8 +112,29 @@ static void follow(const double *from, const double *inputs, const double *start
   double q[N], begun;
   memcpy(q, start, sizeof q);
   begun = seconds();
-  said = @{name}_follow(from, inputs, q, &info);
+  said = @{name}_follow(from, inputs, q, &workspace, &info);
   check(said, inputs, start, q, &info, seconds() - begun);
+}
+
+/* A turn of a control loop from any start, with whatever the turn before has left. */
+static void track(const double *inputs, const double *start) {
+  static @{name}_memory memory;
+  const @{name}_options options = {12, 6};
+  const @{name}_options *chosen = uniform() < 0.5 ? 0 : &options;
+  @{name}_info info;
+  double q[N], d_q[N * INPUTS], d_tip[7 * INPUTS], begun;
+  memcpy(q, start, sizeof q);
+  begun = seconds();
+  const @{name}_status said = @{name}_track(inputs, q, &memory, chosen, d_q, d_tip, &workspace, &info);
+  if (chosen && info.iterations > options.max_iterations) fail("more work than allowed", inputs, start, q, &info);
+  if (said == @{MACRO}_LOST_TRACK || said == @{MACRO}_NOT_FINITE) {
+    lost += said == @{MACRO}_LOST_TRACK;
+    if (said == @{MACRO}_LOST_TRACK && memcmp(q, start, sizeof q)) fail("lost, and moved", inputs, start, q, &info);
+    return;
+  }
+  tracked += said == @{MACRO}_CONVERGED;
+  /* At a limit point the solution has no derivatives. */
+  check(said == @{MACRO}_SINGULAR ? info.status : said, inputs, start, q, &info, seconds() - begun);
 }
 
 int main(int count, char **words) {
@@ -138,6 +162,7 @@ int main(int count, char **words) {
         for (i = 0; i < N; i++) start[i] = i == place ? special[a] : special[b];
         for (i = 0; i < INPUTS; i++) inputs[i] = 0.1 * (i + 1);
         solve(inputs, start);
+        track(inputs, start);
         follow(inputs, inputs, start);
       }
     }
@@ -153,9 +178,10 @@ int main(int count, char **words) {
     for (i = 0; i < N; i++) start[i] = k % 3 == 0 ? any_magnitude() : k % 3 == 1 ? 4 * uniform() - 2 : 0;
     solve(inputs, start);
     if (k % 8 == 0) follow(other, inputs, start);
+    track(inputs, start);
   }
   printf("{\"most_iterations\": %d, \"longest\": %.3g, \"counts\": [", most_iterations, longest);
   for (i = 0; i < STATUSES; i++) printf("%s%ld", i ? ", " : "", counts[i]);
-  printf("]}\n");
+  printf("], \"lost\": %ld, \"tracked\": %ld}\n", lost, tracked);
   return 0;
 }

@@ -11,6 +11,7 @@ typedef struct {
   double q[CASES][N];
   double d_tip[CASES][@{MACRO}_RODS * 7 * INPUTS];
   @{name}_info info[CASES];
+  @{name}_workspace workspace;
 } work;
 
 static double inputs[CASES][INPUTS];
@@ -32,8 +33,8 @@ static void *run(void *given) {
   work *mine = given;
   int k;
   for (k = 0; k < CASES; k++) {
-    @{name}_solve(inputs[k], mine->q[k], &mine->info[k]);
-    @{name}_solve_sensitivity(inputs[k], mine->q[k], 0, mine->d_tip[k]);
+    @{name}_solve(inputs[k], mine->q[k], &mine->workspace, &mine->info[k]);
+    @{name}_solve_sensitivity(inputs[k], mine->q[k], 0, mine->d_tip[k], &mine->workspace);
   }
   return 0;
 }

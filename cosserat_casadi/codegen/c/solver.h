@@ -1,0 +1,59 @@
+/* What the parts of the solver share: types, sizes, sums over unknowns.
+
+   The library's own source includes, in this order: its configuration, its kernels, this header, the equations of the
+   scene, one of linear_dense.c and linear_blocks.c, and solver.c. All is one translation unit, so that nothing but the
+   functions of the library's header is visible to a linker. */
+#ifndef SOLVER_UNKNOWNS
+#error "This file is a part of the library's own source: compile that one."
+#endif
+
+#include <math.h>
+#include <string.h>
+
+typedef solver_real real;
+typedef solver_jacobian_factors jacobian_factors;
+typedef solver_updated_jacobian updated_jacobian;
+typedef solver_path_point path_point;
+typedef solver_workspace workspace;
+
+enum {
+  N = SOLVER_UNKNOWNS,
+  INPUTS = SOLVER_INPUTS,
+  POSES = SOLVER_POSES,
+  MAX_REUSES = SOLVER_MAX_REUSES,
+  POSE_SIZE = 7 /* position and quaternion */
+};
+
+#ifdef SOLVER_SINGLE
+#define SQUARE_ROOT sqrtf
+#define ABSOLUTE fabsf
+#else
+#define SQUARE_ROOT sqrt
+#define ABSOLUTE fabs
+#endif
+
+/* What the residual is taken at besides the unknowns. */
+typedef struct {
+  const real *inputs;
+  real load_factor;
+} loads;
+
+static loads full_load(const real *inputs) {
+  const loads full = {inputs, 1};
+  return full;
+}
+
+static real dot(const real *a, const real *b) {
+  real sum = 0;
+  for (int i = 0; i < N; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+static real norm_of(const real *a) { return SQUARE_ROOT(dot(a, a)); }
+
+static int all_finite(const real *a, int count) {
+  for (int i = 0; i < count; i++) {
+    if (!isfinite(a[i])) return 0;
+  }
+  return 1;
+}

@@ -1,0 +1,81 @@
+"""Functions of a compiled library as CasADi functions that give values alone."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+REMEDY = "export the folder with derivatives: export(..., derivatives=True), or cosserat export --derivatives"
+
+Evaluate = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
+"""Argument vectors to result vectors."""
+
+
+class PlainFunction(ca.Callback):  # type: ignore[misc]
+    """A function without derivatives: asked for one, it says what to do.
+
+    Args:
+        name: of the function.
+        arguments: length of each argument by name.
+        results: length of each result by name.
+        evaluate: what computes the results.
+    """
+
+    def __init__(self, name: str, arguments: dict[str, int], results: dict[str, int], evaluate: Evaluate) -> None:
+        ca.Callback.__init__(self)
+        self._arguments = arguments
+        self._results = results
+        self._evaluate = evaluate
+        self.construct(name, {})
+
+    def get_n_in(self) -> int:
+        """Number of arguments."""
+        return len(self._arguments)
+
+    def get_n_out(self) -> int:
+        """Number of results."""
+        return len(self._results)
+
+    def get_name_in(self, i: int) -> str:
+        """Name of an argument."""
+        return list(self._arguments)[i]
+
+    def get_name_out(self, i: int) -> str:
+        """Name of a result."""
+        return list(self._results)[i]
+
+    def get_sparsity_in(self, i: int) -> ca.Sparsity:
+        """Shape of an argument."""
+        return ca.Sparsity.dense(list(self._arguments.values())[i], 1)
+
+    def get_sparsity_out(self, i: int) -> ca.Sparsity:
+        """Shape of a result."""
+        return ca.Sparsity.dense(list(self._results.values())[i], 1)
+
+    def eval(self, arguments: Sequence[ca.DM]) -> list[ca.DM]:
+        """The results."""
+        vectors = [np.ascontiguousarray(argument.full().ravel()) for argument in arguments]
+        return [ca.DM(result) for result in self._evaluate(vectors)]
+
+    def has_jacobian(self) -> bool:
+        """CasADi asks for the Jacobian here, and is told why there is none."""
+        return True
+
+    def get_jacobian(self, *_: Any) -> ca.Function:
+        """Refuse.
+
+        Raises:
+            NotImplementedError: always.
+        """
+        raise NotImplementedError(f"{self.name()} was compiled without derivatives: {REMEDY}")
+
+
+def pointer(array: FloatArray) -> Any:
+    """An array as an argument of a function in C."""
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

@@ -1,0 +1,78 @@
+"""Inputs and results by name: the members of the structs in the header, and the functions that fill them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cosserat_casadi.codegen.manifest import UNITS
+from cosserat_casadi.codegen.names import Names
+
+
+def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
+    """Words of the struct of inputs.
+
+    Args:
+        names: what things are called.
+        entries: inputs as in the manifest.
+    """
+    members = list[str]()
+    pack = list[str]()
+    unpack = list[str]()
+    for entry in entries:
+        member = member_name(entry["name"])
+        macro = input_macro(names, entry["name"])
+        members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
+        pack.append(f"  memcpy(inputs + {macro}, named->{member}, sizeof named->{member});")
+        unpack.append(f"  memcpy(named->{member}, inputs + {macro}, sizeof named->{member});")
+    return {
+        "input_members": "\n".join(members),
+        "pack_lines": "\n".join(pack),
+        "unpack_lines": "\n".join(unpack),
+    }
+
+
+def result_struct_words(names: Names, actuators: list[dict[str, Any]]) -> dict[str, str]:
+    """Words of the struct of results.
+
+    Args:
+        names: what things are called.
+        actuators: actuators as in the manifest.
+    """
+    poses = {pose_name(names, "tip", rod): names.function("tip", rod) for rod in names.rods}
+    poses |= {pose_name(names, "body", body): names.function("body", body) for body in names.bodies}
+    members = [f"  {names.name}_pose {member};" for member in poses]
+    calls = [
+        f"  {function}(x, inputs, named->{member}.position, named->{member}.quaternion);"
+        for member, function in poses.items()
+    ]
+    for entry in actuators:
+        effort = entry["effort"]
+        conjugate = entry["extent"]
+        members += [
+            f"  {names.name}_real {quantity}_{entry['name']}; /* {UNITS[quantity]} */"
+            for quantity in (effort, conjugate)
+        ]
+        function = names.function("actuator", entry["name"])
+        arguments = f"&named->{effort}_{entry['name']}, &named->{conjugate}_{entry['name']}"
+        calls.append(f"  {function}(x, inputs, {arguments}, 0);")
+    macros = [f"#define {names.macro}_POSE_{member.upper()} {i}" for i, member in enumerate(poses)]
+    return {
+        "results_members": "\n".join(members),
+        "evaluate_lines": "\n".join(calls),
+        "pose_macros": "\n".join(macros),
+    }
+
+
+def member_name(input_name: str) -> str:
+    """An input's name as a C identifier."""
+    return input_name.replace(".", "_")
+
+
+def input_macro(names: Names, input_name: str) -> str:
+    """Macro of an input's first entry."""
+    return f"{names.macro}_INPUT_{member_name(input_name).upper()}"
+
+
+def pose_name(names: Names, word: str, owner: str) -> str:
+    """What the pose of a tip or a body is called, without the name of the library."""
+    return names.function(word, owner).removeprefix(f"{names.name}_")

@@ -1,0 +1,28 @@
+"""The static functions of the solver in C, stepped through one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.codegen.libraries import HARNESS, Exported, run
+
+Library = Callable[[str], Exported]
+
+SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover", "-Wno-unused-function")
+
+
+@pytest.mark.parametrize(
+    ("name", "harness"),
+    [
+        ("planar", "units_dense.c"),
+        ("spatial", "units_dense.c"),
+        ("pinned", "units_dense.c"),
+        ("gripper", "units_blocks.c"),
+    ],
+)
+def test_parts_of_the_solver(library: Library, name: str, harness: str) -> None:
+    made = library(name)
+    defaults = f"-DSOLVER_DEFAULTS={made.names.macro}_DEFAULTS"
+    run(made.whole_program(harness, *SANITIZED, defaults, f"-I{HARNESS}"))
