@@ -38,9 +38,11 @@ def _nodes_in(span: tuple[float, float], grid: Grid) -> Indices:
     """Nodes of the elements inside a span, each side of a break with its own."""
     start, end = span
     # A span ends at breaks, so an element is inside as a whole or not at all.
-    middles = grid.nodes.reshape(grid.elements, -1).mean(axis=1)
+    nodes_of_elements = grid.nodes.reshape(grid.elements, -1)
+    middles = nodes_of_elements.mean(axis=1)
     inside = (middles > start) & (middles < end)
-    return np.flatnonzero(np.repeat(inside, grid.intervals + 1))
+    of_nodes = np.repeat(inside, grid.intervals + 1)
+    return np.flatnonzero(of_nodes)
 
 
 def _polynomial(offset: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -57,8 +59,11 @@ def _polynomial(offset: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _helix(helix: scenes.Helix, X: FloatArray) -> tuple[FloatArray, FloatArray]:
     """A helix of constant pitch and its derivative, shape (2, k) each, m."""
-    angle = 2 * np.pi * helix.turns * X + helix.phase
-    rate = 2 * np.pi * helix.turns * helix.radius
-    outward = np.array([np.cos(angle), np.sin(angle)])
-    around = np.array([-np.sin(angle), np.cos(angle)])
+    angular_rate = 2 * np.pi * helix.turns
+    angle = angular_rate * X + helix.phase
+    sine = np.sin(angle)
+    cosine = np.cos(angle)
+    outward = np.array([cosine, sine])
+    around = np.array([-sine, cosine])
+    rate = angular_rate * helix.radius
     return helix.radius * outward, rate * around

@@ -42,15 +42,23 @@ class TracedLoad:
     def coefficients(self, values: Mapping[str, Matrix]) -> tuple[Matrix | None, Matrix | None]:
         """Force and moment of a load that is free of the pose, in its axes, 3×k each; None for one that is zero."""
         # No number would be right for the pose: should it be read after all, the result is not a number.
-        nowhere = Section(ca.DM.nan(3, 1), ca.DM.nan(3, 3), ca.DM.nan(0, 1))
+        nowhere = Section(
+            position=ca.DM.nan(3, 1),
+            rotation=ca.DM.nan(3, 3),
+            data=ca.DM.nan(0, 1),
+        )
         force, moment = self.member.wrench(self.load, nowhere, values)
         return _unless_zero(force), _unless_zero(moment)
 
     def data(self, site: Site) -> FloatArray:
         """What the kernel takes as data at the sections of a rod, shape (d, k)."""
-        profiles = [self.member.profiles(self.load, site.rod, site.X, count) for count in self.columns]
-        own = self.member.data(self.load, site)
-        return np.vstack([*profiles, own])
+        force_columns, moment_columns = self.columns
+        rows = [
+            self.member.profiles(self.load, site.rod, site.X, force_columns),
+            self.member.profiles(self.load, site.rod, site.X, moment_columns),
+            self.member.data(self.load, site),
+        ]
+        return np.vstack(rows)
 
 
 def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
@@ -70,7 +78,9 @@ def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int
     # Entries that are zero for good have no symbol, so that what they would make is structurally zero too.
     symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
     energy = member.energy(load, section, symbols)
-    force, moment = (ca.sparsify(ca.SX(vector)) for vector in member.wrench(load, section, symbols))
+    given_force, given_moment = member.wrench(load, section, symbols)
+    force = ca.sparsify(ca.SX(given_force))
+    moment = ca.sparsify(ca.SX(given_moment))
     # What depends on the data of its section differs from node to node, and is evaluated there as well.
     pose = _entries(section.position, section.rotation, section.data)
     pose_free = energy is None and not ca.depends_on(_entries(force, moment), pose)

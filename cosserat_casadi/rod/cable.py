@@ -83,8 +83,13 @@ class RoutedCable:
         """T = T/|T|, three rows."""
         x, y, z = self.tangent
         if x is None and y is None:
-            return None, None, ca.DM.ones(1, len(self.routing.nodes))
-        return _quotient(x, self.stretch), _quotient(y, self.stretch), _quotient(z, self.stretch)
+            ones = ca.DM.ones(1, len(self.routing.nodes))
+            return None, None, ones
+        return (
+            _quotient(x, self.stretch),
+            _quotient(y, self.stretch),
+            _quotient(z, self.stretch),
+        )
 
     @cached_property
     def lever(self) -> dict[int, Row]:
@@ -105,7 +110,8 @@ class RoutedCable:
     @cached_property
     def value(self) -> Matrix:
         """Length L along the routing, 1×1, m."""
-        return self.stretch @ ca.DM(self._node_lengths)
+        lengths = ca.DM(self._node_lengths)
+        return self.stretch @ lengths
 
     @cached_property
     def gradient(self) -> Matrix:

@@ -34,15 +34,18 @@ class FoldedMatrix:
 
     def __matmul__(self, columns: Matrix) -> Matrix:
         """Product with columns, n×m."""
-        return self.fold.T @ (self.half @ columns)
+        folded_product = self.half @ columns
+        return self.fold.T @ folded_product
 
     def __mul__(self, factor: float) -> FoldedMatrix:
         """The matrix times a number."""
-        return FoldedMatrix(self.fold, self.half * factor)
+        scaled = self.half * factor
+        return FoldedMatrix(self.fold, scaled)
 
     def __truediv__(self, divisor: float) -> FoldedMatrix:
         """The matrix divided by a number."""
-        return FoldedMatrix(self.fold, self.half / divisor)
+        scaled = self.half / divisor
+        return FoldedMatrix(self.fold, scaled)
 
     @property
     def T(self) -> FoldedTranspose:
@@ -56,7 +59,8 @@ class FoldedMatrix:
 
     def first_columns(self, count: int) -> FoldedMatrix:
         """The matrix of the first columns."""
-        return FoldedMatrix(self.fold, self.half[:, :count])
+        first = self.half[:, :count]
+        return FoldedMatrix(self.fold, first)
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,8 @@ class FoldedTranspose:
 
     def __matmul__(self, columns: Matrix) -> Matrix:
         """Product with columns, k×m."""
-        return self.matrix.half.T @ (self.matrix.fold @ columns)
+        sums_and_differences = self.matrix.fold @ columns
+        return self.matrix.half.T @ sums_and_differences
 
 
 def folded(matrix: FloatArray, mirror: Indices, signs: FloatArray, parities: FloatArray) -> FoldedMatrix:

@@ -106,7 +106,10 @@ class Shape:
         """Coordinates in the base frame of 3×M vectors given in the sections' frames."""
         x, y, z = ca.vertsplit(vectors)
         d1, d2, d3 = self.directors
-        return self.scale(d1, x) + self.scale(d2, y) + self.scale(d3, z)
+        first = self.scale(d1, x)
+        second = self.scale(d2, y)
+        third = self.scale(d3, z)
+        return first + second + third
 
     def rotation_at(self, node: int) -> Matrix:
         """Rotation matrix base_R_section of one node, 3×3."""

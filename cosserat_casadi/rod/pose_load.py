@@ -108,12 +108,16 @@ class LoadedSections:
         none = ca.DM(count, 1)
         x, y, z = (row.T for row in ca.vertsplit(self.position))
         # δφ × r at every section.
-        lever = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]])
+        levers = [
+            [none, z, -y],
+            [-z, none, x],
+            [y, -x, none],
+        ]
         alike = ca.kron(ca.DM.eye(3), ca.DM.ones(count, 1))
         no_turn = ca.DM(3 * count, 3)
-        shifted = self.stiffness @ ca.vertcat(alike, no_turn)
-        turned = self.stiffness @ ca.vertcat(lever, alike)
-        return shifted, turned
+        shift = ca.vertcat(alike, no_turn)
+        turn = ca.vertcat(ca.blockcat(levers), alike)
+        return self.stiffness @ shift, self.stiffness @ turn
 
     def changed(self, variation: Matrix) -> Wrench:
         """A wrench on the same sections whose forces and moments are a variation of this load's, 6k×1."""

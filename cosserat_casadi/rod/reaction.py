@@ -130,10 +130,12 @@ class Reaction:
         shape = self.tangent.shape
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
+            in_base = shape.rotation_at(node) @ vector
             # δ(R v) = δθ × R v = −(R v)^ δθ.
             turning = self.tangent.rotation_of(node)
-            return -(hat(shape.rotation_at(node) @ vector) @ turning)
-        angular = -(hat_operator(self._statics.line(wrench, vector)) @ self.tangent.rotation)
+            return -(hat(in_base) @ turning)
+        per_length = self._statics.line(wrench, vector)
+        angular = -(hat_operator(per_length) @ self.tangent.rotation)
         no_column = ca.DM(angular.shape[0], self._size - angular.shape[1])
         return ca.horzcat(angular, no_column)
 
@@ -158,13 +160,15 @@ class Reaction:
 
 def _halves(variation: Matrix) -> tuple[Matrix, Matrix]:
     """Variations of the forces and of the moments, 3k×n each, from those of both."""
-    forces, moments = ca.vertsplit(variation, variation.shape[0] // 2)
+    half = variation.shape[0] // 2
+    forces, moments = ca.vertsplit(variation, half)
     return forces, moments
 
 
 def _summed(variation: Matrix, load: LoadedSections) -> Matrix:
     """Sum over the sections of a load, 3×n, of variations that hold their weights, 3k×n."""
-    sums = ca.kron(ca.DM.eye(3), ca.DM.ones(1, len(load.nodes)))
+    over_sections = ca.DM.ones(1, len(load.nodes))
+    sums = ca.kron(ca.DM.eye(3), over_sections)
     return sums @ variation
 
 
@@ -172,7 +176,12 @@ def _hat_row(field: Matrix) -> Matrix:
     """Operator v ↦ Σ field × v over the sections, from a 3×k field: 3×3k on stacked fields."""
     x, y, z = ca.vertsplit(field)
     zero = type(x)(*x.shape)
-    return ca.blockcat([[zero, -z, y], [z, zero, -x], [-y, x, zero]])
+    rows = [
+        [zero, -z, y],
+        [z, zero, -x],
+        [-y, x, zero],
+    ]
+    return ca.blockcat(rows)
 
 
 def _turned_back(wrench: Wrench, axis: int) -> Wrench:
@@ -190,5 +199,9 @@ def _cross_with_axis(vectors: Matrix, axis: int) -> Matrix:
     """Each column times the unit vector of an axis."""
     x, y, z = ca.vertsplit(vectors)
     zero = type(x)(*x.shape)
-    crossed = ((zero, z, -y), (-z, zero, x), (y, -x, zero))
+    crossed = (
+        (zero, z, -y),
+        (-z, zero, x),
+        (y, -x, zero),
+    )
     return ca.vertcat(*crossed[axis])

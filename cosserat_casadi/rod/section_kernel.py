@@ -103,5 +103,6 @@ def wrench_of_energy(energy: Matrix, position: Matrix, rotation: Matrix) -> tupl
     """
     with_position = ca.gradient(energy, position)
     with_rotation = ca.gradient(energy, ca.vec(rotation))
-    with_turn = [ca.dot(with_rotation, ca.vec(rate)) for rate in rotation_rates(rotation)]
+    rates = [ca.vec(rate) for rate in rotation_rates(rotation)]
+    with_turn = [ca.dot(with_rotation, rate) for rate in rates]
     return -with_position, -ca.vertcat(*with_turn)

@@ -149,7 +149,8 @@ class Statics:
     def _from_tip(self) -> FloatArray:
         """Matrix of the integral over X from each node to the tip, shape (M, M)."""
         grid = self.shape.rod.grid
-        return np.asarray(grid.weights[None, :] - grid.integration_matrix)
+        whole = grid.weights[None, :]
+        return np.asarray(whole - grid.integration_matrix)
 
     def _force_covector_of(self, wrenches: Sequence[Wrench]) -> Matrix | None:
         parts = []

@@ -214,7 +214,8 @@ class DiscreteRod:
             width = end - start
             X = start + width * (points + 1) / 2
             lengths = weights * width / 2 * self.length
-            hooke = self.properties.hooke(X) * (lengths / self.energy_unit)[:, None]
+            weight = lengths / self.energy_unit
+            hooke = self.properties.hooke(X) * weight[:, None]
             element = np.full(len(X), e)
             # Strains do not couple: the Hooke tensor is diagonal, and so are its blocks.
             for c, columns in self.columns.items():
@@ -305,7 +306,8 @@ class DiscreteRod:
         middle = (left + right) / 2
         X = middle[:, None] + width[:, None] * tau
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals * points)
-        samples = field(X.ravel(), element).reshape(len(width), points, -1)
+        samples = field(X.ravel(), element)
+        samples = samples.reshape(len(width), points, -1)
         # ∫ K ds over an interval: per X times ℓ, per interval times its width.
         lengths = self.length * width
         scaled = samples * lengths[:, None, None]

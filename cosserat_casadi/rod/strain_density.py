@@ -94,14 +94,16 @@ class StrainDensityOnRod:
     def _kernel(self, present: list[int]) -> ca.Function:
         """(strain, data) ↦ (density, gradient, second derivatives) of one section."""
         # A strain that is zero whatever the rod does has no symbol: nothing is written for it.
-        pattern = ca.Sparsity.triplet(6, 1, present, [0] * len(present))
+        first_column = [0] * len(present)
+        pattern = ca.Sparsity.triplet(6, 1, present, first_column)
         strain = ca.SX.sym("strain", pattern)
         data = ca.SX.sym("data", len(self.quantity.data))
         # Called with symbols once; the map below evaluates what is differentiated here.
         density = self.quantity.density(strain, data)
         gradient = ca.jacobian(density, strain).T
         second = ca.vec(ca.jacobian(gradient, strain))
-        return ca.Function("density", [strain, data], ca.cse([density, gradient, second]))
+        results = ca.cse([density, gradient, second])
+        return ca.Function("density", [strain, data], results)
 
     @property
     def _node_lengths(self) -> FloatArray:

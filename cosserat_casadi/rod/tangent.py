@@ -138,8 +138,12 @@ class Tangent:
         x, y, z = ca.vertsplit(weighted)
         none = type(x)(*x.shape)
         # Σ w δθ × t, the sum over the nodes.
-        levers = ca.blockcat([[none, z, -y], [-z, none, x], [y, -x, none]])
-        columns = [levers @ self.rotation]
+        levers = [
+            [none, z, -y],
+            [-z, none, x],
+            [y, -x, none],
+        ]
+        columns = [ca.blockcat(levers) @ self.rotation]
         for c in self.rod.linear:
             stretch = weights.T * np.asarray(self._stretch(c))
             columns.append(self.shape.directors[c - 3] @ ca.DM(stretch))
@@ -196,7 +200,11 @@ class Tangent:
         rows.append(ca.DM(0, self.angular_size))
         linear = ca.vertcat(*rows)
         none = ca.DM(linear.shape[0], linear.shape[0])
-        return ca.blockcat([[self._angular_rows(), linear.T], [linear, none]])
+        blocks = [
+            [self._angular_rows(), linear.T],
+            [linear, none],
+        ]
+        return ca.blockcat(blocks)
 
     def _angular_rows(self) -> Matrix:
         """Angular rows and columns but for following forces, n_a×n_a."""

@@ -66,8 +66,10 @@ class IntervalKernels:
     def rotation_pattern(self) -> ca.Sparsity:
         """Sparsity of a rotation matrix of the rod, 3×3: a rod that turns about one axis leaves that axis alone."""
         # The pattern of one increment is that of all products of increments.
-        quaternion = ca.SX.sym("quaternion", self.increment.sparsity_out(0))
-        return ca.sparsify(quaternion_to_matrix(quaternion)).sparsity()
+        pattern = self.increment.sparsity_out(0)
+        quaternion = ca.SX.sym("quaternion", pattern)
+        matrix = quaternion_to_matrix(quaternion)
+        return ca.sparsify(matrix).sparsity()
 
     @cached_property
     def pull(self) -> ca.Function:
