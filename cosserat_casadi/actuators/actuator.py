@@ -7,54 +7,65 @@ gives that quantity on the grid of a rod; residual, Jacobian, energy and outputs
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from cosserat_casadi.actuators.routing import span_ends
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.rod.actuation import Quantity
+from cosserat_casadi.scene.actuators import ActuatorRecord
+from cosserat_casadi.scene.families import word_of
+
+RecordType = TypeVar("RecordType", bound=ActuatorRecord)
 
 
-class Actuator(ABC):
+class Actuator(ABC, Generic[RecordType]):
     """One kind of actuator. The methods take ``actuator``, the frozen record of the scene.
 
     Attributes:
+        record: the record of the scene, which says the unit of the effort and the least that it can be.
         kind: the word of the scene format.
-        magnitudes: fields that may stay free at run time, the model's inputs, each with its unit.
-        effort: name of the effort, a field of the record.
+        effort: name of the effort, an input of the record.
         conjugate: name of the quantity that the effort works on.
-        units: of both, by name.
+        conjugate_unit: SI unit of that.
         energy_sign: 1 where the energy is effort times quantity, as of a tension; −1 where the effort does that much
             work on the rod, as a pressure does.
-        least_effort: what the effort cannot fall below; None where it may have either sign.
         drawn_as: a thin line with a knob at its end, or a broad translucent one.
     """
 
+    record: ClassVar[type[ActuatorRecord]]
     kind: ClassVar[str]
-    magnitudes: ClassVar[Mapping[str, str]]
     effort: ClassVar[str]
     conjugate: ClassVar[str]
-    units: ClassVar[Mapping[str, str]]
+    conjugate_unit: ClassVar[str]
     energy_sign: ClassVar[float]
-    least_effort: ClassVar[float | None] = None
     drawn_as: ClassVar[Literal["cable", "channel"]] = "channel"
 
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "record" in vars(cls):
+            cls.kind = word_of(cls.record)
+
+    @property
+    def effort_unit(self) -> str:
+        """SI unit of the effort."""
+        return self.record.inputs[self.effort].unit
+
     @abstractmethod
-    def quantity(self, actuator: Any, grid: Grid) -> Quantity:
+    def quantity(self, actuator: RecordType, grid: Grid) -> Quantity:
         """The conjugate quantity on the grid of the rod."""
 
-    def acts_on(self, actuator: Any, rod: str) -> bool:
+    def acts_on(self, actuator: RecordType, rod: str) -> bool:
         """Whether the actuator acts on the rod of this name."""
         return bool(actuator.rod == rod)
 
-    def breaks(self, actuator: Any) -> tuple[float, ...]:
+    def breaks(self, actuator: RecordType) -> tuple[float, ...]:
         """Abscissae at which the stress jumps: where the actuator enters the rod and where it ends."""
         return span_ends(actuator)
 
-    def prescribes_conjugate(self, actuator: Any) -> bool:
+    def prescribes_conjugate(self, actuator: RecordType) -> bool:
         """Whether the scene gives the quantity, so that the effort is an unknown."""
         return False
 
-    def may_go_slack(self, actuator: Any) -> bool:
+    def may_go_slack(self, actuator: RecordType) -> bool:
         """Whether an unknown effort vanishes where the quantity is below what is prescribed."""
         return False

@@ -6,11 +6,11 @@ force p A e_z on the sections and the moment D × p A e_z, whatever the rod's st
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
@@ -21,17 +21,16 @@ BENDINGS_AND_EXTENSION = (0, 1, 5)
 
 
 @final
-class Chamber(Actuator):
+class ChamberActuator(Actuator[scenes.Chamber]):
     """A pressure (Pa) in a channel along the rod."""
 
-    kind = "chamber"
-    magnitudes: ClassVar[Mapping[str, str]] = {"pressure": "Pa"}
+    record = scenes.Chamber
     effort = "pressure"
     conjugate = "volume"
-    units: ClassVar[Mapping[str, str]] = {"pressure": "Pa", "volume": "m³"}
+    conjugate_unit = "m³"
     energy_sign = -1.0
 
-    def quantity(self, actuator: Any, grid: Grid) -> StrainSum:
+    def quantity(self, actuator: scenes.Chamber, grid: Grid) -> StrainSum:
         """The volume: A D_y, −A D_x and A for each unit of K_x, K_y and Γ_z; zero outside the span."""
         # (Γ + K × D)_z = Γ_z + K_x D_y − K_y D_x.
         channel = routing(actuator, grid)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
@@ -12,26 +12,24 @@ from cosserat_casadi.rod.cable import Routing
 
 
 @final
-class Tendon(Actuator):
+class TendonActuator(Actuator[scenes.Tendon]):
     """A tension (N) along a routing through the sections; a length (m) makes the tension an unknown of the scene."""
 
-    kind = "tendon"
-    magnitudes: ClassVar[Mapping[str, str]] = {"tension": "N", "length": "m"}
+    record = scenes.Tendon
     effort = "tension"
     conjugate = "length"
-    units: ClassVar[Mapping[str, str]] = {"tension": "N", "length": "m"}
+    conjugate_unit = "m"
     energy_sign = 1.0
-    least_effort = 0.0
     drawn_as = "cable"
 
-    def quantity(self, actuator: Any, grid: Grid) -> Routing:
+    def quantity(self, actuator: scenes.Tendon, grid: Grid) -> Routing:
         """The routing, whose length the tension works on."""
         return routing(actuator, grid)
 
-    def prescribes_conjugate(self, actuator: Any) -> bool:
+    def prescribes_conjugate(self, actuator: scenes.Tendon) -> bool:
         """Where the scene gives a length."""
         return actuator.length is not None
 
-    def may_go_slack(self, actuator: Any) -> bool:
+    def may_go_slack(self, actuator: scenes.Tendon) -> bool:
         """Where the scene lets a cable of given length sag."""
         return bool(actuator.slack)

@@ -17,7 +17,8 @@ from cosserat_casadi.codegen.names import Names, scene_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene import Scene
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.scene import Actuator, Scene
 
 NAME = "sweep"
 """What every symbol of these libraries begins with."""
@@ -87,12 +88,14 @@ def row_library(model: Model) -> RowLibrary:
 def row_results(scene: Scene) -> tuple[str, ...]:
     """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
-    states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator.kind)]
+    states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
     return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
 
 
-def _state(kind: str) -> tuple[str, str]:
-    return ("tension", "length") if kind == "tendon" else ("pressure", "volume")
+def _state(actuator: Actuator) -> tuple[str, str]:
+    """Names of the effort of an actuator and of what it works on."""
+    member = EFFECTS[actuator.kind]
+    return member.effort, member.conjugate
 
 
 def _rows_source(model: Model, names: Names, results: int) -> str:

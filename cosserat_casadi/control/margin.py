@@ -20,6 +20,7 @@ from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
 
 WIDTH = 0.02
@@ -67,7 +68,7 @@ def _refuse_slack(model: Model) -> None:
     """Refuse cables that hold the rod at times only: the eigenvalues jump where they go slack."""
     problems = []
     for i, actuator in enumerate(model.scene.actuators):
-        if actuator.kind == "tendon" and actuator.length is not None and actuator.slack:
+        if EFFECTS[actuator.kind].may_go_slack(actuator):
             reason = "a cable that may go slack makes eigenvalues jump"
             problems.append(Problem(f"actuators[{i}].slack", reason, "give it slack = false"))
     if problems:

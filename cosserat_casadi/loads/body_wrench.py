@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load, Section
 from cosserat_casadi.maths.typing import Matrix
 
 
 @final
-class BodyWrench(Load):
+class BodyWrenchLoad(Load[scenes.BodyWrench]):
     """A force (N) and a moment (N m) on a body."""
 
-    kind = "body_wrench"
-    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
+    record = scenes.BodyWrench
 
-    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+    def on_body(self, load: scenes.BodyWrench, body: scenes.Body) -> BodyPoint | None:
         """The point of the body it names."""
         if load.body != body.name:
             return None
         return BodyPoint(load.position)
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def wrench(self, load: scenes.BodyWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment as given."""
         return values["force"], values["moment"]

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.typing import Matrix
 
 
 @final
-class DistributedWrench(Load):
+class DistributedWrenchLoad(Load[scenes.DistributedWrench]):
     """Legendre coefficients in 2X − 1 of a force (N/m) and a moment (N m/m), dead or follower."""
 
-    kind = "distributed_wrench"
-    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N/m", "moment": "N m/m"}
+    record = scenes.DistributedWrench
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def wrench(
+        self, load: scenes.DistributedWrench, section: Section, values: Mapping[str, Matrix]
+    ) -> tuple[Matrix, Matrix]:
         """The coefficients as given, one column a degree."""
         return values["force"], values["moment"]

@@ -3,39 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load, Section
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
 
 @final
-class Gravity(Load):
+class GravityLoad(Load[scenes.Gravity]):
     """A uniform field of acceleration (m/s²) on the rods and bodies it names, or on all."""
 
-    kind = "gravity"
-    magnitudes: ClassVar[Mapping[str, str]] = {"acceleration": "m/s²"}
+    record = scenes.Gravity
 
-    def acts_on(self, load: Any, rod: str) -> bool:
+    def acts_on(self, load: scenes.Gravity, rod: str) -> bool:
         """Every rod, unless the load names some rods or bodies."""
         return bool(load.acts_on_rod(rod))
 
-    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+    def on_body(self, load: scenes.Gravity, body: scenes.Body) -> BodyPoint | None:
         """The body's mass, at its centre."""
         if body.mass == 0.0 or not load.acts_on_body(body.name):
             return None
         return BodyPoint(body.centre_of_mass, body.mass)
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def wrench(self, load: scenes.Gravity, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """The acceleration, a force per mass."""
         # Mass comes in by the profile of a rod and the factor of a body.
         return values["acceleration"], ca.DM(3, 1)
 
-    def profiles(self, load: Any, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: scenes.Gravity, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
         """Mass per length, kg/m."""
         # A rod without mass is not weighed, and costs nothing.
         if rod.linear_density is None:

@@ -12,16 +12,21 @@ from abc import ABC
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
+from cosserat_casadi.scene.families import word_of
+from cosserat_casadi.scene.loads import LoadRecord
+
+RecordType = TypeVar("RecordType", bound=LoadRecord)
 
 Axes = Literal["world", "section"]
 Poses = tuple[FloatArray, FloatArray]
@@ -81,21 +86,26 @@ class BodyPoint:
     factor: float = 1.0
 
 
-class Load(ABC):
+class Load(ABC, Generic[RecordType]):
     """One kind of load.
 
     The methods take ``load``, the frozen record of the scene. ``values`` holds each input as a 3×k or 1×1 matrix,
     symbolic or numeric; an entry that is zero for good is not stored in it.
 
     Attributes:
+        record: the record of the scene, whose word, inputs and units are those of the load.
         kind: the word of the scene format.
-        magnitudes: fields that may stay free at run time, the model's inputs, each with its unit.
     """
 
+    record: ClassVar[type[LoadRecord]]
     kind: ClassVar[str]
-    magnitudes: ClassVar[Mapping[str, str]]
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "record" in vars(cls):
+            cls.kind = word_of(cls.record)
+
+    def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.
 
         Returns:
@@ -108,28 +118,28 @@ class Load(ABC):
             raise NotImplementedError(f"{type(self).__name__} gives neither a wrench nor an energy")
         return wrench_of_energy(energy, section.position, section.rotation)
 
-    def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
+    def energy(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> Matrix | None:
         """Potential energy on a section, 1×1, J or J/m; None for a load that is not given by one."""
         return None
 
-    def axes(self, load: Any) -> Axes:
+    def axes(self, load: RecordType) -> Axes:
         """Axes that force and moment are given in; what is given by an energy is in world axes."""
         frame = getattr(load, "frame", "world")
         return "section" if frame == "body" else "world"
 
-    def abscissa(self, load: Any) -> float | None:
+    def abscissa(self, load: RecordType) -> float | None:
         """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod."""
         return None
 
-    def acts_on(self, load: Any, rod: str) -> bool:
+    def acts_on(self, load: RecordType, rod: str) -> bool:
         """Whether the load acts on the rod of this name."""
         return bool(getattr(load, "rod", None) == rod)
 
-    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+    def on_body(self, load: RecordType, body: scenes.Body) -> BodyPoint | None:
         """How the load acts on a rigid body of the scene; None where it does not."""
         return None
 
-    def breaks(self, load: Any) -> tuple[float, ...]:
+    def breaks(self, load: RecordType) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
         # Under a point load strain and internal force jump; what acts per length leaves them smooth.
         at = self.abscissa(load)
@@ -137,18 +147,20 @@ class Load(ABC):
             return ()
         return (at,)
 
-    def profiles(self, load: Any, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: RecordType, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
         """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
 
         By default the columns are coefficients of Legendre polynomials in 2X − 1.
         """
         return np.asarray(legendre_polynomials(columns, X).T)
 
-    def data(self, load: Any, site: Site) -> FloatArray:
+    def data(self, load: RecordType, site: Site) -> FloatArray:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
         return np.zeros((0, len(site.X)))
 
-    def arrows(self, load: Any, label: str, position: FloatArray, force: FloatArray, moment: FloatArray) -> list[Arrow]:
+    def arrows(
+        self, load: RecordType, label: str, position: FloatArray, force: FloatArray, moment: FloatArray
+    ) -> list[Arrow]:
         """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
 
         Args:

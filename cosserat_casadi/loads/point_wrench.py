@@ -7,23 +7,23 @@ of its own on either side, so every field is smooth inside an element and the ac
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.typing import Matrix
 
 
 @final
-class PointForceAndMoment(Load):
+class PointWrenchLoad(Load[scenes.PointWrench]):
     """A force (N) and a moment (N m) at X = at, dead or follower."""
 
-    kind = "point_wrench"
-    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
+    record = scenes.PointWrench
 
-    def abscissa(self, load: Any) -> float:
+    def abscissa(self, load: scenes.PointWrench) -> float:
         """The loaded section."""
         return float(load.at)
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def wrench(self, load: scenes.PointWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment as given."""
         return values["force"], values["moment"]

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, final
+from typing import final
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.typing import Matrix
 
 
 @final
-class TipWrench(Load):
+class TipWrenchLoad(Load[scenes.TipWrench]):
     """A force (N) and a moment (N m) at X = 1, dead or follower."""
 
-    kind = "tip_wrench"
-    magnitudes: ClassVar[Mapping[str, str]] = {"force": "N", "moment": "N m"}
+    record = scenes.TipWrench
 
-    def abscissa(self, load: Any) -> float:
+    def abscissa(self, load: scenes.TipWrench) -> float:
         """The tip."""
         return 1.0
 
-    def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+    def wrench(self, load: scenes.TipWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment as given."""
         return values["force"], values["moment"]

@@ -28,7 +28,7 @@ class TracedLoad:
         pose_free: whether force and moment, in the load's axes, are the same whatever the pose and the data.
     """
 
-    member: Load
+    member: Load[Any]
     load: Any
     kernel: SectionKernel
     columns: tuple[int, int]
@@ -61,7 +61,7 @@ class TracedLoad:
         return np.vstack(rows)
 
 
-def traced(member: Load, load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
+def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
     """The kernel of a load.
 
     Args:
@@ -125,7 +125,9 @@ def _unless_zero(vector: Matrix) -> Matrix | None:
     return vector
 
 
-def has_potential(member: Load, load: Any, values: Mapping[str, FloatArray], data_size: int, *, one_axis: bool) -> bool:
+def has_potential(
+    member: Load[Any], load: Any, values: Mapping[str, FloatArray], data_size: int, *, one_axis: bool
+) -> bool:
     """Whether a load has a potential at these inputs, so that stability is the sign of an eigenvalue.
 
     A load that is given by its energy has, and so has a force of fixed direction. A moment of fixed direction has only

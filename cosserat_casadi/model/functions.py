@@ -46,8 +46,8 @@ POSE_DERIVATIVES = (Output("d_pose_d_x"), Output("d_pose_d_inputs"))
 def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     """Effort and conjugate of an actuator by their own names, and the derivative of the conjugate."""
     member = next(EFFECTS[actuator.kind] for actuator in discrete.scene.actuators if actuator.name == name)
-    effort = Output(member.effort, member.units[member.effort])
-    conjugate = Output(member.conjugate, member.units[member.conjugate])
+    effort = Output(member.effort, member.effort_unit)
+    conjugate = Output(member.conjugate, member.conjugate_unit)
     return effort, conjugate, Output(f"d_{conjugate.name}_d_x")
 
 

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from cosserat_casadi.actuators.actuator import Actuator
-from cosserat_casadi.actuators.chamber import Chamber
-from cosserat_casadi.actuators.tendon import Tendon
-from cosserat_casadi.loads.body_wrench import BodyWrench
-from cosserat_casadi.loads.distributed_wrench import DistributedWrench
-from cosserat_casadi.loads.gravity import Gravity
+from cosserat_casadi.actuators.chamber import ChamberActuator
+from cosserat_casadi.actuators.tendon import TendonActuator
+from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
+from cosserat_casadi.loads.distributed_wrench import DistributedWrenchLoad
+from cosserat_casadi.loads.gravity import GravityLoad
 from cosserat_casadi.loads.load import Load
-from cosserat_casadi.loads.point_wrench import PointForceAndMoment
-from cosserat_casadi.loads.tip_wrench import TipWrench
+from cosserat_casadi.loads.point_wrench import PointWrenchLoad
+from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
+from cosserat_casadi.scene.actuators import ACTUATORS
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.loads import LOADS
+
+Member = TypeVar("Member", bound=type[Load[Any]] | type[Actuator[Any]])
 
 EFFECTS: dict[str, Any] = {}
 """Loads and actuators by the word of the scene format."""
 
 
-def register(member: type[Load | Actuator]) -> type[Load | Actuator]:
-    """Make a kind of load or actuator known; also to be written above a class as a decorator.
+def register(member: Member) -> Member:
+    """Make a kind of load or actuator known, to the scene format and to the mechanics; decorates its class.
 
     Raises:
         ValueError: another class has the same word.
@@ -27,9 +32,27 @@ def register(member: type[Load | Actuator]) -> type[Load | Actuator]:
     known = EFFECTS.get(member.kind)
     if known is not None and type(known) is not member:
         raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
+    family: Family[Any] = LOADS if issubclass(member, Load) else ACTUATORS
+    if family.records.get(member.kind) is not member.record:
+        family.register(member.record)
     EFFECTS[member.kind] = member()
     return member
 
 
-for shipped in (Gravity, TipWrench, PointForceAndMoment, DistributedWrench, BodyWrench, Tendon, Chamber):
+def forget(member: type[Load[Any]] | type[Actuator[Any]]) -> None:
+    """Undo :func:`register`, for tests."""
+    EFFECTS.pop(member.kind, None)
+    for family in (LOADS, ACTUATORS):
+        family.records.pop(member.kind, None)
+
+
+for shipped in (
+    GravityLoad,
+    TipWrenchLoad,
+    PointWrenchLoad,
+    DistributedWrenchLoad,
+    BodyWrenchLoad,
+    TendonActuator,
+    ChamberActuator,
+):
     register(shipped)

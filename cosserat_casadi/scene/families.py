@@ -42,14 +42,7 @@ class Family(Generic[Member]):
         Raises:
             ValueError: another record has the same word, or the record does not have one word.
         """
-        # The word is the only value of a Literal, so that pydantic refuses any other.
-        words: tuple[Any, ...] = ()
-        if self.key in record.model_fields:
-            annotation = record.model_fields[self.key].annotation
-            words = get_args(annotation)
-        if len(words) != 1:
-            raise ValueError(f"{record.__name__} needs a field {self.key} with one word, such as Literal['spring']")
-        word = words[0]
+        word = word_of(record, self.key)
         if word in self.records:
             first = self.records[word].__name__
             raise ValueError(f"{self.table} have a {self.key} {word!r} already: {first}")
@@ -107,6 +100,20 @@ class Family(Generic[Member]):
 
 def _no_word(value: Any) -> None:
     """The word of a value in a union that is described but never asked for one."""
+
+
+def word_of(record: type[Record], key: str = "kind") -> str:
+    """The word that tells a record apart in its family.
+
+    Raises:
+        ValueError: the record does not have one word.
+    """
+    field = record.model_fields.get(key)
+    # The word is the only value of a Literal, so that pydantic refuses any other.
+    words = () if field is None else get_args(field.annotation)
+    if len(words) != 1:
+        raise ValueError(f"{record.__name__} needs a field {key} with one word, such as Literal['spring']")
+    return str(words[0])
 
 
 def _referable(record: type[Record]) -> CoreSchema:

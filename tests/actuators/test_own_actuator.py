@@ -15,9 +15,10 @@ from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.registry import EFFECTS, register
+from cosserat_casadi.model.registry import forget, register
 from cosserat_casadi.rod.strain_density import StrainDensity
-from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.actuators import ActuatorRecord
+from cosserat_casadi.scene.inputs import InputField
 from tests.scenes import STIFFNESS, push
 
 LENGTH = 0.8
@@ -31,24 +32,29 @@ TENDON: dict[str, Any] = {
 }
 
 
-class CordRecord(Record):
+class _CordKeys(ActuatorRecord):
     """A cord under tension, or a muscle whose volume depends on the strains."""
 
-    magnitudes: ClassVar[tuple[str, ...]] = ("pull",)
+    inputs: ClassVar[Mapping[str, InputField]] = {"pull": InputField("N", 1)}
 
-    name: str
-    kind: Literal["cord", "muscle"]
     rod: str
     pull: float
     offset: tuple[Any, Any] = (0.0, 0.0)
     span: tuple[float, float] = (0.0, 1.0)
 
 
-class _Pulled(Actuator):
-    magnitudes: ClassVar[Mapping[str, str]] = {"pull": "N"}
+class CordRecord(_CordKeys):
+    kind: Literal["cord"]
+
+
+class MuscleRecord(_CordKeys):
+    kind: Literal["muscle"]
+
+
+class _Pulled(Actuator[Any]):
     effort = "pull"
     conjugate = "reach"
-    units: ClassVar[Mapping[str, str]] = {"pull": "N", "reach": "m"}
+    conjugate_unit = "m"
     energy_sign = 1.0
 
     def density(self, strain: Matrix, data: Matrix) -> Matrix:
@@ -63,7 +69,7 @@ class _Pulled(Actuator):
 class Cord(_Pulled):
     """A tendon written as the length of its tangent."""
 
-    kind = "cord"
+    record = CordRecord
 
     def density(self, strain: Matrix, data: Matrix) -> Matrix:
         offset = ca.vertcat(data[:2], 0)
@@ -74,7 +80,7 @@ class Cord(_Pulled):
 class Muscle(_Pulled):
     """A quantity of curvature, torsion and stretch together that no cable has."""
 
-    kind = "muscle"
+    record = MuscleRecord
 
     def density(self, strain: Matrix, data: Matrix) -> Matrix:
         bending = strain[0] ** 2 + strain[1] ** 2
@@ -87,10 +93,10 @@ def kinds() -> Iterator[None]:
         register(kind)
     yield
     for kind in (Cord, Muscle):
-        EFFECTS.pop(kind.kind)
+        forget(kind)
 
 
-def scene(strain: str | list[str], *actuators: Record, **changes: Any) -> Scene:
+def scene(strain: str | list[str], *actuators: ActuatorRecord, **changes: Any) -> Scene:
     names = {"planar": ["bending_y"], "kirchhoff": ["bending_x", "bending_y", "torsion"], "reissner": list(STIFFNESS)}
     admitted = names[strain] if isinstance(strain, str) else strain
     rod = {"name": "rod", "length": LENGTH, "strain": strain, "stiffness": {n: STIFFNESS[n] for n in admitted}}
@@ -126,7 +132,7 @@ def test_cord_as_density_vs_tendon(strain: str | list[str]) -> None:
 
 @pytest.mark.parametrize("strain", STRAINS)
 def test_muscle_vs_automatic_differentiation(strain: str | list[str]) -> None:
-    muscle = CordRecord(name="muscle", kind="muscle", rod="rod", pull=0.7, span=(0.2, 0.6))
+    muscle = MuscleRecord(name="muscle", kind="muscle", rod="rod", pull=0.7, span=(0.2, 0.6))
     model = build(scene(strain, muscle))
     assert model.potential is not None
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("u", model.inputs.size)
@@ -147,7 +153,7 @@ def test_muscle_vs_automatic_differentiation(strain: str | list[str]) -> None:
 
 
 def test_effort_is_an_input_and_the_rod_is_solved() -> None:
-    muscle = CordRecord(name="muscle", kind="muscle", rod="rod", pull=0.7)
+    muscle = MuscleRecord(name="muscle", kind="muscle", rod="rod", pull=0.7)
     model = build(scene("reissner", muscle))
     assert "muscle.pull" in model.inputs.names
     solution = solve(model, {"muscle.pull": 1.2})

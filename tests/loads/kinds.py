@@ -12,19 +12,18 @@ import numpy as np
 from cosserat_casadi import Scene, scene_from_dict
 from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.registry import EFFECTS, register
+from cosserat_casadi.model.registry import forget, register
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
 
 Vector = tuple[float, float, float]
 
 
-class SpringRecord(LoadRecord):
+class _SpringKeys(LoadRecord):
     """A spring between a section, or a point of a body, and a point of the world."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m", 1), "anchor": InputField("m", 3)}
 
-    kind: Literal["spring", "elastic_spring"]
     rod: str | None = None
     body: str | None = None
     at: float = 1.0
@@ -33,7 +32,15 @@ class SpringRecord(LoadRecord):
     anchor: Vector
 
 
-class _OnSectionOrBody(Load):
+class SpringRecord(_SpringKeys):
+    kind: Literal["spring"]
+
+
+class ElasticSpringRecord(_SpringKeys):
+    kind: Literal["elastic_spring"]
+
+
+class _OnSectionOrBody(Load[Any]):
     def abscissa(self, load: Any) -> float:
         return float(load.at)
 
@@ -44,7 +51,7 @@ class _OnSectionOrBody(Load):
 class Spring(_OnSectionOrBody):
     """A linear spring of no length at rest, given as a wrench."""
 
-    kind = "spring"
+    record = SpringRecord
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         return values["stiffness"] * (values["anchor"] - section.position), ca.DM(3, 1)
@@ -53,7 +60,7 @@ class Spring(_OnSectionOrBody):
 class ElasticSpring(_OnSectionOrBody):
     """The same given as an energy."""
 
-    kind = "elastic_spring"
+    record = ElasticSpringRecord
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         return values["stiffness"] / 2 * ca.sumsqr(section.position - values["anchor"])
@@ -77,7 +84,7 @@ class DipoleRecord(LoadRecord):
 class Dipole(_OnSectionOrBody):
     """Energy −m·B of a dipole m = R m₀, with B + g z e_z: rotation and position are coupled."""
 
-    kind = "dipole"
+    record = DipoleRecord
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         field = values["field"] + load.gradient * ca.vertcat(0, 0, section.position[2])
@@ -99,7 +106,7 @@ class TorqueRecord(LoadRecord):
 class Torque(_OnSectionOrBody):
     """The moment R m₀ × B on a section."""
 
-    kind = "torque"
+    record = TorqueRecord
 
     def on_body(self, load: Any, body: Any) -> None:
         return None
@@ -108,21 +115,32 @@ class Torque(_OnSectionOrBody):
         return ca.DM(3, 1), ca.cross(section.rotation @ ca.DM(load.dipole), values["field"])
 
 
-class LineRecord(LoadRecord):
+class _LineKeys(LoadRecord):
     """A load all along a rod with one number."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"strength": InputField("N/m²", 1)}
 
-    kind: Literal["foundation", "whirl", "flag"]
     rod: str
     frame: Literal["world", "body"] = "world"
     strength: float
 
 
-class Foundation(Load):
+class FoundationRecord(_LineKeys):
+    kind: Literal["foundation"]
+
+
+class WhirlRecord(_LineKeys):
+    kind: Literal["whirl"]
+
+
+class FlagRecord(_LineKeys):
+    kind: Literal["flag"]
+
+
+class Foundation(Load[Any]):
     """An elastic foundation: every section is drawn to where it was, and turned back, as an energy per length."""
 
-    kind = "foundation"
+    record = FoundationRecord
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         apart = section.position - section.data[:3]
@@ -134,10 +152,10 @@ class Foundation(Load):
         return np.vstack([site.unloaded_position, columns])
 
 
-class Whirl(Load):
+class Whirl(Load[Any]):
     """A circulating force and moment per length, with no potential, in the axes of the sections or of the world."""
 
-    kind = "whirl"
+    record = WhirlRecord
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         x, y, z = ca.vertsplit(section.position)
@@ -145,16 +163,16 @@ class Whirl(Load):
         return force, 0.1 * values["strength"] * section.rotation[:, 2] * (1 + x)
 
 
-class Flag(Load):
+class Flag(Load[Any]):
     """A dead force per length, written with the pose in its hands and not touching it."""
 
-    kind = "flag"
+    record = FlagRecord
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         return values["strength"] * ca.DM([1.0, 0.0, 0.0]), ca.DM(3, 1)
 
 
-KINDS: tuple[type[Load], ...] = (Spring, ElasticSpring, Dipole, Torque, Foundation, Whirl, Flag)
+KINDS: tuple[type[Load[Any]], ...] = (Spring, ElasticSpring, Dipole, Torque, Foundation, Whirl, Flag)
 
 
 @contextmanager
@@ -166,7 +184,7 @@ def registered() -> Iterator[None]:
         yield
     finally:
         for kind in KINDS:
-            EFFECTS.pop(kind.kind, None)
+            forget(kind)
 
 
 def with_loads(tables: dict[str, Any], *loads: LoadRecord, inputs: tuple[str, ...] | None = None) -> Scene:

@@ -17,7 +17,17 @@ from cosserat_casadi import Model, build, discretise, solve
 from cosserat_casadi.loads.load import Load
 from cosserat_casadi.model.registry import EFFECTS, register
 from cosserat_casadi.scene.records import Record
-from tests.loads.kinds import DipoleRecord, LineRecord, SpringRecord, TorqueRecord, registered, with_loads
+from tests.loads.kinds import (
+    DipoleRecord,
+    ElasticSpringRecord,
+    FlagRecord,
+    FoundationRecord,
+    SpringRecord,
+    TorqueRecord,
+    WhirlRecord,
+    registered,
+    with_loads,
+)
 from tests.scenes import push, rod
 
 BASE = {"position": [0.1, -0.2, 0.3], "quaternion": [0.5, 0.5, -0.5, 0.5]}
@@ -72,12 +82,12 @@ SPRING: dict[str, Any] = {"name": "load", "stiffness": 3.0, "anchor": (0.4, 0.2,
 DIPOLE: dict[str, Any] = {"name": "load", "dipole": (0.3, 0.5, -0.8), "field": (0.4, 1.0, -0.6)}
 LOADS: dict[str, Record] = {
     "spring": SpringRecord(kind="spring", rod="rod", **SPRING),
-    "elastic spring": SpringRecord(kind="elastic_spring", rod="rod", **SPRING),
+    "elastic spring": ElasticSpringRecord(kind="elastic_spring", rod="rod", **SPRING),
     "dipole": DipoleRecord(kind="dipole", rod="rod", gradient=0.7, **DIPOLE),
     "torque": TorqueRecord(kind="torque", rod="rod", **DIPOLE),
-    "foundation": LineRecord(name="load", kind="foundation", rod="rod", strength=2.0),
-    "whirl": LineRecord(name="load", kind="whirl", rod="rod", strength=2.0),
-    "whirl in the sections": LineRecord(name="load", kind="whirl", rod="rod", strength=2.0, frame="body"),
+    "foundation": FoundationRecord(name="load", kind="foundation", rod="rod", strength=2.0),
+    "whirl": WhirlRecord(name="load", kind="whirl", rod="rod", strength=2.0),
+    "whirl in the sections": WhirlRecord(name="load", kind="whirl", rod="rod", strength=2.0, frame="body"),
 }
 INNER: dict[str, Record] = {
     "inner spring": SpringRecord(kind="spring", rod="rod", at=0.4, **SPRING),
@@ -86,7 +96,7 @@ INNER: dict[str, Record] = {
 ON_PLATE: dict[str, Any] = {"body": "plate", "position": (0.05, 0.1, 0.02)}
 ON_BODY: dict[str, Record] = {
     "spring": SpringRecord(kind="spring", **ON_PLATE, **SPRING),
-    "elastic spring": SpringRecord(kind="elastic_spring", **ON_PLATE, **SPRING),
+    "elastic spring": ElasticSpringRecord(kind="elastic_spring", **ON_PLATE, **SPRING),
     "dipole": DipoleRecord(kind="dipole", gradient=0.7, **ON_PLATE, **DIPOLE),
 }
 
@@ -294,7 +304,7 @@ def test_planar_rod_on_a_spring_vs_shooting() -> None:
 
     unknown = fsolve(misfit, np.array([1.0, -1.0, 1.0]), xtol=1e-13)
     assert_allclose(misfit(unknown), 0.0, rtol=0, atol=1e-10)
-    record = SpringRecord(
+    record = ElasticSpringRecord(
         name="load", kind="elastic_spring", rod="rod", stiffness=stiffness, anchor=(anchor[0], 0.0, anchor[1])
     )
     scene = with_loads({"schema": 1, "rods": [rod("planar")]}, record)
@@ -318,7 +328,7 @@ def test_assemblies_are_solved(scene: str, load: str) -> None:
 
 
 def test_wrench_that_leaves_the_pose_alone_costs_what_a_dead_load_costs() -> None:
-    flag = LineRecord(name="wind", kind="flag", rod="rod", strength=1.0)
+    flag = FlagRecord(name="wind", kind="flag", rod="rod", strength=1.0)
     wind = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "force": [1.0, 0.0, 0.0]}
     own = build(with_loads(tables(rods=[rod()]), flag, inputs=()))
     shipped = build(with_loads(tables(rods=[rod()], loads=[wind]), inputs=()))
@@ -348,9 +358,8 @@ def test_potential_follows_from_the_kernel(load: str, strain: str, expected: boo
 
 
 def test_same_word_twice_is_refused() -> None:
-    class Another(Load):
-        kind = "spring"
-        magnitudes: dict[str, str] = {}
+    class Another(Load[SpringRecord]):
+        record = SpringRecord
 
     kept = EFFECTS["spring"]
     with pytest.raises(ValueError, match="'spring' is the word of Spring already"):
@@ -359,9 +368,8 @@ def test_same_word_twice_is_refused() -> None:
 
 
 def test_load_without_wrench_and_energy_says_so() -> None:
-    class Empty(Load):
-        kind = "empty"
-        magnitudes: dict[str, str] = {}
+    class Empty(Load[SpringRecord]):
+        pass
 
     with pytest.raises(NotImplementedError, match="Empty gives neither a wrench nor an energy"):
         Empty().wrench(None, None, {})  # type: ignore[arg-type]
