@@ -26,6 +26,7 @@ class TracedLoad:
         kernel: its wrench in world axes; data are the profiles of force and moment, then those of :meth:`Load.data`.
         columns: number of profiles of the force and of the moment.
         pose_free: whether force and moment, in the load's axes, are the same whatever the pose and the data.
+        fixed: whether they are the same whatever the pose, though they may differ from section to section.
     """
 
     member: Load[Any]
@@ -33,6 +34,7 @@ class TracedLoad:
     kernel: SectionKernel
     columns: tuple[int, int]
     pose_free: bool
+    fixed: bool
 
     @property
     def follower(self) -> bool:
@@ -81,15 +83,16 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
     given_force, given_moment = member.wrench(load, section, symbols)
     force = ca.sparsify(ca.SX(given_force))
     moment = ca.sparsify(ca.SX(given_moment))
+    wrench = _entries(force, moment)
+    fixed = energy is None and not ca.depends_on(wrench, _entries(section.position, section.rotation))
     # What depends on the data of its section differs from node to node, and is evaluated there as well.
-    pose = _entries(section.position, section.rotation, section.data)
-    pose_free = energy is None and not ca.depends_on(_entries(force, moment), pose)
+    pose_free = fixed and not ca.depends_on(wrench, section.data)
     if energy is None and member.axes(load) == "section":
         force = section.rotation @ force
         moment = section.rotation @ moment
     columns = force.shape[1], moment.shape[1]
     kernel = _kernel(section, stored(symbols), force, moment, energy)
-    return TracedLoad(member, load, kernel, columns, pose_free)
+    return TracedLoad(member, load, kernel, columns, pose_free, fixed)
 
 
 def _kernel(section: Section, parameters: Matrix, force: ca.SX, moment: ca.SX, energy: Matrix | None) -> SectionKernel:
@@ -145,6 +148,6 @@ def has_potential(
     if force_vanishes and moment_vanishes:
         return True
     # The work of a wrench that follows, or hangs on the pose, may depend on the way: nothing is claimed for it.
-    if trace.follower or not trace.pose_free:
+    if trace.follower or not trace.fixed:
         return False
     return moment_vanishes or one_axis
