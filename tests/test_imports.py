@@ -21,6 +21,18 @@ def test_plain_import_loads_neither_matplotlib_nor_the_command_line() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_loads_and_actuators_do_not_know_each_other() -> None:
+    """A member of a family is a file that no other member imports."""
+    from cosserat_casadi.model.registry import EFFECTS
+
+    files = {type(member).__module__ for member in EFFECTS.values()}
+    assert len(files) == len(EFFECTS)
+    for module in files:
+        source = (ROOT / module.replace(".", "/")).with_suffix(".py").read_text()
+        known = [name for name in files - {module} if f"from {name} " in source or f"import {name}" in source]
+        assert not known, module
+
+
 def test_public_names_exist() -> None:
     import cosserat_casadi
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_colour
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
@@ -47,9 +47,6 @@ TARGET_STYLE: dict[str, Any] = {
     "color": TARGETS,
     "zorder": 10,
 }
-
-Labelled = tuple[str, dict[str, Any]]
-"""A label for the legend, and the style of a line."""
 
 
 def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
@@ -93,39 +90,45 @@ def draw_supports(canvas: Canvas, solution: Solution) -> None:
 
 
 def draw_actuators(canvas: Canvas, solution: Solution) -> None:
-    """Draw the routing of every actuator, with its effort in the legend."""
+    """Draw the routing of every actuator, with its effort in the legend; one without a routing stands there alone."""
     for index, actuator in enumerate(solution.model.scene.actuators):
         colour = actuator_colour(index)
-        describe = ACTUATOR_STYLES.get(actuator.kind)
-        if describe is None:
-            canvas.legend_entry(f"{actuator.name}: {actuator.kind}, not drawn", linestyle="none")
+        label = _effort_label(solution, actuator)
+        if not hasattr(actuator, "offset"):
+            canvas.legend_entry(label, linestyle="none")
             continue
-        label, style = describe(solution, actuator)
         routing = actuator_routing(solution, actuator)
-        canvas.line(routing, color=colour, label=label, **style)
-        if actuator.kind == "tendon":
-            # Where the tendon is fixed to its section.
+        drawn_as = EFFECTS[actuator.kind].drawn_as
+        style = {**ACTUATOR_STYLES[drawn_as]}
+        if drawn_as == "cable":
+            # Where the cable is fixed to its section.
             canvas.markers(routing[-1:], marker="o", markersize=4, color=colour)
+            if _is_limp(solution, actuator):
+                style["linestyle"] = ":"
+        canvas.line(routing, color=colour, label=label, **style)
 
 
-def _tendon_style(solution: Solution, actuator: Any) -> Labelled:
-    tension = solution.actuator(actuator.name)["tension"]
+def _effort_label(solution: Solution, actuator: Any) -> str:
+    """Name and effort of an actuator, or that it is slack."""
+    member = EFFECTS[actuator.kind]
+    if getattr(actuator, "slack", False) and _is_limp(solution, actuator):
+        return f"{actuator.name}: slack"
+    effort = solution.actuator(actuator.name)[member.effort]
+    return f"{actuator.name}: {effort:.3g} {member.effort_unit}"
+
+
+def _is_limp(solution: Solution, actuator: Any) -> bool:
+    """Whether an actuator pulls with nothing to speak of."""
+    effort = solution.actuator(actuator.name)[EFFECTS[actuator.kind].effort]
     smallest_taut = SLACK * solution.model.discrete.tension_unit(actuator.rod)
-    limp = bool(tension <= smallest_taut)
-    effort = f"{tension:.3g} N"
-    if limp and actuator.slack:
-        effort = "slack"
-    stroke = {True: ":", False: "-"}[limp]
-    return f"{actuator.name}: {effort}", {"linewidth": 1.4, "linestyle": stroke}
+    return bool(effort <= smallest_taut)
 
 
-def _chamber_style(solution: Solution, actuator: Any) -> Labelled:
-    pressure = solution.actuator(actuator.name)["pressure"]
-    return f"{actuator.name}: {pressure:.3g} Pa", {"linewidth": 4.0, "alpha": 0.5}
-
-
-ACTUATOR_STYLES: dict[str, Callable[[Solution, Any], Labelled]] = {"tendon": _tendon_style, "chamber": _chamber_style}
-"""How each kind of actuator is drawn."""
+ACTUATOR_STYLES: dict[str, dict[str, Any]] = {
+    "cable": {"linewidth": 1.4, "linestyle": "-"},
+    "channel": {"linewidth": 4.0, "alpha": 0.5},
+}
+"""How an actuator is drawn, by what its kind says of that."""
 
 
 def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
