@@ -15,6 +15,7 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 
@@ -52,6 +53,9 @@ class Actuation:
 
     quantity: Quantity
     effort: Matrix
+
+    def __post_init__(self) -> None:
+        check_shape("effort", self.effort, 1, 1)
 
 
 @dataclass(frozen=True)

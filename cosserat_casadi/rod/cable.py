@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 
@@ -36,6 +37,11 @@ class Routing:
     nodes: Indices
     offset: FloatArray
     slope: FloatArray
+
+    def __post_init__(self) -> None:
+        count = len(self.nodes)
+        check_shape("offset", self.offset, 2, count)
+        check_shape("slope", self.slope, 2, count)
 
     def on(self, shape: Shape) -> RoutedCable:
         """The cable on a rod of this shape: the quantity is its length."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
@@ -28,6 +29,9 @@ class PointWrench:
     moment: Matrix | None
     follower: bool
 
+    def __post_init__(self) -> None:
+        _check_vectors(self.force, self.moment, 1)
+
 
 @dataclass(frozen=True)
 class LineWrench:
@@ -45,6 +49,9 @@ class LineWrench:
     moment: Matrix | None
     profiles: FloatArray | None
     follower: bool
+
+    def __post_init__(self) -> None:
+        _check_vectors(self.force, self.moment, None if self.profiles is None else len(self.profiles))
 
 
 Wrench = PointWrench | LineWrench
@@ -73,5 +80,17 @@ class PoseWrench:
     data: FloatArray
     scale: Matrix | float
 
+    def __post_init__(self) -> None:
+        check_shape("base_position", self.base_position, 3, 1)
+        check_shape("base_rotation", self.base_rotation, 3, 3)
+
 
 RodLoad = Wrench | PoseWrench
+
+
+def _check_vectors(force: Matrix | None, moment: Matrix | None, columns: int | None) -> None:
+    """Refuse vectors of another shape: CasADi would broadcast them in silence."""
+    if force is not None:
+        check_shape("force", force, 3, columns)
+    if moment is not None:
+        check_shape("moment", moment, 3, columns)
