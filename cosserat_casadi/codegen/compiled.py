@@ -24,19 +24,20 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
-from cosserat_casadi.codegen.names import Names, library_names
-from cosserat_casadi.codegen.plain import PlainFunction, pointer
+from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
+from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.function_table import SCALAR_ARGUMENTS, Owner
 from cosserat_casadi.numerics.outcome import Outcome
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
 
-POSE = {"position": 3, "quaternion": 4}
-"""Length of each result of a pose."""
+OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
+"""Functions of which a scene may have none: one without bodies."""
 
 
 class _Info(ctypes.Structure):
@@ -79,6 +80,11 @@ class CompiledSolution:
 class Compiled:
     """An exported folder as compiled functions.
 
+    Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
+    ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
+    it has in C. A pose is (position, quaternion). Those with the key ``external`` in the manifest have derivatives as
+    :attr:`residual`, the others none.
+
     Attributes:
         library: the shared object.
         manifest: what the folder says of itself.
@@ -96,31 +102,30 @@ class Compiled:
     @cached_property
     def residual(self) -> ca.Function:
         """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`."""
-        return self._casadi_function("residual", None, {"residual": self.size}, workspace=True)
+        if self.differentiable:
+            return ca.external(self._names.differentiable("residual"), str(self.library))
+        in_c = self._function("residual")
 
-    @cached_property
-    def tip(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ (position, quaternion) of the tip; derivatives as of :attr:`residual`."""
-        return {rod: self._casadi_function("tip", rod, POSE) for rod in self._names.rods}
+        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
+            residual = np.empty(self.size)
+            in_c(*map(pointer, arguments), pointer(residual), self._workspace())
+            return [residual]
 
-    @cached_property
-    def shape(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs, X) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
-        return {rod: self._casadi_function("shape", rod, POSE, abscissa=True) for rod in self._names.rods}
+        arguments = {"x": (self.size, 1), "inputs": (len(self.defaults), 1)}
+        return PlainFunction("residual", arguments, {"residual": (self.size, 1)}, evaluate, EXPORT_WITH)
 
-    @cached_property
-    def actuator(self) -> dict[str, ca.Function]:
-        """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
-        functions = {}
-        for entry in self.manifest.get("actuators", []):
-            results = {entry["effort"]: 1, entry["extent"]: 1, f"{entry['extent']}_jacobian": self.size}
-            functions[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
-        return functions
-
-    @cached_property
-    def body(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
-        return {name: self._casadi_function("body", name, POSE) for name in self._names.bodies}
+    def __getattr__(self, name: str) -> Any:
+        """A function of the header as a CasADi function, or one for each rod, actuator or body, by name."""
+        # What is not set yet, such as in a copy under way, must not be asked for here.
+        manifest = self.__dict__.get("manifest", {})
+        entries = [entry for entry in manifest.get("functions", []) if entry.get("function") == name]
+        if not entries and name not in OWNED:
+            raise AttributeError(f"the library has no function {name!r}")
+        functions = {entry.get("owner"): self._casadi_function(entry) for entry in entries}
+        # A function of the scene has no owner, and stands alone.
+        member = functions.get(None, functions)
+        self.__dict__[name] = member
+        return member
 
     @property
     def size(self) -> int:
@@ -225,39 +230,31 @@ class Compiled:
         doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
         return (ctypes.c_double * doubles)()
 
-    def _casadi_function(
-        self,
-        word: str,
-        owner: str | None,
-        results: dict[str, int],
-        *,
-        abscissa: bool = False,
-        workspace: bool = False,
-    ) -> ca.Function:
+    def _casadi_function(self, entry: dict[str, Any]) -> ca.Function:
         """A function of the library, with derivatives where the folder holds them.
 
         Args:
-            word: what it gives.
-            owner: rod, actuator or body.
-            results: length of each result by name.
-            abscissa: whether it has the abscissa X as a third argument.
-            workspace: whether it works in a workspace.
+            entry: the function in the manifest.
         """
-        if self.differentiable:
-            return ca.external(self._names.differentiable(word, owner), str(self.library))
-        in_c = getattr(self._handle, self._names.function(word, owner))
+        external = entry.get("external")
+        if external and self.differentiable:
+            return ca.external(external, str(self.library))
+        in_c = getattr(self._handle, entry["symbol"])
+        arguments = {argument["name"]: tuple(argument["shape"]) for argument in entry["arguments"]}
+        results = {result["name"]: tuple(result["shape"]) for result in entry["results"]}
 
-        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
-            given: list[Any] = [pointer(argument) for argument in arguments]
-            if abscissa:
-                given[-1] = ctypes.c_double(arguments[-1][0])
-            vectors = [np.empty(size) for size in results.values()]
-            work = [self._workspace()] if workspace else []
-            in_c(*given, *map(pointer, vectors), *work)
+        def evaluate(given: Sequence[FloatArray]) -> list[FloatArray]:
+            vectors = [np.empty(shape, order="F") for shape in results.values()]
+            passed = [_argument(name, values) for name, values in zip(arguments, given, strict=True)]
+            in_c(*passed, *map(pointer, vectors))
             return vectors
 
-        sizes = {"x": self.size, "inputs": len(self.defaults), **({"X": 1} if abscissa else {})}
-        return PlainFunction(self._names.differentiable(word, owner), sizes, results, evaluate)
+        return PlainFunction(entry["symbol"], arguments, results, evaluate, EXPORT_WITH if external else IN_PYTHON)
+
+
+def _argument(name: str, values: FloatArray) -> Any:
+    """An argument as C takes it: one that is a number by value."""
+    return ctypes.c_double(values[0]) if name in SCALAR_ARGUMENTS else pointer(values)
 
 
 def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
@@ -398,9 +395,10 @@ def _is_manifest(described: Any) -> bool:
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
         files = all(isinstance(file, str) for file in described["files"])
+        functions = all(isinstance(entry, dict) for entry in described["functions"])
     except (ExportError, KeyError, TypeError, ValueError):
         return False
-    return rods and files and all(value.ndim == 1 for value in numbers)
+    return rods and files and functions and all(value.ndim == 1 for value in numbers)
 
 
 def _read(path: Path) -> bytes:
