@@ -55,15 +55,15 @@ class CompiledSolution:
     """What the solver in C found.
 
     Attributes:
-        q: unknowns; the last equilibrium on the way where it did not converge.
+        x: unknowns; the last equilibrium on the way where it did not converge.
         outcome: how it ended.
         iterations: Newton steps tried.
         jacobians: Jacobians factorised.
         residual_norm: relative norm of the residual.
-        load_factor: share of the load that q carries.
+        load_factor: share of the load that x carries.
     """
 
-    q: FloatArray
+    x: FloatArray
     outcome: Outcome
     iterations: int
     jacobians: int
@@ -72,7 +72,7 @@ class CompiledSolution:
 
     @property
     def converged(self) -> bool:
-        """Whether q is an equilibrium at the full load."""
+        """Whether x is an equilibrium at the full load."""
         return self.outcome is Outcome.CONVERGED
 
 
@@ -148,10 +148,10 @@ class Compiled:
             ValueError: inputs or start are of the wrong size.
         """
         given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
-        q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
+        x = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
-        return _solution(q, info)
+        self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        return _solution(x, info)
 
     def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
         """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
@@ -161,10 +161,10 @@ class Compiled:
         """
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
-        q = _vector(start, self.size, "start").copy()
+        x = _vector(start, self.size, "start").copy()
         info = _Info()
-        self._function("follow")(pointer(old), pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
-        return _solution(q, info)
+        self._function("follow")(pointer(old), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        return _solution(x, info)
 
     def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
         """Equilibria of many load cases, inputs of shape (count, size of the inputs).
@@ -175,48 +175,48 @@ class Compiled:
         given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
-        q = np.zeros((len(given), self.size))
+        x = np.zeros((len(given), self.size))
         infos = (_Info * len(given))()
-        self._function("solve_batch")(len(given), pointer(given), pointer(q), self._workspace(), 1, infos)
-        return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
+        self._function("solve_batch")(len(given), pointer(given), pointer(x), self._workspace(), 1, infos)
+        return [_solution(row, info) for row, info in zip(x, infos, strict=True)]
 
-    def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
-        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip; None where q is no regular equilibrium.
+    def sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
+        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        sensitivity = self._sensitivity(inputs, q)
+        sensitivity = self._sensitivity(inputs, x)
         if sensitivity is None:
             return None
-        d_q, d_poses = sensitivity
-        return d_q, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
+        d_x, d_poses = sensitivity
+        return d_x, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
 
-    def body_sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/dinputs of each rigid body; None where q is no regular equilibrium.
+    def body_sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> dict[str, FloatArray] | None:
+        """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        sensitivity = self._sensitivity(inputs, q)
+        sensitivity = self._sensitivity(inputs, x)
         if sensitivity is None:
             return None
         _, d_poses = sensitivity
         return dict(zip(self._names.bodies, d_poses[len(self._names.rods) :], strict=True))
 
-    def _sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
-        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
+    def _sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
+        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
         given = _vector(inputs, len(self.defaults), "inputs")
-        unknowns = _vector(q, self.size, "q")
+        unknowns = _vector(x, self.size, "x")
         count = len(self._names.rods) + len(self._names.bodies)
-        d_q = np.zeros((len(given), self.size))
+        d_x = np.zeros((len(given), self.size))
         d_poses = np.zeros((count, len(given), 7))
         status = self._function("solve_sensitivity")(
-            pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses), self._workspace()
+            pointer(given), pointer(unknowns), pointer(d_x), pointer(d_poses), self._workspace()
         )
         if status != 0:
             return None
-        return d_q.T, [pose.T for pose in d_poses]
+        return d_x.T, [pose.T for pose in d_poses]
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:
@@ -415,7 +415,7 @@ def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     return vector
 
 
-def _solution(q: FloatArray, info: _Info) -> CompiledSolution:
+def _solution(x: FloatArray, info: _Info) -> CompiledSolution:
     return CompiledSolution(
-        q, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
+        x, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
     )
