@@ -100,8 +100,8 @@ class ModelFunctions:
         """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
         return [_unloaded_response(self, written["inputs"])]
 
-    @scene_function(Output("coarseness"), kernel="resolution_index")
-    def coarseness(self, written: Expressions) -> list[Matrix]:
+    @scene_function(Output("resolution_index"), kernel="resolution_index")
+    def resolution_index(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
         return [_resolution_index(written)]
 
