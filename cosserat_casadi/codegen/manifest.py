@@ -64,7 +64,7 @@ def actuator_entries(model: Model) -> list[dict[str, Any]]:
     for actuator in model.scene.actuators:
         effort, conjugate = (model.actuator[actuator.name].name_out(i) for i in range(2))
         described = {"name": actuator.name, "kind": actuator.kind, "rod": actuator.rod}
-        entries.append({**described, "effort": effort, "extent": conjugate})
+        entries.append({**described, "effort": effort, "conjugate": conjugate})
     return entries
 
 
