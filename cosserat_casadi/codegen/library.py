@@ -157,7 +157,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "input_room": max(model.inputs.size, 1),
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
-        "max_reuses": newton.KEPT_STEPS,
+        "max_reuses": newton.MAX_REUSES,
         "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
     }
 
@@ -181,7 +181,7 @@ def _solver_constants() -> dict[str, Any]:
         "quick": limits.grow_below,
         "slow": limits.reject_above,
         "near": MAX_DISTANCE,
-        "kept_decrease": newton.KEPT_DECREASE,
+        "reuse_decrease": newton.REUSE_DECREASE,
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
