@@ -125,6 +125,6 @@ def _uniform(solution: Solution) -> tuple[int, int]:
 def _resolving_nodes(solution: Solution, nodes: int) -> int:
     """Intervals that should resolve a rod too bent for its grid."""
     # Beyond 1 by the factor by which an interval turns too far.
-    resolution_index = solution.model.coarseness(solution.x, solution.inputs)
+    resolution_index = solution.model.resolution_index(solution.x, solution.inputs)
     factor = NODES_MARGIN * float(resolution_index)
     return ceil(nodes * min(MOST_REFINED, factor))

@@ -356,7 +356,7 @@ class _GridSearch:
         model = reference.model
         nodes = model.discretisation[self.name].nodes
         # The turn of an interval is inverse to their number.
-        resolution_index = float(model.coarseness(reference.x, reference.inputs))
+        resolution_index = float(model.resolution_index(reference.x, reference.inputs))
         resolving = resolution_index * nodes
         return max(FEWEST, ceil(NODES_MARGIN * resolving))
 

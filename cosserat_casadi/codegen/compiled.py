@@ -24,19 +24,20 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
-from cosserat_casadi.codegen.names import Names, library_names
-from cosserat_casadi.codegen.plain import PlainFunction, pointer
+from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
+from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.function_table import SCALAR_ARGUMENTS, Owner
 from cosserat_casadi.numerics.outcome import Outcome
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
 
-POSE = {"position": 3, "quaternion": 4}
-"""Length of each result of a pose."""
+OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
+"""Functions of which a scene may have none: one without bodies."""
 
 
 class _Info(ctypes.Structure):
@@ -54,15 +55,15 @@ class CompiledSolution:
     """What the solver in C found.
 
     Attributes:
-        q: unknowns; the last equilibrium on the way where it did not converge.
+        x: unknowns; the last equilibrium on the way where it did not converge.
         outcome: how it ended.
         iterations: Newton steps tried.
         jacobians: Jacobians factorised.
         residual_norm: relative norm of the residual.
-        load_factor: share of the load that q carries.
+        load_factor: share of the load that x carries.
     """
 
-    q: FloatArray
+    x: FloatArray
     outcome: Outcome
     iterations: int
     jacobians: int
@@ -71,13 +72,18 @@ class CompiledSolution:
 
     @property
     def converged(self) -> bool:
-        """Whether q is an equilibrium at the full load."""
+        """Whether x is an equilibrium at the full load."""
         return self.outcome is Outcome.CONVERGED
 
 
 @dataclass(frozen=True)
 class Compiled:
     """An exported folder as compiled functions.
+
+    Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
+    ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
+    it has in C. A pose is (position, quaternion). Those with the key ``external`` in the manifest have derivatives as
+    :attr:`residual`, the others none.
 
     Attributes:
         library: the shared object.
@@ -96,31 +102,30 @@ class Compiled:
     @cached_property
     def residual(self) -> ca.Function:
         """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`."""
-        return self._casadi_function("residual", None, {"residual": self.size}, workspace=True)
+        if self.differentiable:
+            return ca.external(self._names.differentiable("residual"), str(self.library))
+        in_c = self._function("residual")
 
-    @cached_property
-    def tip(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs) ↦ (position, quaternion) of the tip; derivatives as of :attr:`residual`."""
-        return {rod: self._casadi_function("tip", rod, POSE) for rod in self._names.rods}
+        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
+            residual = np.empty(self.size)
+            in_c(*map(pointer, arguments), pointer(residual), self._workspace())
+            return [residual]
 
-    @cached_property
-    def shape(self) -> dict[str, ca.Function]:
-        """For each rod (x, inputs, X) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
-        return {rod: self._casadi_function("shape", rod, POSE, abscissa=True) for rod in self._names.rods}
+        arguments = {"x": (self.size, 1), "inputs": (len(self.defaults), 1)}
+        return PlainFunction("residual", arguments, {"residual": (self.size, 1)}, evaluate, EXPORT_WITH)
 
-    @cached_property
-    def actuator(self) -> dict[str, ca.Function]:
-        """For each actuator (x, inputs) ↦ (tension, length) or (pressure, volume), and d length or volume / dx."""
-        functions = {}
-        for entry in self.manifest.get("actuators", []):
-            results = {entry["effort"]: 1, entry["extent"]: 1, f"{entry['extent']}_jacobian": self.size}
-            functions[entry["name"]] = self._casadi_function("actuator", entry["name"], results)
-        return functions
-
-    @cached_property
-    def body(self) -> dict[str, ca.Function]:
-        """For each rigid body (x, inputs) ↦ (position, quaternion); derivatives as of :attr:`residual`."""
-        return {name: self._casadi_function("body", name, POSE) for name in self._names.bodies}
+    def __getattr__(self, name: str) -> Any:
+        """A function of the header as a CasADi function, or one for each rod, actuator or body, by name."""
+        # What is not set yet, such as in a copy under way, must not be asked for here.
+        manifest = self.__dict__.get("manifest", {})
+        entries = [entry for entry in manifest.get("functions", []) if entry.get("function") == name]
+        if not entries and name not in OWNED:
+            raise AttributeError(f"the library has no function {name!r}")
+        functions = {entry.get("owner"): self._casadi_function(entry) for entry in entries}
+        # A function of the scene has no owner, and stands alone.
+        member = functions.get(None, functions)
+        self.__dict__[name] = member
+        return member
 
     @property
     def size(self) -> int:
@@ -143,10 +148,10 @@ class Compiled:
             ValueError: inputs or start are of the wrong size.
         """
         given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
-        q = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
+        x = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
-        return _solution(q, info)
+        self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        return _solution(x, info)
 
     def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
         """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
@@ -156,10 +161,10 @@ class Compiled:
         """
         old = _vector(before, len(self.defaults), "before")
         given = _vector(inputs, len(self.defaults), "inputs")
-        q = _vector(start, self.size, "start").copy()
+        x = _vector(start, self.size, "start").copy()
         info = _Info()
-        self._function("follow")(pointer(old), pointer(given), pointer(q), self._workspace(), ctypes.byref(info))
-        return _solution(q, info)
+        self._function("follow")(pointer(old), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        return _solution(x, info)
 
     def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
         """Equilibria of many load cases, inputs of shape (count, size of the inputs).
@@ -170,48 +175,48 @@ class Compiled:
         given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
-        q = np.zeros((len(given), self.size))
+        x = np.zeros((len(given), self.size))
         infos = (_Info * len(given))()
-        self._function("solve_batch")(len(given), pointer(given), pointer(q), self._workspace(), 1, infos)
-        return [_solution(row, info) for row, info in zip(q, infos, strict=True)]
+        self._function("solve_batch")(len(given), pointer(given), pointer(x), self._workspace(), 1, infos)
+        return [_solution(row, info) for row, info in zip(x, infos, strict=True)]
 
-    def sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
-        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip; None where q is no regular equilibrium.
+    def sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
+        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        sensitivity = self._sensitivity(inputs, q)
+        sensitivity = self._sensitivity(inputs, x)
         if sensitivity is None:
             return None
-        d_q, d_poses = sensitivity
-        return d_q, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
+        d_x, d_poses = sensitivity
+        return d_x, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
 
-    def body_sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> dict[str, FloatArray] | None:
-        """The d(position, quaternion)/dinputs of each rigid body; None where q is no regular equilibrium.
+    def body_sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> dict[str, FloatArray] | None:
+        """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        sensitivity = self._sensitivity(inputs, q)
+        sensitivity = self._sensitivity(inputs, x)
         if sensitivity is None:
             return None
         _, d_poses = sensitivity
         return dict(zip(self._names.bodies, d_poses[len(self._names.rods) :], strict=True))
 
-    def _sensitivity(self, inputs: npt.ArrayLike, q: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
-        """The dq/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
+    def _sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
+        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
         given = _vector(inputs, len(self.defaults), "inputs")
-        unknowns = _vector(q, self.size, "q")
+        unknowns = _vector(x, self.size, "x")
         count = len(self._names.rods) + len(self._names.bodies)
-        d_q = np.zeros((len(given), self.size))
+        d_x = np.zeros((len(given), self.size))
         d_poses = np.zeros((count, len(given), 7))
         status = self._function("solve_sensitivity")(
-            pointer(given), pointer(unknowns), pointer(d_q), pointer(d_poses), self._workspace()
+            pointer(given), pointer(unknowns), pointer(d_x), pointer(d_poses), self._workspace()
         )
         if status != 0:
             return None
-        return d_q.T, [pose.T for pose in d_poses]
+        return d_x.T, [pose.T for pose in d_poses]
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:
@@ -225,39 +230,31 @@ class Compiled:
         doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
         return (ctypes.c_double * doubles)()
 
-    def _casadi_function(
-        self,
-        word: str,
-        owner: str | None,
-        results: dict[str, int],
-        *,
-        abscissa: bool = False,
-        workspace: bool = False,
-    ) -> ca.Function:
+    def _casadi_function(self, entry: dict[str, Any]) -> ca.Function:
         """A function of the library, with derivatives where the folder holds them.
 
         Args:
-            word: what it gives.
-            owner: rod, actuator or body.
-            results: length of each result by name.
-            abscissa: whether it has the abscissa X as a third argument.
-            workspace: whether it works in a workspace.
+            entry: the function in the manifest.
         """
-        if self.differentiable:
-            return ca.external(self._names.differentiable(word, owner), str(self.library))
-        in_c = getattr(self._handle, self._names.function(word, owner))
+        external = entry.get("external")
+        if external and self.differentiable:
+            return ca.external(external, str(self.library))
+        in_c = getattr(self._handle, entry["symbol"])
+        arguments = {argument["name"]: tuple(argument["shape"]) for argument in entry["arguments"]}
+        results = {result["name"]: tuple(result["shape"]) for result in entry["results"]}
 
-        def evaluate(arguments: Sequence[FloatArray]) -> list[FloatArray]:
-            given: list[Any] = [pointer(argument) for argument in arguments]
-            if abscissa:
-                given[-1] = ctypes.c_double(arguments[-1][0])
-            vectors = [np.empty(size) for size in results.values()]
-            work = [self._workspace()] if workspace else []
-            in_c(*given, *map(pointer, vectors), *work)
+        def evaluate(given: Sequence[FloatArray]) -> list[FloatArray]:
+            vectors = [np.empty(shape, order="F") for shape in results.values()]
+            passed = [_argument(name, values) for name, values in zip(arguments, given, strict=True)]
+            in_c(*passed, *map(pointer, vectors))
             return vectors
 
-        sizes = {"x": self.size, "inputs": len(self.defaults), **({"X": 1} if abscissa else {})}
-        return PlainFunction(self._names.differentiable(word, owner), sizes, results, evaluate)
+        return PlainFunction(entry["symbol"], arguments, results, evaluate, EXPORT_WITH if external else IN_PYTHON)
+
+
+def _argument(name: str, values: FloatArray) -> Any:
+    """An argument as C takes it: one that is a number by value."""
+    return ctypes.c_double(values[0]) if name in SCALAR_ARGUMENTS else pointer(values)
 
 
 def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
@@ -398,9 +395,10 @@ def _is_manifest(described: Any) -> bool:
         rods = all(isinstance(entry["rod"], str) and type(entry["count"]) is int for entry in described["unknowns"])
         numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
         files = all(isinstance(file, str) for file in described["files"])
+        functions = all(isinstance(entry, dict) for entry in described["functions"])
     except (ExportError, KeyError, TypeError, ValueError):
         return False
-    return rods and files and all(value.ndim == 1 for value in numbers)
+    return rods and files and functions and all(value.ndim == 1 for value in numbers)
 
 
 def _read(path: Path) -> bytes:
@@ -417,7 +415,7 @@ def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
     return vector
 
 
-def _solution(q: FloatArray, info: _Info) -> CompiledSolution:
+def _solution(x: FloatArray, info: _Info) -> CompiledSolution:
     return CompiledSolution(
-        q, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
+        x, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
     )

@@ -13,7 +13,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
-from cosserat_casadi.codegen.names import Names, library_names, scene_names
+from cosserat_casadi.codegen.names import Names, library_names, model_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -85,7 +85,7 @@ def folder_files(
         error_estimate: as for :func:`export`.
         derivatives: as for :func:`export`.
     """
-    names = scene_names(name, model.scene)
+    names = model_names(name, model)
     parts = assembled(model, names)
     functions = kernels(model, names, parts)
     generated = kernel_sources(functions, names)

@@ -11,33 +11,23 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
+from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.names import QUERIES, Names
 from cosserat_casadi.model.build import Model
+
+PARTED = ("path_residual", "path_jacobian")
+"""Functions of which an assembly has parts instead, one for each rod."""
 
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
     """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
-    whole = {names.kernel("residual"): model.path_residual, names.kernel("jacobian"): model.path_jacobian}
-    wanted = {
-        **(whole if parts is None else {}),
-        names.kernel("rate"): model.path_rate,
-        names.kernel("tangent"): model.path_tangent,
-        names.kernel("resolution_index"): model.coarseness,
-    }
-    for rod in names.rods:
-        wanted[names.kernel("igm", rod)] = model.igm[rod]
-        wanted[names.kernel("tip", rod)] = tip(model, rod)
-        wanted[names.kernel("tip_jacobian", rod)] = model.tip_jacobian[rod]
-        wanted[names.kernel("shape", rod)] = model.shape[rod]
-    for actuator in names.actuators:
-        wanted[names.kernel("actuator", actuator)] = model.actuator[actuator]
-    for body in names.bodies:
-        wanted[names.kernel("body", body)] = body_pose(model, body)
-        wanted[names.kernel("body_jacobian", body)] = model.body_jacobian[body]
-    of_model = [kernel(model, function, name) for name, function in wanted.items()]
-    return of_model if parts is None else [*parts.kernels, *of_model]
+    wanted = functions_in_c(model, names)
+    if parts is None:
+        return [kernel(model, entry.function, entry.kernel) for entry in wanted]
+    of_model = [kernel(model, entry.function, entry.kernel) for entry in wanted if entry.spec.name not in PARTED]
+    return [*parts.kernels, *of_model]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
@@ -51,23 +41,6 @@ def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
     symbols = function.mx_in()
     results = [ca.densify(result) for result in function.call(symbols)]
     return ca.Function(name, symbols, results, function.name_in(), function.name_out())
-
-
-def tip(model: Model, rod: str) -> ca.Function:
-    """(x, inputs) ↦ (position, quaternion) of the tip, world frame."""
-    return _pose("tip", model.tip[rod])
-
-
-def body_pose(model: Model, body: str) -> ca.Function:
-    """(x, inputs) ↦ (position, quaternion) of a rigid body, world frame."""
-    return _pose("body", model.body[body])
-
-
-def _pose(word: str, function: ca.Function) -> ca.Function:
-    """A pose without the rotation matrix that it is also given as."""
-    x, inputs = function.mx_in()
-    position, quaternion, _ = function(x, inputs)
-    return ca.Function(word, [x, inputs], [position, quaternion], ["x", "inputs"], ["position", "quaternion"])
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import resources
 from importlib.metadata import version
 from typing import Any
@@ -13,9 +13,10 @@ import numpy as np
 
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.block_sources import block_words, dense_words, numbers
-from cosserat_casadi.codegen.manifest import UNITS, actuator_entries, input_entries, unknown_entries
+from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
+from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
-from cosserat_casadi.codegen.names import BODY_FUNCTIONS, FUNCTIONS, Names
+from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import input_macro, input_struct_words, pose_name, result_struct_words
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
@@ -105,10 +106,9 @@ def _words(
 ) -> dict[str, Any]:
     sizes = _sizes(model, names, generated)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
-    rods = [_rod_words(model, names, rod) for rod in names.rods]
-    actuators = [_actuator_words(model, names, i) for i in range(len(names.actuators))]
-    bodies = [_body_words(names, body) for body in names.bodies]
-    pose_derivatives = [*(words["tip_jacobian"] for words in rods), *(words["body_jacobian"] for words in bodies)]
+    functions = public_functions(model, names)
+    pose_derivatives = [names.function("tip_jacobian", rod) for rod in names.rods]
+    pose_derivatives += [names.function("body_jacobian", body) for body in names.bodies]
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
@@ -118,17 +118,19 @@ def _words(
         "first": first_step(model),
         **status_words(names),
         **_input_words(model, names),
-        **result_struct_words(names, actuator_entries(model)),
+        **result_struct_words(model, names),
         **_unknown_words(model),
-        **rods[0],
+        # The demo solves, and shows the tip of the first rod.
+        "igm": names.function("igm", names.rods[0]),
+        "tip": names.function("tip", names.rods[0]),
         "first_pose": pose_name(names, "tip", names.rods[0]),
         "workspace_kb": _workspace_kb(sizes, linear),
         **_pose_words(names),
         **linear,
-        "prototypes": _rendered({"rod.h.in": rods, "actuator.h.in": actuators, "body.h.in": bodies}),
-        "functions": _rendered({"rod.c.in": rods, "actuator.c.in": actuators, "body.c.in": bodies}),
+        "prototypes": "".join(function.prototype(render) for function in functions),
+        "functions": "".join(function.wrapper(render) for function in functions),
+        "function_rows": _function_rows(functions),
         "pose_derivatives": "".join(f"    {function},\n" for function in pose_derivatives),
-        "further_results": _further_results(actuators, bodies),
         "title": _comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
         **_version_words(),
@@ -140,11 +142,6 @@ def _words(
 def _version_words() -> dict[str, str]:
     major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
     return {"version_major": major, "version_minor": minor, "version_patch": patch}
-
-
-def _rendered(entries: dict[str, list[dict[str, Any]]]) -> str:
-    texts = [render(template, words) for template, wordings in entries.items() for words in wordings]
-    return "".join(texts)
 
 
 def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str, Any]:
@@ -160,7 +157,7 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "input_room": max(model.inputs.size, 1),
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
-        "max_reuses": newton.KEPT_STEPS,
+        "max_reuses": newton.MAX_REUSES,
         "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
     }
 
@@ -178,13 +175,13 @@ def _solver_constants() -> dict[str, Any]:
         "iterations": limits.newton.iterations,
         "shortest": limits.shortest,
         "longest": limits.longest,
-        "rough": limits.inexact,
+        "inexact": limits.inexact,
         "most_bent": MOST_BENT,
         "steps": limits.steps,
-        "quick": limits.grow_below,
-        "slow": limits.reject_above,
+        "grow_below": limits.grow_below,
+        "reject_above": limits.reject_above,
         "near": MAX_DISTANCE,
-        "kept_decrease": newton.KEPT_DECREASE,
+        "reuse_decrease": newton.REUSE_DECREASE,
         "singular": SINGULAR,
         "sufficient_decrease": newton.SUFFICIENT_DECREASE,
         "halvings": int(-np.log2(newton.SHORTEST_STEP)),
@@ -248,28 +245,6 @@ def _unknown_word(model: Model, entry: dict[str, Any]) -> str:
     return f"how far the {entry['frame']} has moved and its quaternion changed"
 
 
-def _rod_words(model: Model, names: Names, rod: str) -> dict[str, Any]:
-    words = {word: names.function(word, rod) for word in FUNCTIONS}
-    kernels = {f"k_{word}": names.kernel(word, rod) for word in words}
-    basics = {"name": names.name, "rod": rod, "coordinates": model.discrete.rods[rod].size}
-    return {**words, **kernels, **basics}
-
-
-def _actuator_words(model: Model, names: Names, i: int) -> dict[str, Any]:
-    entry = actuator_entries(model)[i]
-    called = entry["name"]
-    symbols = {"actuator": names.function("actuator", called), "k_actuator": names.kernel("actuator", called)}
-    effort, extent = entry["effort"], entry["extent"]
-    facts = {"effort": effort, "extent": extent, "effort_unit": UNITS[effort], "extent_unit": UNITS[extent]}
-    return {"name": names.name, "called": called, "kind": entry["kind"], "rod": entry["rod"], **symbols, **facts}
-
-
-def _body_words(names: Names, body: str) -> dict[str, Any]:
-    words = {word: names.function(word, body) for word in BODY_FUNCTIONS}
-    kernels = {f"k_{word}": names.kernel(word, body) for word in words}
-    return {"name": names.name, "called": body, **words, **kernels}
-
-
 def _pose_words(names: Names) -> dict[str, Any]:
     """Whose poses the sensitivities are of."""
     if not names.bodies:
@@ -277,19 +252,8 @@ def _pose_words(names: Names) -> dict[str, Any]:
     return {"pose_owners": "each rod,\n   then each body: position, then quaternion"}
 
 
-def _further_results(actuators: list[dict[str, Any]], bodies: list[dict[str, Any]]) -> str:
-    """A section on actuators and bodies; nothing where there are none."""
-    rows = [
-        f"| `{words['actuator']}` | {words['effort']} ({words['effort_unit']}) and {words['extent']} "
-        f"({words['extent_unit']}) of the {words['kind']} {words['called']}, d {words['extent']} / d x |"
-        for words in actuators
-    ]
-    for words in bodies:
-        rows.append(f"| `{words['body']}` | pose of the body {words['called']} |")
-        rows.append(f"| `{words['body_jacobian']}` | its derivatives with x and with the inputs |")
-    if not rows:
-        return ""
-    return "\n".join(["", "## Actuators and bodies", "", "| function | what it gives |", "|---|---|", *rows, ""])
+def _function_rows(functions: Sequence[FunctionInC]) -> str:
+    return "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions)
 
 
 def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool) -> str:

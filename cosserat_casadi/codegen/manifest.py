@@ -2,30 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
 
 import casadi as ca
 
+from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import ARGUMENT_UNITS
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
-
-UNITS = {
-    "position": "m",
-    "base_position": "m",
-    "base_force": "N",
-    "base_moment": "N m",
-    "generalised_force": "EI/L",
-    "tension": "N",
-    "length": "m",
-    "pressure": "Pa",
-    "volume": "m³",
-}
-"""Units of arguments and results that have one; the rest, stacked inputs apart, are without."""
 
 
 def manifest(model: Model, names: Names, functions: list[ca.Function], error_estimate: float | None) -> dict[str, Any]:
@@ -37,6 +27,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
         functions: the generated kernels.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
     """
+    known = {entry.kernel: entry for entry in functions_in_c(model, names)}
     return {
         "schema": 1,
         "name": names.name,
@@ -48,7 +39,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
         "tolerance": model.scene.accuracy.tolerance,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
-        "functions": [_function_entry(function) for function in functions],
+        "functions": [_function_entry(function, known.get(function.name())) for function in functions],
     }
 
 
@@ -73,7 +64,7 @@ def actuator_entries(model: Model) -> list[dict[str, Any]]:
     for actuator in model.scene.actuators:
         effort, conjugate = (model.actuator[actuator.name].name_out(i) for i in range(2))
         described = {"name": actuator.name, "kind": actuator.kind, "rod": actuator.rod}
-        entries.append({**described, "effort": effort, "extent": conjugate})
+        entries.append({**described, "effort": effort, "conjugate": conjugate})
     return entries
 
 
@@ -116,14 +107,32 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     return entries
 
 
-def _function_entry(function: ca.Function) -> dict[str, Any]:
+def _function_entry(function: ca.Function, known: FunctionInC | None) -> dict[str, Any]:
+    """A kernel, with the function of the header that it is behind; those of parts of an assembly are not known."""
+    units = ARGUMENT_UNITS if known is None else known.units
+    arguments = [_vector_entry(function.name_in(i), function.size_in(i), units) for i in range(function.n_in())]
+    results = [_vector_entry(function.name_out(i), function.size_out(i), units) for i in range(function.n_out())]
     return {
         "name": function.name(),
-        "arguments": [_scalar_entry(function.name_in(i), function.size_in(i)) for i in range(function.n_in())],
-        "results": [_scalar_entry(function.name_out(i), function.size_out(i)) for i in range(function.n_out())],
+        **_public_entry(known),
+        "arguments": arguments,
+        "results": results,
         "instructions": function.n_instructions(),
     }
 
 
-def _scalar_entry(name: str, shape: tuple[int, int]) -> dict[str, Any]:
-    return {"name": name, "shape": list(shape), "unit": UNITS.get(name, "inputs" if name == "inputs" else "1")}
+def _public_entry(known: FunctionInC | None) -> dict[str, str]:
+    """What ``load`` offers of a kernel: nothing of those that are the solver's alone."""
+    if known is None or not known.spec.public:
+        return {}
+    described = {"function": known.spec.name}
+    if known.owner is not None:
+        described["owner"] = known.owner
+    described["symbol"] = known.symbol
+    if known.spec.differentiable:
+        described["external"] = known.external
+    return described
+
+
+def _vector_entry(name: str, shape: tuple[int, int], units: Mapping[str, str]) -> dict[str, Any]:
+    return {"name": name, "shape": list(shape), "unit": units.get(name, "1")}

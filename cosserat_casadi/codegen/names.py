@@ -7,6 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import FunctionSpec, Owner, table
+from cosserat_casadi.model.functions import ModelFunctions
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.faults import shown
 
@@ -31,17 +34,14 @@ KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
 TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
 """Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
 
-FUNCTIONS = ("igm", "tip", "tip_jacobian", "shape")
-"""Functions that every rod has."""
-
-BODY_FUNCTIONS = ("body", "body_jacobian")
-"""Functions that every rigid body has."""
+FUNCTIONS = tuple(table(ModelFunctions))
+"""The named functions of every model."""
 
 QUERIES = """SZ_ARG SZ_IW SZ_RES SZ_W checkout decref default_in incref n_in n_out name_in name_out release sparsity_in
 sparsity_out work work_bytes"""
 """What CasADi appends to the name of a function."""
 
-PLURALS = {"rod": "rods", "actuator": "actuators", "body": "bodies"}
+TABLES = {Owner.ROD: "rods", Owner.ACTUATOR: "actuators", Owner.BODY: "bodies"}
 """Tables of a scene whose names become part of symbols."""
 
 
@@ -54,12 +54,14 @@ class Names:
         rods: names of the rods, in the order of the scene.
         actuators: names of the actuators.
         bodies: names of the rigid bodies.
+        functions: the named functions of the model.
     """
 
     name: str
     rods: tuple[str, ...]
     actuators: tuple[str, ...] = ()
     bodies: tuple[str, ...] = ()
+    functions: tuple[FunctionSpec, ...] = FUNCTIONS
 
     @property
     def macro(self) -> str:
@@ -78,12 +80,26 @@ class Names:
         """Symbol of a function for ``casadi.external``."""
         return self._symbol(f"f_{word}", word, owner)
 
+    def words(self, kind: Owner) -> list[str]:
+        """The words in the symbols of the functions in C that there is one of for each owner of a kind."""
+        return [spec.name_in_c for spec in self.functions if spec.kernel and spec.owner is kind]
+
     def _symbol(self, shown: str, word: str, owner: str | None) -> str:
-        named = owner is not None and (word not in FUNCTIONS or len(self.rods) > 1)
+        only_rod = len(self.rods) <= 1 and word in self.words(Owner.ROD)
+        named = owner is not None and not only_rod
         return f"{self.name}_{shown}_{owner}" if named else f"{self.name}_{shown}"
 
 
-def scene_names(name: str, scene: Scene) -> Names:
+def model_names(name: str, model: Model) -> Names:
+    """Names of the exported library of a model, with the functions of its class.
+
+    Raises:
+        ExportError: as :func:`library_names`.
+    """
+    return scene_names(name, model.scene, tuple(table(type(model))))
+
+
+def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = FUNCTIONS) -> Names:
     """Names of the exported library of a scene.
 
     Raises:
@@ -92,7 +108,7 @@ def scene_names(name: str, scene: Scene) -> Names:
     rods, actuators, bodies = (
         tuple(entry.name for entry in table) for table in (scene.rods, scene.actuators, scene.bodies)
     )
-    return library_names(name, rods, scene.input_names(), actuators=actuators, bodies=bodies)
+    return library_names(name, rods, scene.input_names(), actuators=actuators, bodies=bodies, functions=functions)
 
 
 def library_names(
@@ -102,6 +118,7 @@ def library_names(
     *,
     actuators: tuple[str, ...] = (),
     bodies: tuple[str, ...] = (),
+    functions: tuple[FunctionSpec, ...] = FUNCTIONS,
 ) -> Names:
     """Names of an exported library.
 
@@ -111,12 +128,13 @@ def library_names(
         inputs: names of the inputs.
         actuators: names of the actuators.
         bodies: names of the rigid bodies.
+        functions: the named functions of the model.
 
     Raises:
         ExportError: the name is no C identifier that two languages and a linker agree on, or two things in the library
             would have one name.
     """
-    names = Names(name, rods, actuators, bodies)
+    names = Names(name, rods, actuators, bodies, functions)
     problems = [*_name_problems(name), *_symbol_problems(names), *_macro_problems(inputs)]
     if problems:
         raise ExportError(*problems)
@@ -138,27 +156,25 @@ def _name_problems(name: str) -> Iterator[Problem]:
 def _symbol_problems(names: Names) -> Iterator[Problem]:
     # Without a suffix, the functions of a rod that is alone clash with none.
     rods = names.rods if len(names.rods) > 1 else ()
-    for noun, owners, words in (
-        ("rod", rods, FUNCTIONS),
-        ("actuator", names.actuators, ("actuator",)),
-        ("body", names.bodies, BODY_FUNCTIONS),
-    ):
-        yield from _clashes(noun, owners, [[f"{word}_{owner}" for word in words] for owner in owners])
+    owners_by_kind = {Owner.ROD: rods, Owner.ACTUATOR: names.actuators, Owner.BODY: names.bodies}
+    for kind, owners in owners_by_kind.items():
+        words = names.words(kind)
+        yield from _clashes(kind, owners, [[f"{word}_{owner}" for word in words] for owner in owners])
 
 
-def _clashes(noun: str, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
+def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]]) -> Iterator[Problem]:
     """Names of one table that no C symbol can hold, or that give two functions one name."""
-    table = PLURALS[noun]
+    entries = TABLES[kind]
     taken = dict[str, str]()
     for i, (owner, own) in enumerate(zip(owners, functions, strict=True)):
-        where = f"{table}[{i}].name"
+        where = f"{entries}[{i}].name"
         if "__" in owner:
             yield Problem(where, f"{owner!r} cannot be part of a C symbol", "without two underscores in a row")
         symbols = own + [f"{function}_{query}" for function in own for query in QUERIES.split()]
         clashing = [taken[symbol] for symbol in symbols if symbol in taken]
         if clashing:
-            problem = f"{owner!r} gives a function the name that {noun} {clashing[0]!r} gives another"
-            yield Problem(where, problem, f"rename one of the {table}")
+            problem = f"{owner!r} gives a function the name that {kind.value} {clashing[0]!r} gives another"
+            yield Problem(where, problem, f"rename one of the {entries}")
         taken.update(dict.fromkeys(symbols, owner))
 
 

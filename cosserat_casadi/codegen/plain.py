@@ -11,10 +11,14 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 
-REMEDY = "export the folder with derivatives: export(..., derivatives=True), or cosserat export --derivatives"
+EXPORT_WITH = "export the folder with derivatives: export(..., derivatives=True), or cosserat export --derivatives"
+IN_PYTHON = "differentiate the model's own"
+"""What to do for the derivative of a function that a folder can hold it of, and of one that it never does."""
+
+Shapes = dict[str, tuple[int, int]]
 
 Evaluate = Callable[[Sequence[FloatArray]], Sequence[FloatArray]]
-"""Argument vectors to result vectors."""
+"""Argument vectors to results."""
 
 
 class PlainFunction(ca.Callback):  # type: ignore[misc]
@@ -22,16 +26,18 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
 
     Args:
         name: of the function.
-        arguments: length of each argument by name.
-        results: length of each result by name.
+        arguments: shape of each argument by name.
+        results: shape of each result by name.
         evaluate: what computes the results.
+        remedy: what to do for its derivatives.
     """
 
-    def __init__(self, name: str, arguments: dict[str, int], results: dict[str, int], evaluate: Evaluate) -> None:
+    def __init__(self, name: str, arguments: Shapes, results: Shapes, evaluate: Evaluate, remedy: str) -> None:
         ca.Callback.__init__(self)
         self._arguments = arguments
         self._results = results
         self._evaluate = evaluate
+        self._remedy = remedy
         self.construct(name, {})
 
     def get_n_in(self) -> int:
@@ -52,11 +58,11 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
 
     def get_sparsity_in(self, i: int) -> ca.Sparsity:
         """Shape of an argument."""
-        return ca.Sparsity.dense(list(self._arguments.values())[i], 1)
+        return ca.Sparsity.dense(*list(self._arguments.values())[i])
 
     def get_sparsity_out(self, i: int) -> ca.Sparsity:
         """Shape of a result."""
-        return ca.Sparsity.dense(list(self._results.values())[i], 1)
+        return ca.Sparsity.dense(*list(self._results.values())[i])
 
     def eval(self, arguments: Sequence[ca.DM]) -> list[ca.DM]:
         """The results."""
@@ -73,7 +79,7 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
         Raises:
             NotImplementedError: always.
         """
-        raise NotImplementedError(f"{self.name()} was compiled without derivatives: {REMEDY}")
+        raise NotImplementedError(f"{self.name()} was compiled without derivatives: {self._remedy}")
 
 
 def pointer(array: FloatArray) -> Any:

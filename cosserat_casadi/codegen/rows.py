@@ -13,7 +13,7 @@ from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
-from cosserat_casadi.codegen.names import Names, scene_names
+from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -70,7 +70,7 @@ def row_library(model: Model) -> RowLibrary:
     Raises:
         ExportError: two things of the scene would have one name in C.
     """
-    names = scene_names(NAME, model.scene)
+    names = model_names(NAME, model)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
     columns = row_results(model.scene)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import casadi as ca
 
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
-from cosserat_casadi.codegen.kernels import body_pose, sources, tip
+from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
@@ -84,9 +84,12 @@ def straight(function: ca.Function, name: str) -> ca.Function:
 
 def _stage(model: Model, name: str) -> ca.Function:
     x, inputs = model.residual.mx_in()
-    poses = {f"tip_{rod}": tip(model, rod) for rod in model.tip}
-    poses |= {f"body_{body}": body_pose(model, body) for body in model.body}
-    results = [model.residual(x, inputs), *[ca.vertcat(*pose(x, inputs)) for pose in poses.values()]]
+    poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
+    poses |= {f"body_{body}": pose for body, pose in model.body.items()}
+    results = [model.residual(x, inputs)]
+    for pose in poses.values():
+        position, quaternion, _ = pose(x, inputs)
+        results.append(ca.vertcat(position, quaternion))
     return ca.Function(name, [x, inputs], results, ["x", "inputs"], ["residual", *poses])
 
 

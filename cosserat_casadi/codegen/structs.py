@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosserat_casadi.codegen.manifest import UNITS
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.model.build import Model
 
 
 def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
@@ -31,12 +31,12 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
     }
 
 
-def result_struct_words(names: Names, actuators: list[dict[str, Any]]) -> dict[str, str]:
+def result_struct_words(model: Model, names: Names) -> dict[str, str]:
     """Words of the struct of results.
 
     Args:
+        model: what is exported.
         names: what things are called.
-        actuators: actuators as in the manifest.
     """
     poses = {pose_name(names, "tip", rod): names.function("tip", rod) for rod in names.rods}
     poses |= {pose_name(names, "body", body): names.function("body", body) for body in names.bodies}
@@ -45,15 +45,13 @@ def result_struct_words(names: Names, actuators: list[dict[str, Any]]) -> dict[s
         f"  {function}(x, inputs, named->{member}.position, named->{member}.quaternion);"
         for member, function in poses.items()
     ]
-    for entry in actuators:
-        effort = entry["effort"]
-        conjugate = entry["extent"]
+    for actuator in names.actuators:
+        effort, conjugate, _ = type(model).actuator.spec.outputs_of(model.discrete, actuator)
         members += [
-            f"  {names.name}_real {quantity}_{entry['name']}; /* {UNITS[quantity]} */"
-            for quantity in (effort, conjugate)
+            f"  {names.name}_real {quantity.name}_{actuator}; /* {quantity.unit} */" for quantity in (effort, conjugate)
         ]
-        function = names.function("actuator", entry["name"])
-        arguments = f"&named->{effort}_{entry['name']}, &named->{conjugate}_{entry['name']}"
+        function = names.function("actuator", actuator)
+        arguments = f"&named->{effort.name}_{actuator}, &named->{conjugate.name}_{actuator}"
         calls.append(f"  {function}(x, inputs, {arguments}, 0);")
     macros = [f"#define {names.macro}_POSE_{member.upper()} {i}" for i, member in enumerate(poses)]
     return {

@@ -106,7 +106,7 @@ def _verdict(
         return Outcome.NOT_FINITE
     if norm <= tolerance:
         # Beyond 1 the nodes are too few for the solution to be one of the rod.
-        resolution_index = float(model.coarseness(x, inputs))
+        resolution_index = float(model.resolution_index(x, inputs))
         if resolution_index <= 1.0:
             return Outcome.CONVERGED
         return Outcome.UNRESOLVED

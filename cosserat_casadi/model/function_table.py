@@ -24,6 +24,9 @@ Result = TypeVar("Result")
 ARGUMENT_UNITS: dict[str, str] = {"inputs": "inputs", "base_position": "m", "inputs_rate": "inputs"}
 """Units of the arguments that have one; "inputs" stands for those of the stacked inputs."""
 
+SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
+"""Arguments that are one number whatever the scene: functions in C take them by value."""
+
 
 class Owner(Enum):
     """What there is one function for each of."""
@@ -41,10 +44,13 @@ class Output:
     Attributes:
         name: in Python, in C and in the manifest.
         unit: "1" where it has none.
+        derivative_by: the argument that it is a derivative with respect to, with a column for each of its entries;
+            empty where it is no derivative.
     """
 
     name: str
     unit: str = "1"
+    derivative_by: str = ""
 
 
 @dataclass(frozen=True)
@@ -92,6 +98,8 @@ class FunctionSpec:
         write: gives the expressions; None where the scene has no such function.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
+        header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
+        differentiable: whether a loaded folder gives it with derivatives.
         doc: what it is, in one sentence.
     """
 
@@ -102,11 +110,38 @@ class FunctionSpec:
     write: Write
     kernel: str = ""
     kernel_outputs: int | None = None
+    header: str = ""
+    differentiable: bool = False
     doc: str = ""
+
+    @property
+    def name_in_c(self) -> str:
+        """The word in its symbols."""
+        return self.kernel or self.name
+
+    @property
+    def public(self) -> bool:
+        """Whether it is a function of the header in C."""
+        return bool(self.header)
 
     def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
         """What the function of one owner gives."""
         return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs
+
+    def function_of(self, model: Any, owner: str = "") -> ca.Function:
+        """The function of one owner, as the model keeps it."""
+        member = getattr(model, self.name)
+        return member[owner] if owner else member
+
+    def function_in_c(self, model: Any, owner: str = "") -> ca.Function:
+        """The function of one owner with the outputs that its kernel has."""
+        function = self.function_of(model, owner)
+        if self.kernel_outputs is None:
+            return function
+        symbols = function.mx_in()
+        results = function.call(symbols)[: self.kernel_outputs]
+        names = function.name_out()[: self.kernel_outputs]
+        return ca.Function(self.name, symbols, results, function.name_in(), names)
 
     def build(self, model: Any, owner: str = "") -> ca.Function | None:
         """The function of one owner; None where the scene has none.
@@ -128,6 +163,10 @@ class FunctionSpec:
 
 def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
     """Number of entries of an argument."""
+    if name in SCALAR_ARGUMENTS:
+        return 1
+    if name == "q":
+        return discrete.rods[owner].size
     sizes = {
         "x": discrete.size,
         "inputs": discrete.layout.size,
@@ -135,9 +174,7 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
         "base_position": 3,
         "base_quaternion": 4,
     }
-    if name == "q":
-        return discrete.rods[owner].size
-    return sizes.get(name, 1)
+    return sizes[name]
 
 
 def owners(discrete: DiscreteScene, owner: Owner) -> list[str]:
@@ -190,7 +227,11 @@ class OwnedFunctions(NamedFunction[dict[str, ca.Function]]):
 
 
 def scene_function(
-    *outputs: Output, arguments: Sequence[str] = ("x", "inputs"), kernel: str = ""
+    *outputs: Output,
+    arguments: Sequence[str] = ("x", "inputs"),
+    kernel: str = "",
+    header: str = "",
+    differentiable: bool = False,
 ) -> Callable[[Write], SceneFunction]:
     """Make a method one named function of the scene.
 
@@ -198,8 +239,17 @@ def scene_function(
         outputs: what it gives.
         arguments: names of what it takes.
         kernel: name of its kernel in C; empty where it stays in Python.
+        header: sentence of the header in C; empty where the kernel is the solver's alone.
+        differentiable: whether a loaded folder gives it with derivatives.
     """
-    options = {"owner": Owner.SCENE, "arguments": tuple(arguments), "outputs": outputs, "kernel": kernel}
+    options = {
+        "owner": Owner.SCENE,
+        "arguments": tuple(arguments),
+        "outputs": outputs,
+        "kernel": kernel,
+        "header": header,
+        "differentiable": differentiable,
+    }
     return lambda write: SceneFunction(options, write)
 
 
@@ -210,6 +260,8 @@ def owned_functions(
     arguments: Sequence[str] = ("x", "inputs"),
     kernel: str = "",
     kernel_outputs: int | None = None,
+    header: str = "",
+    differentiable: bool = False,
 ) -> Callable[[Write], OwnedFunctions]:
     """Make a method one named function for each rod, actuator or body.
 
@@ -219,6 +271,8 @@ def owned_functions(
         arguments: names of what it takes.
         kernel: name of its kernel in C; empty where it stays in Python.
         kernel_outputs: number of the outputs that the kernel has; None for all.
+        header: sentence of the header in C, with the word ``{owner}``; empty where the kernel is the solver's alone.
+        differentiable: whether a loaded folder gives it with derivatives.
     """
     options = {
         "owner": owner,
@@ -226,6 +280,8 @@ def owned_functions(
         "outputs": outputs,
         "kernel": kernel,
         "kernel_outputs": kernel_outputs,
+        "header": header,
+        "differentiable": differentiable,
     }
     return lambda write: OwnedFunctions(options, write)
 

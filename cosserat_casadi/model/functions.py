@@ -40,7 +40,7 @@ PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
 
 POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
-POSE_DERIVATIVES = (Output("d_pose_d_x"), Output("d_pose_d_inputs"))
+POSE_DERIVATIVES = (Output("d_pose_d_x", derivative_by="x"), Output("d_pose_d_inputs", derivative_by="inputs"))
 
 
 def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
@@ -48,7 +48,7 @@ def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
     member = next(EFFECTS[actuator.kind] for actuator in discrete.scene.actuators if actuator.name == name)
     effort = Output(member.effort, member.effort_unit)
     conjugate = Output(member.conjugate, member.conjugate_unit)
-    return effort, conjugate, Output(f"d_{conjugate.name}_d_x")
+    return effort, conjugate, Output(f"d_{conjugate.name}_d_x", derivative_by="x")
 
 
 class ModelFunctions:
@@ -60,7 +60,7 @@ class ModelFunctions:
 
     discrete: DiscreteScene
 
-    @scene_function(Output("residual"))
+    @scene_function(Output("residual"), differentiable=True)
     def residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
         return [written.system.residual]
@@ -100,8 +100,8 @@ class ModelFunctions:
         """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
         return [_unloaded_response(self, written["inputs"])]
 
-    @scene_function(Output("coarseness"), kernel="coarseness")
-    def coarseness(self, written: Expressions) -> list[Matrix]:
+    @scene_function(Output("resolution_index"), kernel="resolution_index")
+    def resolution_index(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
         return [_resolution_index(written)]
 
@@ -110,6 +110,8 @@ class ModelFunctions:
         (Output("generalised_force", "EI/L"), Output("base_force", "N"), Output("base_moment", "N m")),
         arguments=("q", "base_position", "base_quaternion", "inputs"),
         kernel="igm",
+        header="Inverse Geometric Model of rod {owner}: strain coordinates and base pose, with the loads, to the "
+        "generalised force, and the force and the moment about the base of the clamp on the rod, world frame.",
     )
     def igm(self, written: Expressions) -> list[Matrix]:
         """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
@@ -119,18 +121,37 @@ class ModelFunctions:
         """
         return _inverse_geometric_model(written)
 
-    @owned_functions(Owner.ROD, POSE, kernel="tip", kernel_outputs=2)
+    @owned_functions(
+        Owner.ROD,
+        POSE,
+        kernel="tip",
+        kernel_outputs=2,
+        header="Tip of rod {owner}, world frame.",
+        differentiable=True,
+    )
     def tip(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
         tip = _tip_in_world(written)
         return [tip.position, tip.quaternion, tip.rotation]
 
-    @owned_functions(Owner.ROD, POSE_DERIVATIVES, kernel="tip_jacobian")
+    @owned_functions(
+        Owner.ROD,
+        POSE_DERIVATIVES,
+        kernel="tip_jacobian",
+        header="Derivatives of position and quaternion of the tip of rod {owner}, stacked.",
+    )
     def tip_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs."""
         return _tip_derivatives(written)
 
-    @owned_functions(Owner.ROD, POSE[:2], arguments=("x", "inputs", "X"), kernel="shape")
+    @owned_functions(
+        Owner.ROD,
+        POSE[:2],
+        arguments=("x", "inputs", "X"),
+        kernel="shape",
+        header="Section of rod {owner} at the abscissa X, 0 at the base and 1 at the tip, world frame.",
+        differentiable=True,
+    )
     def shape(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame: the interpolant itself.
 
@@ -172,7 +193,14 @@ class ModelFunctions:
             rotation @ rod.statics.base_moment,
         ]
 
-    @owned_functions(Owner.ACTUATOR, _actuator_outputs, kernel="actuator")
+    @owned_functions(
+        Owner.ACTUATOR,
+        _actuator_outputs,
+        kernel="actuator",
+        header="Actuator {owner}: its effort, the conjugate that the effort does work on, and the derivative of the "
+        "conjugate, which is the generalised force of a unit of effort but for the unit EI/L and the sign.",
+        differentiable=True,
+    )
     def actuator(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ effort of an actuator, its conjugate, and the derivative of the conjugate with x, 1×size.
 
@@ -181,13 +209,25 @@ class ModelFunctions:
         """
         return [ca.densify(ca.MX(value)) for value in written.system.actuator(written.owner)]
 
-    @owned_functions(Owner.BODY, POSE, kernel="body", kernel_outputs=2)
+    @owned_functions(
+        Owner.BODY,
+        POSE,
+        kernel="body",
+        kernel_outputs=2,
+        header="Body {owner}, world frame.",
+        differentiable=True,
+    )
     def body(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (position, quaternion, rotation) of a rigid body, world frame."""
         frame = written.system.frame(FrameName("body", written.owner))
         return [frame.position, frame.quaternion, frame.rotation]
 
-    @owned_functions(Owner.BODY, POSE_DERIVATIVES, kernel="body_jacobian")
+    @owned_functions(
+        Owner.BODY,
+        POSE_DERIVATIVES,
+        kernel="body_jacobian",
+        header="Derivatives of position and quaternion of the body {owner}, stacked.",
+    )
     def body_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
         frame = written.system.frame(FrameName("body", written.owner))

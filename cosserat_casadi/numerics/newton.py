@@ -25,10 +25,10 @@ SUFFICIENT_DECREASE = 1e-4
 SHORTEST_STEP = 2.0**-12
 """Share of a Newton step below which the line search gives up."""
 
-KEPT_DECREASE = 0.5
+REUSE_DECREASE = 0.5
 """A Jacobian is kept while a step leaves at most this share of the residual."""
 
-KEPT_STEPS = 12
+MAX_REUSES = 12
 """Most steps with one Jacobian."""
 
 
@@ -167,8 +167,8 @@ class _Iterate:
         jacobian.steps.append(trial.step)
         # The next step will be shorter than this one by about as much as the residual has fallen.
         self.inexact_enough = length_of(trial.step) * trial.norm < inexact * norm_before
-        decreased = trial.norm <= KEPT_DECREASE * norm_before
-        self.reuse_jacobian = decreased and len(jacobian.steps) < KEPT_STEPS
+        decreased = trial.norm <= REUSE_DECREASE * norm_before
+        self.reuse_jacobian = decreased and len(jacobian.steps) < MAX_REUSES
 
     def result(self, outcome: Outcome) -> NewtonResult:
         """The end of the solve at this iterate."""

@@ -75,7 +75,7 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
         raise SceneError(Problem("", TOO_DEEP)) from None
 
 
-def place_of(mapping: Mapping[str, Any], key: str) -> FaultPath:
+def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     """Path of what an override with this key sets: two keys of one path set the same.
 
     Args:

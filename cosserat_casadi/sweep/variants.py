@@ -22,7 +22,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
-from cosserat_casadi.scene.reading import place_of
+from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
 from cosserat_casadi.sweep.table import Table, shortened
 
@@ -136,7 +136,7 @@ def _set_twice(scene: Scene, names: Sequence[str], table: Table) -> Iterator[Pro
         # What is not there to be set is told with the row that would set it.
         with suppress(SceneError):
             # A tangent is one more way to give the orientation.
-            paths[name] = place_of(tables, name.replace(".base.tangent", ".base.quaternion"))
+            paths[name] = override_path(tables, name.replace(".base.tangent", ".base.quaternion"))
     for (first, first_path), (second, second_path) in combinations(paths.items(), 2):
         # One path within the other: setting the shorter sets the longer too.
         shared = min(len(first_path), len(second_path))
@@ -202,7 +202,7 @@ def _scenes(
 def _moves_joints(tables: Mapping[str, Any], column: str) -> bool:
     """Whether what joints hold may depend on a parameter."""
     try:
-        table, *_, field = place_of(tables, column)[:3]
+        table, *_, field = override_path(tables, column)[:3]
     except SceneError:
         return False
     return table != "actuators" and field not in STIFFNESS

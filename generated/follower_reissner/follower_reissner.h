@@ -216,24 +216,27 @@ void follower_reissner_residual_jacobian(const follower_reissner_real *x, const 
 void follower_reissner_input_jacobian(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real *d_residual_d_inputs,
                             follower_reissner_workspace *workspace);
 
-/* Inverse Geometric Model of rod cord: its strain coordinates q (12) and base pose, with the loads, to the
-   generalised force (12, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod cord: strain coordinates and base pose, with the loads, to the generalised force, and
+   the force and the moment about the base of the clamp on the rod, world frame. Takes q (12), base_position (3, m),
+   base_quaternion (4); gives generalised_force (12, EI/L), base_force (3, N), base_moment (3, N m). */
 void follower_reissner_igm(const follower_reissner_real *q, const follower_reissner_real *base_position,
-    const follower_reissner_real *base_quaternion, const follower_reissner_real *inputs, follower_reissner_real *generalised_force,
-    follower_reissner_real *base_force, follower_reissner_real *base_moment);
+    const follower_reissner_real *base_quaternion, const follower_reissner_real *inputs,
+    follower_reissner_real *generalised_force, follower_reissner_real *base_force,
+    follower_reissner_real *base_moment);
 
-/* Tip of rod cord, world frame: position (3, m), quaternion (4). */
-void follower_reissner_tip(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real *position,
-    follower_reissner_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void follower_reissner_tip_jacobian(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real *d_pose_d_x,
-    follower_reissner_real *d_pose_d_inputs);
-
-/* Rod cord at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void follower_reissner_shape(const follower_reissner_real *x, const follower_reissner_real *inputs, follower_reissner_real X,
+/* Tip of rod cord, world frame. Gives position (3, m), quaternion (4). */
+void follower_reissner_tip(const follower_reissner_real *x, const follower_reissner_real *inputs,
     follower_reissner_real *position, follower_reissner_real *quaternion);
+
+/* Derivatives of position and quaternion of the tip of rod cord, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void follower_reissner_tip_jacobian(const follower_reissner_real *x, const follower_reissner_real *inputs,
+    follower_reissner_real *d_pose_d_x, follower_reissner_real *d_pose_d_inputs);
+
+/* Section of rod cord at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void follower_reissner_shape(const follower_reissner_real *x, const follower_reissner_real *inputs,
+    follower_reissner_real X, follower_reissner_real *position, follower_reissner_real *quaternion);
 
 #ifdef __cplusplus
 }

@@ -75,7 +75,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
 #include "solver.c"
 
 void nitinol_wire_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
-            real *generalised_force, real *base_force, real *base_moment) {
+    real *generalised_force, real *base_force, real *base_moment) {
   ARGUMENTS(nitinol_wire_k_igm, q, base_position, base_quaternion, inputs);
   RESULTS(generalised_force, base_force, base_moment);
   CALL_WITHOUT_WORKSPACE(nitinol_wire_k_igm)

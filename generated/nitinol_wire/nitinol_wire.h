@@ -213,22 +213,24 @@ void nitinol_wire_residual_jacobian(const nitinol_wire_real *x, const nitinol_wi
 void nitinol_wire_input_jacobian(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real *d_residual_d_inputs,
                             nitinol_wire_workspace *workspace);
 
-/* Inverse Geometric Model of rod wire: its strain coordinates q (7) and base pose, with the loads, to the
-   generalised force (7, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod wire: strain coordinates and base pose, with the loads, to the generalised force, and
+   the force and the moment about the base of the clamp on the rod, world frame. Takes q (7), base_position (3, m),
+   base_quaternion (4); gives generalised_force (7, EI/L), base_force (3, N), base_moment (3, N m). */
 void nitinol_wire_igm(const nitinol_wire_real *q, const nitinol_wire_real *base_position,
     const nitinol_wire_real *base_quaternion, const nitinol_wire_real *inputs, nitinol_wire_real *generalised_force,
     nitinol_wire_real *base_force, nitinol_wire_real *base_moment);
 
-/* Tip of rod wire, world frame: position (3, m), quaternion (4). */
+/* Tip of rod wire, world frame. Gives position (3, m), quaternion (4). */
 void nitinol_wire_tip(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real *position,
     nitinol_wire_real *quaternion);
 
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void nitinol_wire_tip_jacobian(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real *d_pose_d_x,
-    nitinol_wire_real *d_pose_d_inputs);
+/* Derivatives of position and quaternion of the tip of rod wire, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void nitinol_wire_tip_jacobian(const nitinol_wire_real *x, const nitinol_wire_real *inputs,
+    nitinol_wire_real *d_pose_d_x, nitinol_wire_real *d_pose_d_inputs);
 
-/* Rod wire at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
+/* Section of rod wire at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
 void nitinol_wire_shape(const nitinol_wire_real *x, const nitinol_wire_real *inputs, nitinol_wire_real X,
     nitinol_wire_real *position, nitinol_wire_real *quaternion);
 

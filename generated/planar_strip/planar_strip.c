@@ -74,7 +74,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
 #include "solver.c"
 
 void planar_strip_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
-            real *generalised_force, real *base_force, real *base_moment) {
+    real *generalised_force, real *base_force, real *base_moment) {
   ARGUMENTS(planar_strip_k_igm, q, base_position, base_quaternion, inputs);
   RESULTS(generalised_force, base_force, base_moment);
   CALL_WITHOUT_WORKSPACE(planar_strip_k_igm)

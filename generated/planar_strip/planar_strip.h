@@ -211,22 +211,24 @@ void planar_strip_residual_jacobian(const planar_strip_real *x, const planar_str
 void planar_strip_input_jacobian(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real *d_residual_d_inputs,
                             planar_strip_workspace *workspace);
 
-/* Inverse Geometric Model of rod strip: its strain coordinates q (4) and base pose, with the loads, to the
-   generalised force (4, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod strip: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (4), base_position (3, m),
+   base_quaternion (4); gives generalised_force (4, EI/L), base_force (3, N), base_moment (3, N m). */
 void planar_strip_igm(const planar_strip_real *q, const planar_strip_real *base_position,
     const planar_strip_real *base_quaternion, const planar_strip_real *inputs, planar_strip_real *generalised_force,
     planar_strip_real *base_force, planar_strip_real *base_moment);
 
-/* Tip of rod strip, world frame: position (3, m), quaternion (4). */
+/* Tip of rod strip, world frame. Gives position (3, m), quaternion (4). */
 void planar_strip_tip(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real *position,
     planar_strip_real *quaternion);
 
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void planar_strip_tip_jacobian(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real *d_pose_d_x,
-    planar_strip_real *d_pose_d_inputs);
+/* Derivatives of position and quaternion of the tip of rod strip, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void planar_strip_tip_jacobian(const planar_strip_real *x, const planar_strip_real *inputs,
+    planar_strip_real *d_pose_d_x, planar_strip_real *d_pose_d_inputs);
 
-/* Rod strip at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
+/* Section of rod strip at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
 void planar_strip_shape(const planar_strip_real *x, const planar_strip_real *inputs, planar_strip_real X,
     planar_strip_real *position, planar_strip_real *quaternion);
 

@@ -213,22 +213,24 @@ void precurved_tube_residual_jacobian(const precurved_tube_real *x, const precur
 void precurved_tube_input_jacobian(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_real *d_residual_d_inputs,
                             precurved_tube_workspace *workspace);
 
-/* Inverse Geometric Model of rod tube: its strain coordinates q (12) and base pose, with the loads, to the
-   generalised force (12, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod tube: strain coordinates and base pose, with the loads, to the generalised force, and
+   the force and the moment about the base of the clamp on the rod, world frame. Takes q (12), base_position (3, m),
+   base_quaternion (4); gives generalised_force (12, EI/L), base_force (3, N), base_moment (3, N m). */
 void precurved_tube_igm(const precurved_tube_real *q, const precurved_tube_real *base_position,
-    const precurved_tube_real *base_quaternion, const precurved_tube_real *inputs, precurved_tube_real *generalised_force,
-    precurved_tube_real *base_force, precurved_tube_real *base_moment);
+    const precurved_tube_real *base_quaternion, const precurved_tube_real *inputs,
+    precurved_tube_real *generalised_force, precurved_tube_real *base_force, precurved_tube_real *base_moment);
 
-/* Tip of rod tube, world frame: position (3, m), quaternion (4). */
+/* Tip of rod tube, world frame. Gives position (3, m), quaternion (4). */
 void precurved_tube_tip(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_real *position,
     precurved_tube_real *quaternion);
 
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void precurved_tube_tip_jacobian(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_real *d_pose_d_x,
-    precurved_tube_real *d_pose_d_inputs);
+/* Derivatives of position and quaternion of the tip of rod tube, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void precurved_tube_tip_jacobian(const precurved_tube_real *x, const precurved_tube_real *inputs,
+    precurved_tube_real *d_pose_d_x, precurved_tube_real *d_pose_d_inputs);
 
-/* Rod tube at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
+/* Section of rod tube at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
 void precurved_tube_shape(const precurved_tube_real *x, const precurved_tube_real *inputs, precurved_tube_real X,
     precurved_tube_real *position, precurved_tube_real *quaternion);
 

@@ -290,127 +290,140 @@ void six_rod_platform_residual_jacobian(const six_rod_platform_real *x, const si
 void six_rod_platform_input_jacobian(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_residual_d_inputs,
                             six_rod_platform_workspace *workspace);
 
-/* Inverse Geometric Model of rod leg_1: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod leg_1: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_1(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_1, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_1 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_1, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Inverse Geometric Model of rod leg_2: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Derivatives of position and quaternion of the tip of rod leg_1, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
+
+/* Section of rod leg_1 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_1(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Inverse Geometric Model of rod leg_2: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_2(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_2, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_2 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_2, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Inverse Geometric Model of rod leg_3: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Derivatives of position and quaternion of the tip of rod leg_2, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
+
+/* Section of rod leg_2 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_2(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Inverse Geometric Model of rod leg_3: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_3(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_3, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_3 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_3, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Inverse Geometric Model of rod leg_4: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Derivatives of position and quaternion of the tip of rod leg_3, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
+
+/* Section of rod leg_3 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_3(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Inverse Geometric Model of rod leg_4: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_4(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_4, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_4 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_4, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Inverse Geometric Model of rod leg_5: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Derivatives of position and quaternion of the tip of rod leg_4, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
+
+/* Section of rod leg_4 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_4(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Inverse Geometric Model of rod leg_5: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_5(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_5, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_5 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_5, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Inverse Geometric Model of rod leg_6: its strain coordinates q (16) and base pose, with the loads, to the
-   generalised force (16, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Derivatives of position and quaternion of the tip of rod leg_5, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
+
+/* Section of rod leg_5 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_5(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Inverse Geometric Model of rod leg_6: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (16), base_position
+   (3, m), base_quaternion (4); gives generalised_force (16, EI/L), base_force (3, N), base_moment (3, N m). */
 void six_rod_platform_igm_leg_6(const six_rod_platform_real *q, const six_rod_platform_real *base_position,
-    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs, six_rod_platform_real *generalised_force,
-    six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
+    const six_rod_platform_real *base_quaternion, const six_rod_platform_real *inputs,
+    six_rod_platform_real *generalised_force, six_rod_platform_real *base_force, six_rod_platform_real *base_moment);
 
-/* Tip of rod leg_6, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_tip_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
-
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_tip_jacobian_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
-
-/* Rod leg_6 at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
-void six_rod_platform_shape_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real X,
+/* Tip of rod leg_6, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_tip_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
     six_rod_platform_real *position, six_rod_platform_real *quaternion);
 
-/* Body platform, world frame: position (3, m), quaternion (4). */
-void six_rod_platform_body_platform(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *position,
-    six_rod_platform_real *quaternion);
+/* Derivatives of position and quaternion of the tip of rod leg_6, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_tip_jacobian_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
 
-/* Derivatives of the body's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void six_rod_platform_body_jacobian_platform(const six_rod_platform_real *x, const six_rod_platform_real *inputs, six_rod_platform_real *d_pose_d_x,
-    six_rod_platform_real *d_pose_d_inputs);
+/* Section of rod leg_6 at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position (3, m),
+   quaternion (4). */
+void six_rod_platform_shape_leg_6(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real X, six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Body platform, world frame. Gives position (3, m), quaternion (4). */
+void six_rod_platform_body_platform(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *position, six_rod_platform_real *quaternion);
+
+/* Derivatives of position and quaternion of the body platform, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void six_rod_platform_body_jacobian_platform(const six_rod_platform_real *x, const six_rod_platform_real *inputs,
+    six_rod_platform_real *d_pose_d_x, six_rod_platform_real *d_pose_d_inputs);
 
 #ifdef __cplusplus
 }

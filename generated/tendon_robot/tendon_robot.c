@@ -76,7 +76,7 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
 #include "solver.c"
 
 void tendon_robot_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
-            real *generalised_force, real *base_force, real *base_moment) {
+    real *generalised_force, real *base_force, real *base_moment) {
   ARGUMENTS(tendon_robot_k_igm, q, base_position, base_quaternion, inputs);
   RESULTS(generalised_force, base_force, base_moment);
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_igm)
@@ -100,27 +100,31 @@ void tendon_robot_shape(const real *x, const real *inputs, real X, real *positio
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_shape)
 }
 
-void tendon_robot_actuator_lower_east(const real *x, const real *inputs, real *effort, real *conjugate, real *d_conjugate_d_x) {
+void tendon_robot_actuator_lower_east(const real *x, const real *inputs, real *tension, real *length,
+    real *d_length_d_x) {
   ARGUMENTS(tendon_robot_k_actuator_lower_east, x, inputs);
-  RESULTS(effort, conjugate, d_conjugate_d_x);
+  RESULTS(tension, length, d_length_d_x);
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_actuator_lower_east)
 }
 
-void tendon_robot_actuator_lower_north(const real *x, const real *inputs, real *effort, real *conjugate, real *d_conjugate_d_x) {
+void tendon_robot_actuator_lower_north(const real *x, const real *inputs, real *tension, real *length,
+    real *d_length_d_x) {
   ARGUMENTS(tendon_robot_k_actuator_lower_north, x, inputs);
-  RESULTS(effort, conjugate, d_conjugate_d_x);
+  RESULTS(tension, length, d_length_d_x);
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_actuator_lower_north)
 }
 
-void tendon_robot_actuator_upper_west(const real *x, const real *inputs, real *effort, real *conjugate, real *d_conjugate_d_x) {
+void tendon_robot_actuator_upper_west(const real *x, const real *inputs, real *tension, real *length,
+    real *d_length_d_x) {
   ARGUMENTS(tendon_robot_k_actuator_upper_west, x, inputs);
-  RESULTS(effort, conjugate, d_conjugate_d_x);
+  RESULTS(tension, length, d_length_d_x);
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_actuator_upper_west)
 }
 
-void tendon_robot_actuator_upper_south(const real *x, const real *inputs, real *effort, real *conjugate, real *d_conjugate_d_x) {
+void tendon_robot_actuator_upper_south(const real *x, const real *inputs, real *tension, real *length,
+    real *d_length_d_x) {
   ARGUMENTS(tendon_robot_k_actuator_upper_south, x, inputs);
-  RESULTS(effort, conjugate, d_conjugate_d_x);
+  RESULTS(tension, length, d_length_d_x);
   CALL_WITHOUT_WORKSPACE(tendon_robot_k_actuator_upper_south)
 }
 

@@ -233,44 +233,50 @@ void tendon_robot_residual_jacobian(const tendon_robot_real *x, const tendon_rob
 void tendon_robot_input_jacobian(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *d_residual_d_inputs,
                             tendon_robot_workspace *workspace);
 
-/* Inverse Geometric Model of rod backbone: its strain coordinates q (18) and base pose, with the loads, to the
-   generalised force (18, in units of EI/L) and the force (N) and moment (N m, about the base) of the clamp on
-   the rod, world frame. */
+/* Inverse Geometric Model of rod backbone: strain coordinates and base pose, with the loads, to the generalised force,
+   and the force and the moment about the base of the clamp on the rod, world frame. Takes q (18), base_position
+   (3, m), base_quaternion (4); gives generalised_force (18, EI/L), base_force (3, N), base_moment (3, N m). */
 void tendon_robot_igm(const tendon_robot_real *q, const tendon_robot_real *base_position,
     const tendon_robot_real *base_quaternion, const tendon_robot_real *inputs, tendon_robot_real *generalised_force,
     tendon_robot_real *base_force, tendon_robot_real *base_moment);
 
-/* Tip of rod backbone, world frame: position (3, m), quaternion (4). */
+/* Tip of rod backbone, world frame. Gives position (3, m), quaternion (4). */
 void tendon_robot_tip(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *position,
     tendon_robot_real *quaternion);
 
-/* Derivatives of the tip's position and quaternion, stacked: d_pose_d_x (7 x UNKNOWNS), d_pose_d_inputs (7 x INPUTS). */
-void tendon_robot_tip_jacobian(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *d_pose_d_x,
-    tendon_robot_real *d_pose_d_inputs);
+/* Derivatives of position and quaternion of the tip of rod backbone, stacked. Gives d_pose_d_x (7 x UNKNOWNS),
+   d_pose_d_inputs (7 x INPUTS). */
+void tendon_robot_tip_jacobian(const tendon_robot_real *x, const tendon_robot_real *inputs,
+    tendon_robot_real *d_pose_d_x, tendon_robot_real *d_pose_d_inputs);
 
-/* Rod backbone at the abscissa X, 0 at the base and 1 at the tip: position (3, m), quaternion (4). */
+/* Section of rod backbone at the abscissa X, 0 at the base and 1 at the tip, world frame. Takes X; gives position
+   (3, m), quaternion (4). */
 void tendon_robot_shape(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real X,
     tendon_robot_real *position, tendon_robot_real *quaternion);
 
-/* Actuator lower_east, a tendon on rod backbone: its tension (N), its length (m), and the derivative of the
-   length with x (1 x UNKNOWNS): the generalised force of a unit of tension, but for the unit EI/L and the sign. */
-void tendon_robot_actuator_lower_east(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *effort,
-    tendon_robot_real *conjugate, tendon_robot_real *d_conjugate_d_x);
+/* Actuator lower_east: its effort, the conjugate that the effort does work on, and the derivative of the conjugate,
+   which is the generalised force of a unit of effort but for the unit EI/L and the sign. Gives tension (N), length
+   (m), d_length_d_x (1 x UNKNOWNS). */
+void tendon_robot_actuator_lower_east(const tendon_robot_real *x, const tendon_robot_real *inputs,
+    tendon_robot_real *tension, tendon_robot_real *length, tendon_robot_real *d_length_d_x);
 
-/* Actuator lower_north, a tendon on rod backbone: its tension (N), its length (m), and the derivative of the
-   length with x (1 x UNKNOWNS): the generalised force of a unit of tension, but for the unit EI/L and the sign. */
-void tendon_robot_actuator_lower_north(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *effort,
-    tendon_robot_real *conjugate, tendon_robot_real *d_conjugate_d_x);
+/* Actuator lower_north: its effort, the conjugate that the effort does work on, and the derivative of the conjugate,
+   which is the generalised force of a unit of effort but for the unit EI/L and the sign. Gives tension (N), length
+   (m), d_length_d_x (1 x UNKNOWNS). */
+void tendon_robot_actuator_lower_north(const tendon_robot_real *x, const tendon_robot_real *inputs,
+    tendon_robot_real *tension, tendon_robot_real *length, tendon_robot_real *d_length_d_x);
 
-/* Actuator upper_west, a tendon on rod backbone: its tension (N), its length (m), and the derivative of the
-   length with x (1 x UNKNOWNS): the generalised force of a unit of tension, but for the unit EI/L and the sign. */
-void tendon_robot_actuator_upper_west(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *effort,
-    tendon_robot_real *conjugate, tendon_robot_real *d_conjugate_d_x);
+/* Actuator upper_west: its effort, the conjugate that the effort does work on, and the derivative of the conjugate,
+   which is the generalised force of a unit of effort but for the unit EI/L and the sign. Gives tension (N), length
+   (m), d_length_d_x (1 x UNKNOWNS). */
+void tendon_robot_actuator_upper_west(const tendon_robot_real *x, const tendon_robot_real *inputs,
+    tendon_robot_real *tension, tendon_robot_real *length, tendon_robot_real *d_length_d_x);
 
-/* Actuator upper_south, a tendon on rod backbone: its tension (N), its length (m), and the derivative of the
-   length with x (1 x UNKNOWNS): the generalised force of a unit of tension, but for the unit EI/L and the sign. */
-void tendon_robot_actuator_upper_south(const tendon_robot_real *x, const tendon_robot_real *inputs, tendon_robot_real *effort,
-    tendon_robot_real *conjugate, tendon_robot_real *d_conjugate_d_x);
+/* Actuator upper_south: its effort, the conjugate that the effort does work on, and the derivative of the conjugate,
+   which is the generalised force of a unit of effort but for the unit EI/L and the sign. Gives tension (N), length
+   (m), d_length_d_x (1 x UNKNOWNS). */
+void tendon_robot_actuator_upper_south(const tendon_robot_real *x, const tendon_robot_real *inputs,
+    tendon_robot_real *tension, tendon_robot_real *length, tendon_robot_real *d_length_d_x);
 
 #ifdef __cplusplus
 }

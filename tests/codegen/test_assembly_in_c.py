@@ -42,9 +42,9 @@ def test_two_rods_and_a_body_vs_python(tmp_path: Path) -> None:
     export(model, tmp_path / "two", derivatives=True)
     library = load(tmp_path / "two")
     found = library.solve()
-    assert_allclose(found.q, solve(model).x, rtol=0, atol=1e-9)
-    ours = library.body["cap"](found.q, library.defaults)
-    for one, other in zip(ours, model.body["cap"](found.q, library.defaults)[:2], strict=True):
+    assert_allclose(found.x, solve(model).x, rtol=0, atol=1e-9)
+    ours = library.body["cap"](found.x, library.defaults)
+    for one, other in zip(ours, model.body["cap"](found.x, library.defaults)[:2], strict=True):
         assert_allclose(one.full(), other.full(), rtol=0, atol=1e-12)
 
 
@@ -61,7 +61,7 @@ def test_block_without_a_pivot_of_its_own(tmp_path: Path) -> None:
     library = compiled(model, tmp_path / "lib", "lib", tmp_path / "lib.so")
     solution = library.solve()
     assert solution.converged
-    assert_allclose(solution.q, solve(model).x, rtol=0, atol=1e-9)
+    assert_allclose(solution.x, solve(model).x, rtol=0, atol=1e-9)
 
 
 def test_rods_that_differ_in_numbers_alone_share_their_code() -> None:
@@ -107,11 +107,11 @@ def test_platform_vs_python(tmp_path: Path) -> None:
     solution, theirs = library.solve(inputs), solve(model, drawn)
     assert solution.converged
     assert theirs.converged
-    assert_allclose(solution.q, theirs.x, rtol=0, atol=1e-8)
-    found = library.body_sensitivity(inputs, solution.q)
+    assert_allclose(solution.x, theirs.x, rtol=0, atol=1e-8)
+    found = library.body_sensitivity(inputs, solution.x)
     assert found is not None
     for k in (0, 5, 6, 11):
         moved = step * np.eye(len(inputs))[k]
-        ends = [(library.solve(inputs + s * moved, solution.q).q, inputs + s * moved) for s in (1, -1)]
+        ends = [(library.solve(inputs + s * moved, solution.x).x, inputs + s * moved) for s in (1, -1)]
         poses = [np.concatenate([p.full()[:, 0] for p in model.body["platform"](*end)[:2]]) for end in ends]
         assert_allclose(found["platform"][:, k], (poses[0] - poses[1]) / (2 * step), rtol=1e-5, atol=3e-6)

@@ -81,7 +81,7 @@ def test_float_program_of_random_loads_vs_double(library: Library) -> None:
     statuses, q = batch(made.program("batch.c", *QUICK, "-DPLANAR_SINGLE"), cases)
     assert np.count_nonzero(statuses == 0) >= 190
     for inputs, unknowns in zip(cases[statuses == 0], q[statuses == 0], strict=True):
-        wanted = made.tips(made.compiled.solve(inputs).q, inputs)
+        wanted = made.tips(made.compiled.solve(inputs).x, inputs)
         assert_allclose(made.tips(unknowns, inputs), wanted, rtol=0, atol=1e-4 * made.length)
 
 
@@ -106,7 +106,7 @@ def test_openmp_batch_vs_single_solves(library: Library) -> None:
     assert_allclose(q, expected, rtol=0, atol=1e-9)
     for inputs, unknowns in zip(cases[:20], q, strict=False):
         if inputs[0] < 1e199:
-            assert_allclose(unknowns, made.compiled.solve(inputs).q, rtol=0, atol=1e-9)
+            assert_allclose(unknowns, made.compiled.solve(inputs).x, rtol=0, atol=1e-9)
 
 
 CONSUMER = """
@@ -140,7 +140,7 @@ def test_cmake_build_install_and_find_package(library: Library, options: tuple[s
     statuses, q = batch(source / "build" / "consumer", cases)
     assert not np.any(statuses)
     single = "-DTINY_SINGLE=ON" in options
-    expected = np.array([made.compiled.solve(inputs).q for inputs in cases])
+    expected = np.array([made.compiled.solve(inputs).x for inputs in cases])
     assert_allclose(q, expected, rtol=0, atol=1e-3 if single else 1e-9)
 
 

@@ -132,21 +132,21 @@ def test_robots_vs_solver_in_python(library: Library, name: str) -> None:
     found, wanted = made.compiled.solve(), solve(made.model)
     assert found.converged
     assert wanted.converged
-    assert_allclose(found.q, wanted.x, rtol=0, atol=1e-9)
+    assert_allclose(found.x, wanted.x, rtol=0, atol=1e-9)
 
 
 def test_sensitivities_of_poses_vs_differences(library: Library) -> None:
     """Tips of all rods and the pose of the body, by central differences over whole solves."""
     made, step = library("robot"), 1e-4
     compiled, inputs = made.compiled, made.model.pack()
-    q = compiled.solve(inputs).q
+    q = compiled.solve(inputs).x
     found = compiled.sensitivity(inputs, q)
     bodies = compiled.body_sensitivity(inputs, q)
     assert found is not None
     assert bodies is not None
     for k in range(len(inputs)):
         moved = step * np.eye(len(inputs))[k]
-        ends = [compiled.solve(inputs + sign * moved, q).q for sign in (1, -1)]
+        ends = [compiled.solve(inputs + sign * moved, q).x for sign in (1, -1)]
         functions = {**made.model.tip, **made.model.body}
         for name, function in functions.items():
             poses = [np.concatenate([part.full()[:, 0] for part in function(end, inputs)[:2]]) for end in ends]
@@ -159,7 +159,7 @@ def test_sensitivity_at_what_is_no_equilibrium_writes_nothing(library: Library, 
     made = library(name)
     n, m, rods = made.model.size, made.model.inputs.size, len(made.model.discrete.rods)
     inputs = made.model.pack()
-    solved = made.compiled.solve(inputs).q
+    solved = made.compiled.solve(inputs).x
     for q, status in ((solved + 1e-3, NOT_IN_EQUILIBRIUM), (np.full(n, np.nan), NOT_FINITE)):
         rooms = [np.full(n * m + 1, 7.0), np.full(7 * m * rods + 1, 7.0)]
         assert call(made, f"{name}_solve_sensitivity", inputs, q, *rooms, workspace(made)) == status
@@ -175,17 +175,17 @@ def test_results_that_may_be_null(library: Library) -> None:
     made = library("planar")
     inputs, q, work = made.model.pack(), np.zeros(3), workspace(made)
     assert call(made, "planar_solve", inputs, q, work, None) == CONVERGED
-    assert_allclose(q, made.compiled.solve(inputs).q, rtol=0, atol=0)
+    assert_allclose(q, made.compiled.solve(inputs).x, rtol=0, atol=0)
     assert call(made, "planar_solve_sensitivity", inputs, q, None, None, work) == CONVERGED
     assert call(made, "planar_follow", inputs, 2 * inputs, q, work, None) == CONVERGED
-    assert_allclose(q, made.compiled.solve(2 * inputs).q, rtol=0, atol=1e-10)
+    assert_allclose(q, made.compiled.solve(2 * inputs).x, rtol=0, atol=1e-10)
 
 
 def test_scene_without_inputs_needs_no_pointer_to_them(library: Library) -> None:
     made = library("fixed")
     q = np.zeros(made.model.size)
     assert call(made, "fixed_solve", None, q, workspace(made), None) == CONVERGED
-    assert_allclose(q, made.compiled.solve().q, rtol=0, atol=0)
+    assert_allclose(q, made.compiled.solve().x, rtol=0, atol=0)
     again = q.copy()
     assert call(made, "fixed_follow", None, None, again, workspace(made), None) == CONVERGED
     assert_allclose(again, q, rtol=0, atol=1e-12)

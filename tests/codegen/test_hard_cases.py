@@ -67,7 +67,7 @@ def test_hard_case_vs_python(export_recipe: ExportRecipe, name: str) -> None:
         assert 0.0 < ours.load_factor < 1.0
         assert_allclose(ours.load_factor, theirs.load_factor, rtol=0, atol=1e-3)
     else:
-        assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+        assert_allclose(made.tips(ours.x, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
 
 
 @pytest.mark.parametrize(("force", "outcome"), [(8.5, Outcome.CONVERGED), (9.5, Outcome.LOAD_STALLED)])
@@ -79,7 +79,7 @@ def test_deep_arch_about_its_limit_load_vs_python(export_recipe: ExportRecipe, f
     ours = made.compiled.follow(none, wanted, rest.x)
     theirs = solve(made.model, {"crown.force": wanted}, start=rest)
     assert ours.outcome is theirs.outcome is outcome
-    assert_allclose(made.tips(ours.q, wanted), made.tips(theirs.x, wanted), rtol=0, atol=1e-8)
+    assert_allclose(made.tips(ours.x, wanted), made.tips(theirs.x, wanted), rtol=0, atol=1e-8)
     assert_allclose(ours.load_factor, theirs.load_factor, rtol=0, atol=1e-3)
     if outcome is Outcome.LOAD_STALLED:
         assert_allclose(force * ours.load_factor, 8.97309, rtol=5e-3, atol=0)
@@ -90,10 +90,10 @@ def test_unresolved_from_every_start(export_recipe: ExportRecipe) -> None:
     made = export_recipe("hard_unresolved", CASES["unresolved"][0])
     inputs = made.model.pack()
     cold = made.compiled.solve(inputs)
-    assert made.compiled.solve(inputs, cold.q).outcome is Outcome.UNRESOLVED
+    assert made.compiled.solve(inputs, cold.x).outcome is Outcome.UNRESOLVED
     near = made.compiled.solve(inputs / 4)
     assert near.converged
-    assert made.compiled.follow(inputs / 4, inputs, near.q).outcome is Outcome.UNRESOLVED
+    assert made.compiled.follow(inputs / 4, inputs, near.x).outcome is Outcome.UNRESOLVED
     assert [one.outcome for one in made.compiled.solve_batch([inputs, inputs / 4])] == [
         Outcome.UNRESOLVED,
         Outcome.CONVERGED,
@@ -105,14 +105,14 @@ def test_round_rod_that_may_turn_without_energy_vs_python(export_recipe: ExportR
     column = straight("kirchhoff", push(force=[0, 0, -5.0]))
     made = export_recipe("hard_neutral", Recipe(column, 3, 6))
     inputs = made.model.pack()
-    bent = made.solve(inputs, made.compiled.solve(inputs).q)
+    bent = made.solve(inputs, made.compiled.solve(inputs).x)
     assert bent.stable is False
     start = _buckled(made)
     ours, theirs = made.compiled.solve(inputs, start), made.solve(inputs, start)
     assert ours.outcome is theirs.outcome is Outcome.CONVERGED
     assert theirs.stable is True
     assert "neutral" in theirs.message
-    ours_tip, theirs_tip = made.tips(ours.q, inputs)[0], made.tips(theirs.x, inputs)[0]
+    ours_tip, theirs_tip = made.tips(ours.x, inputs)[0], made.tips(theirs.x, inputs)[0]
     assert_allclose(ours_tip[2], theirs_tip[2], rtol=0, atol=1e-9)
     assert_allclose(np.hypot(*ours_tip[:2]), np.hypot(*theirs_tip[:2]), rtol=0, atol=1e-9)
 

@@ -379,7 +379,7 @@ def test_folder_without_derivatives_gives_solver_and_values(bare: tuple[Model, C
     model, loaded = bare
     assert not loaded.differentiable
     found = loaded.solve()
-    assert_allclose(found.q, solve(model).x, rtol=0, atol=1e-10)
+    assert_allclose(found.x, solve(model).x, rtol=0, atol=1e-10)
     x, inputs = np.array([0.3, -0.2]), model.pack() + 0.1
     pairs = [
         (loaded.residual(x, inputs), model.residual(x, inputs)),

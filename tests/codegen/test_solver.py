@@ -30,7 +30,7 @@ def assert_same(made: Exported, inputs: np.ndarray) -> Outcome:
     assert ours.outcome is theirs.outcome, (inputs, ours, theirs.message)
     if ours.converged:
         assert ours.load_factor == 1.0
-        assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+        assert_allclose(made.tips(ours.x, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
     return ours.outcome
 
 
@@ -58,7 +58,7 @@ def test_no_load_leaves_the_rod_as_it_is(library: Library, name: str) -> None:
     made = library(name)
     found = made.compiled.solve(np.zeros(made.model.inputs.size))
     assert found.converged
-    assert_allclose(found.q, 0.0, rtol=0, atol=0)
+    assert_allclose(found.x, 0.0, rtol=0, atol=0)
 
 
 FAST = {"elastica_10", "follower_10", "rollup_1", "shear_GA2P2", "wrench_C_prebent_twisted"}
@@ -89,10 +89,10 @@ def test_start_nearby_vs_python(library: Library, name: str) -> None:
     warm, cold = 0, 0
     for before, inputs in neighbours(made):
         start = made.compiled.solve(before)
-        ours, theirs = made.compiled.solve(inputs, start.q), made.solve(inputs, start.q)
+        ours, theirs = made.compiled.solve(inputs, start.x), made.solve(inputs, start.x)
         assert ours.converged
         assert theirs.converged
-        assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+        assert_allclose(made.tips(ours.x, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
         warm, cold = warm + ours.iterations, cold + made.compiled.solve(inputs).iterations
     assert warm < cold
 
@@ -104,8 +104,8 @@ def test_start_astray_vs_python(library: Library) -> None:
     for start in (np.full(3, 3.0), np.array([0.0, -8.0, 5.0]), np.full(3, 1e9), np.full(3, np.nan)):
         found = made.compiled.solve(inputs, start)
         assert found.converged
-        assert_allclose(found.q, cold.q, rtol=0, atol=1e-10)
-    assert_allclose(made.solve(inputs, np.full(3, 3.0)).x, cold.q, rtol=0, atol=1e-10)
+        assert_allclose(found.x, cold.x, rtol=0, atol=1e-10)
+    assert_allclose(made.solve(inputs, np.full(3, 3.0)).x, cold.x, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("name", ["planar", "spatial", "pair", "pinned"])
@@ -119,16 +119,16 @@ def test_following_inputs_vs_python(library: Library, name: str) -> None:
         ours = made.compiled.follow(before, inputs, start.x)
         assert ours.outcome is theirs.outcome
         if ours.converged:
-            assert_allclose(made.tips(ours.q, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
+            assert_allclose(made.tips(ours.x, inputs), made.tips(theirs.x, inputs), rtol=0, atol=1e-9 * made.length)
 
 
 def test_following_from_what_is_no_equilibrium_corrects_it_first(library: Library) -> None:
     made = library("planar")
     before, inputs = made.loads(2, 6)
-    start = made.compiled.solve(before).q
+    start = made.compiled.solve(before).x
     moved = made.compiled.follow(before, inputs, start + 0.01)
     assert moved.converged
-    assert_allclose(moved.q, made.compiled.follow(before, inputs, start).q, rtol=0, atol=1e-10)
+    assert_allclose(moved.x, made.compiled.follow(before, inputs, start).x, rtol=0, atol=1e-10)
 
 
 def test_unknowns_whose_norm_overflows_are_no_equilibrium(library: Library) -> None:
@@ -147,7 +147,7 @@ def test_following_from_a_huge_load_ends_exactly_at_the_small_one(library: Libra
     huge, inputs = np.array([0.0, 0.0, 1e16]), np.array([0.9, 0.0, small])
     found = made.compiled.follow(huge, inputs, np.zeros(3))
     assert found.converged
-    assert_allclose(found.q, made.compiled.solve(inputs).q, rtol=0, atol=1e-9)
+    assert_allclose(found.x, made.compiled.solve(inputs).x, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["planar", "spatial", "pair", "fixed"])
@@ -159,7 +159,7 @@ def test_batch_vs_single_solves(library: Library, name: str) -> None:
     assert len(batch) == len(cases)
     for inputs, one, other in zip(cases, batch, single, strict=True):
         assert one.outcome is other.outcome
-        assert_allclose(made.tips(one.q, inputs), made.tips(other.q, inputs), rtol=0, atol=1e-9 * made.length)
+        assert_allclose(made.tips(one.x, inputs), made.tips(other.x, inputs), rtol=0, atol=1e-9 * made.length)
 
 
 def test_batch_goes_on_after_a_case_that_fails(library: Library) -> None:
@@ -170,7 +170,7 @@ def test_batch_goes_on_after_a_case_that_fails(library: Library) -> None:
     assert [one.converged for one in batch] == [True, False, True, False, True]
     assert batch[1].outcome is Outcome.NOT_FINITE
     assert made.compiled.solve_batch(np.zeros((0, 3))) == []
-    assert_allclose(batch[4].q, made.compiled.solve(cases[4]).q, rtol=0, atol=1e-10)
+    assert_allclose(batch[4].x, made.compiled.solve(cases[4]).x, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("force", [-1e4, 1e4])
@@ -182,9 +182,9 @@ def test_load_that_stalls_vs_python(library: Library, force: float) -> None:
     assert ours.outcome is theirs.outcome is Outcome.LOAD_STALLED
     assert 0.0 < ours.load_factor < 1.0
     assert_allclose(ours.load_factor, theirs.load_factor, rtol=0, atol=1e-3)
-    there = made.model.path_residual(ours.q, inputs, ours.load_factor).full()
-    assert np.linalg.norm(there) <= 1e-10 * (1 + np.linalg.norm(ours.q))
-    assert np.linalg.norm(made.model.residual(ours.q, inputs).full()) > 1e-7
+    there = made.model.path_residual(ours.x, inputs, ours.load_factor).full()
+    assert np.linalg.norm(there) <= 1e-10 * (1 + np.linalg.norm(ours.x))
+    assert np.linalg.norm(made.model.residual(ours.x, inputs).full()) > 1e-7
 
 
 ACROSS = np.array([0.8870, 0.0, -0.4618])
@@ -196,7 +196,7 @@ def test_sensitivity_vs_differences_and_vs_the_implicit_function_theorem(library
     made = library(name)
     model, step = made.model, 1e-5
     for inputs in made.loads(3, 9):
-        q = made.compiled.solve(inputs).q
+        q = made.compiled.solve(inputs).x
         found = made.compiled.sensitivity(inputs, q)
         assert found is not None
         d_q, d_tip = found
@@ -208,10 +208,10 @@ def test_sensitivity_vs_differences_and_vs_the_implicit_function_theorem(library
             ends[1][k] += step
             solved = [made.compiled.solve(end, q) for end in ends]
             assert all(one.converged for one in solved)
-            assert_allclose(d_q[:, k], (solved[1].q - solved[0].q) / (2 * step), rtol=1e-4, atol=1e-5)
+            assert_allclose(d_q[:, k], (solved[1].x - solved[0].x) / (2 * step), rtol=1e-4, atol=1e-5)
             for rod, tip in model.tip.items():
                 poses = [
-                    np.concatenate([p.full()[:, 0] for p in tip(s.q, e)[:2]]) for s, e in zip(solved, ends, strict=True)
+                    np.concatenate([p.full()[:, 0] for p in tip(s.x, e)[:2]]) for s, e in zip(solved, ends, strict=True)
                 ]
                 assert_allclose(d_tip[rod][:, k], (poses[1] - poses[0]) / (2 * step), rtol=1e-4, atol=1e-5)
 
@@ -231,12 +231,12 @@ def test_loaded_folder_vs_model(library: Library, tmp_path: Path, monkeypatch: p
     wanted = model.tip_jacobian["rod"](q, inputs)[0].full()[:3]
     assert_allclose(turn(q).full(), wanted, rtol=1e-12, atol=1e-12)
     for case in made.loads(20, 11):
-        assert_allclose(loaded.solve(case).q, made.solve(case).x, rtol=0, atol=1e-9)
+        assert_allclose(loaded.solve(case).x, made.solve(case).x, rtol=0, atol=1e-9)
 
 
 def test_sensitivity_without_inputs_is_empty(library: Library) -> None:
     made = library("fixed")
-    found = made.compiled.sensitivity([], made.compiled.solve().q)
+    found = made.compiled.sensitivity([], made.compiled.solve().x)
     assert found is not None
     assert found[0].shape == (made.model.size, 0)
     assert found[1]["rod"].shape == (7, 0)

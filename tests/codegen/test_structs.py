@@ -25,7 +25,7 @@ def test_names_lead_to_the_numbers_of_python(library: Library, name: str) -> Non
     assert versions == version("cosserat-casadi")
     assert_allclose(np.array(inputs.split(), dtype=float), made.model.pack(), rtol=0, atol=0)
     solved = made.compiled.solve()
-    model, at = made.model, (solved.q, made.model.pack())
+    model, at = made.model, (solved.x, made.model.pack())
     poses = [
         np.concatenate([v.full().ravel() for v in f(*at)[:2]]) for f in (*model.tip.values(), *model.body.values())
     ]

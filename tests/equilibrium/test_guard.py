@@ -45,7 +45,7 @@ def spring(force: float) -> Scene:
 
 @pytest.mark.parametrize("transport", ["magnus4", "magnus8"])
 @pytest.mark.parametrize("strain", ["planar", "kirchhoff"])
-def test_coarseness_vs_quadrature_of_the_curvature(strain: str, transport: str) -> None:
+def test_resolution_index_vs_quadrature_of_the_curvature(strain: str, transport: str) -> None:
     """The largest ∫|K| ds over an interval, in units of 2 rad; what the Taylor coefficients bound it by is near it."""
     wanted = rolled(0.0, strain)
     model = build(wanted, discretise(wanted, 3, 8, transport))
@@ -53,7 +53,7 @@ def test_coarseness_vs_quadrature_of_the_curvature(strain: str, transport: str) 
     solution = Solution(model, model.pack(), x, Outcome.CONVERGED, "", 0.0, 0)
     nodes = model.discrete.rods["rod"].grid.nodes
     turns = [quad(lambda X: float(np.linalg.norm(solution.strain([X])[0, :3])), a, b)[0] for a, b in pairwise(nodes)]
-    largest = 2.0 * float(model.coarseness(x, model.pack()))
+    largest = 2.0 * float(model.resolution_index(x, model.pack()))
     assert max(turns) * (1 - 1e-3) <= largest <= 1.25 * max(turns)
 
 
@@ -83,7 +83,7 @@ def test_roll_up_vs_circles(strain: str, turns: int) -> None:
     solution = solve_scene(rolled(turns, strain))
     assert solution.converged
     assert_allclose(solution.tip().position[0], roll_up(turns)[0], rtol=0, atol=1e-6)
-    assert float(solution.model.coarseness(solution.x, solution.inputs)) <= 1.0
+    assert float(solution.model.resolution_index(solution.x, solution.inputs)) <= 1.0
 
 
 def shot(wanted: Scene, force: np.ndarray, moment: np.ndarray) -> np.ndarray:

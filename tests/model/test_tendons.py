@@ -274,8 +274,8 @@ def test_derivative_of_length_vs_automatic() -> None:
     x, u = ca.MX.sym("x", model.size), model.pack()
     at = np.random.default_rng(4).standard_normal(model.size) / 3
     for name in ("cable", "second", "cell"):
-        _, extent, gradient = model.actuator[name](x, u)
-        values = ca.Function("both", [x], [gradient, ca.jacobian(extent, x)])(at)
+        _, conjugate, gradient = model.actuator[name](x, u)
+        values = ca.Function("both", [x], [gradient, ca.jacobian(conjugate, x)])(at)
         assert np.abs(values[0].full()).max() > 0
         assert_allclose(values[0].full(), values[1].full(), rtol=0, atol=1e-15)
 

@@ -1,0 +1,193 @@
+"""The functions of a model that a library in C holds, as the table of functions says: prototypes and wrappers of each.
+
+The kernels of the solver are wired by hand in its source. All others are functions of the header: a comment, a
+prototype and a wrapper, which follow from the entry of the table alone.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import (
+    ARGUMENT_UNITS,
+    SCALAR_ARGUMENTS,
+    FunctionSpec,
+    Output,
+    Owner,
+    owners,
+)
+
+Render = Callable[[str, dict[str, Any]], str]
+
+COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS"}
+"""Macros of the header with the number of entries of an argument."""
+
+WIDTH = 119
+"""Characters of the longest line of the header."""
+
+
+@dataclass(frozen=True)
+class FunctionInC:
+    """A function of the scene, of a rod, of an actuator or of a body.
+
+    Attributes:
+        spec: its entry in the table.
+        owner: name of the rod, the actuator or the body; None for the scene.
+        model: whose function it is.
+        names: what things are called in C.
+    """
+
+    spec: FunctionSpec
+    owner: str | None
+    model: Model
+    names: Names
+
+    @property
+    def symbol(self) -> str:
+        """Name in the header."""
+        return self.names.function(self.spec.name_in_c, self.owner)
+
+    @property
+    def kernel(self) -> str:
+        """Name of the generated kernel."""
+        return self.names.kernel(self.spec.name_in_c, self.owner)
+
+    @property
+    def external(self) -> str:
+        """Name for ``casadi.external``."""
+        return self.names.differentiable(self.spec.name_in_c, self.owner)
+
+    @cached_property
+    def function(self) -> ca.Function:
+        """What it computes, with the outputs that it has in C."""
+        return self.spec.function_in_c(self.model, self.owner or "")
+
+    @cached_property
+    def outputs(self) -> tuple[Output, ...]:
+        """The outputs that it has in C."""
+        outputs = self.spec.outputs_of(self.model.discrete, self.owner or "")
+        return outputs[: self.spec.kernel_outputs]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of arguments and results by name."""
+        arguments = {name: ARGUMENT_UNITS.get(name, "1") for name in self.spec.arguments}
+        return arguments | {output.name: output.unit for output in self.outputs}
+
+    @property
+    def description(self) -> str:
+        """What it is, what it takes beyond unknowns and inputs, and what it gives, with sizes and units."""
+        sentence = self.spec.header.format(owner=self.owner)
+        results = ", ".join(self._described(i, output) for i, output in enumerate(self.outputs))
+        given = ", ".join(self._given())
+        if given:
+            return f"{sentence} Takes {given}; gives {results}."
+        return f"{sentence} Gives {results}."
+
+    def prototype(self, render: Render) -> str:
+        """Comment and prototype of the header."""
+        real = f"{self.names.name}_real"
+        words = {
+            "comment": _filled(f"/* {self.description} */"),
+            "signature": _wrapped(f"void {self.symbol}(", self._parameters(real), ");"),
+        }
+        return render("function.h.in", words)
+
+    def wrapper(self, render: Render) -> str:
+        """Definition: a call of the kernel."""
+        arguments = [f"&{name}" if name in SCALAR_ARGUMENTS else name for name in self.spec.arguments]
+        words = {
+            "signature": _wrapped(f"void {self.symbol}(", self._parameters("real"), ") {"),
+            "kernel": self.kernel,
+            "arguments": ", ".join(arguments),
+            "results": ", ".join(output.name for output in self.outputs),
+        }
+        return render("function.c.in", words)
+
+    def _parameters(self, real: str) -> list[str]:
+        parameters = []
+        for name in self.spec.arguments:
+            declared = f"{real} {name}" if name in SCALAR_ARGUMENTS else f"const {real} *{name}"
+            parameters.append(declared)
+        return parameters + [f"{real} *{output.name}" for output in self.outputs]
+
+    def _given(self) -> list[str]:
+        """Arguments beyond unknowns and inputs, with size and unit."""
+        described = []
+        for i, name in enumerate(self.spec.arguments):
+            if name not in COUNTS:
+                size = self.function.size1_in(i)
+                described.append(_with_facts(name, str(size) if size > 1 else "", self.units[name]))
+        return described
+
+    def _described(self, i: int, output: Output) -> str:
+        """A result with shape and unit."""
+        rows, columns = self.function.size_out(i)
+        if output.derivative_by:
+            shape = f"{rows} x {COUNTS[output.derivative_by]}"
+        elif columns > 1:
+            shape = f"{rows} x {columns}"
+        else:
+            shape = str(rows) if rows > 1 else ""
+        return _with_facts(output.name, shape, output.unit)
+
+
+def functions_in_c(model: Model, names: Names) -> list[FunctionInC]:
+    """All functions with a kernel: of the scene, then rod by rod, actuator by actuator, body by body."""
+    return _functions(model, names, [spec for spec in names.functions if spec.kernel])
+
+
+def public_functions(model: Model, names: Names) -> list[FunctionInC]:
+    """The functions of the header, but for the solver's."""
+    return [function for function in functions_in_c(model, names) if function.spec.public]
+
+
+def differentiable_functions(model: Model, names: Names) -> list[FunctionInC]:
+    """The functions that a loaded folder gives with derivatives."""
+    return _functions(model, names, [spec for spec in names.functions if spec.differentiable])
+
+
+def _functions(model: Model, names: Names, specs: Sequence[FunctionSpec]) -> list[FunctionInC]:
+    functions = []
+    for kind in Owner:
+        for owner in owners(model.discrete, kind):
+            functions += [FunctionInC(spec, owner or None, model, names) for spec in specs if spec.owner is kind]
+    return functions
+
+
+def _with_facts(name: str, shape: str, unit: str) -> str:
+    facts = [shape] if shape else []
+    if unit != "1":
+        facts.append(unit)
+    return f"{name} ({', '.join(facts)})" if facts else name
+
+
+def _filled(comment: str) -> str:
+    """A comment in lines, none of which ends within parentheses."""
+    unbroken = re.sub(r"\([^)]*\)", lambda match: match[0].replace(" ", "\xa0"), comment)
+    lines = textwrap.fill(unbroken, WIDTH, subsequent_indent="   ", break_long_words=False)
+    return lines.replace("\xa0", " ")
+
+
+def _wrapped(head: str, parameters: Sequence[str], end: str) -> str:
+    """A signature, broken between parameters."""
+    lines = []
+    line = head
+    for i, parameter in enumerate(parameters):
+        last = i + 1 == len(parameters)
+        text = parameter + (end if last else ",")
+        if len(line) + 1 + len(text) > WIDTH:
+            lines.append(line)
+            line = f"    {text}"
+        else:
+            line += text if i == 0 else f" {text}"
+    return "\n".join([*lines, line])
