@@ -15,7 +15,7 @@ from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor
-from cosserat_casadi.model.inputs import InputLayout, load_values, magnitude
+from cosserat_casadi.model.inputs import InputLayout, load_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.kinematics import shape
@@ -140,7 +140,7 @@ def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     found: list[int] = []
     for load in discrete.scene.loads:
         free = [own for entry, own in layout if entry.owner == load.name and not entry.of_rod]
-        values = {field: ca.DM.ones(*magnitude(load, field).shape) for field in load.inputs}
+        values = {field: ca.DM.ones(*scene_value(load, field).shape) for field in load.inputs}
         if free and not all(kernel.pose_free for kernel in _kernels(discrete, load, values)):
             for own in free:
                 found += range(layout.size)[own]
@@ -160,14 +160,14 @@ def input_values(layout: InputLayout, cause: scenes.Load | scenes.Actuator, inpu
     values = {}
     for field in cause.inputs:
         value = input_value(layout, cause, field, inputs)
-        values[field] = ca.DM(*magnitude(cause, field).shape) if value is None else value
+        values[field] = ca.DM(*scene_value(cause, field).shape) if value is None else value
     return values
 
 
 def input_value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, inputs: Matrix) -> Matrix | None:
     """One input of a load or an actuator; None where it is zero for good."""
     entries = layout.of_load(cause.name, field)
-    default = magnitude(cause, field)
+    default = scene_value(cause, field)
     if entries is None:
         return constant(default)
     return ca.reshape(inputs[entries], *default.shape)
