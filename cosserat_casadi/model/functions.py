@@ -14,6 +14,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs, rod_actuation
@@ -63,27 +64,29 @@ class ModelFunctions:
     @scene_function(Output("residual"))
     def residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return [written.system.residual]
+        return [Equations(written.system).residual]
 
     @scene_function(Output("jacobian"), Output("residual"))
     def jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        return [written.system.jacobian, written.system.residual]
+        equations = Equations(written.system)
+        return [equations.jacobian, equations.residual]
 
     @scene_function(Output("input_jacobian"))
     def input_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        return [ca.jacobian(written.system.residual, written["inputs"])]
+        residual = Equations(written.system).residual
+        return [ca.jacobian(residual, written["inputs"])]
 
     @scene_function(Output("residual"), arguments=PATH, kernel="residual")
     def path_residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return [written.system.residual]
+        return [Equations(written.system).residual]
 
     @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
     def path_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return [written.system.jacobian]
+        return [Equations(written.system).jacobian]
 
     @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
     def path_rate(self, written: Expressions) -> list[Matrix]:
@@ -92,8 +95,10 @@ class ModelFunctions:
         speed = ca.vertcat(written["inputs_rate"], written["load_factor_rate"])
         # One symbol for all that moves, so that one derivative in one direction is taken.
         joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
-        system = System(written.discrete, Arguments(written["x"], joined[:-1], joined[-1]))
-        return [ca.substitute(ca.jtimes(system.residual, joined, speed), joined, moving)]
+        arguments = Arguments(written["x"], joined[:-1], joined[-1])
+        equations = Equations(System(written.discrete, arguments))
+        rate = ca.jtimes(equations.residual, joined, speed)
+        return [ca.substitute(rate, joined, moving)]
 
     @scene_function(Output("tangent"), arguments=("inputs",), kernel="tangent")
     def path_tangent(self, written: Expressions) -> list[Matrix]:
