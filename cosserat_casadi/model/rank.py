@@ -1,4 +1,4 @@
-"""Joints that hold too much or too little, told before anything is solved.
+"""Joints that hold too much or too little, refused before anything is solved.
 
 Those that over-constrain show in the rank of the linearised gaps.
 
