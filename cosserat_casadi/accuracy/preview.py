@@ -25,6 +25,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import discrete_scene
+from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -149,7 +150,7 @@ class Preview:
         """
         kept = self.kept(modes)
         regridded = self._regridded(x, grids)
-        residual = _numbers(regridded.residual)[kept, 0]
+        residual = _numbers(Equations(regridded).residual)[kept, 0]
         # One Newton step with the Jacobian of the reference's grid.
         corrected = x.copy()
         corrected[kept] -= self._inverse_of_kept(kept) @ residual

@@ -1,4 +1,4 @@
-"""A cable of given length, whose tension is what it takes.
+"""A cable of given length, whose tension is unknown: docs/theory.md, section 8.
 
 Where the cable may go slack, the smooth complementarity τ + s − √(τ² + s² + ε²) = 0 of the tension τ and the sag s
 holds both at zero or above and one of them at zero, up to τ s = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284,
@@ -79,6 +79,9 @@ def _kernel(slack: bool) -> ca.Function:
     tension = ca.SX.sym("tension")
     residual = -sag
     if slack:
-        residual = tension + sag - ca.sqrt(tension**2 + sag**2 + SMOOTHING**2)
-    derivatives = [ca.jacobian(residual, variable) for variable in (sag, tension)]
-    return ca.Function("cable_length", [sag, tension], ca.cse([residual, *derivatives]))
+        larger_than_both = ca.sqrt(tension**2 + sag**2 + SMOOTHING**2)
+        residual = tension + sag - larger_than_both
+    by_sag = ca.jacobian(residual, sag)
+    by_tension = ca.jacobian(residual, tension)
+    results = ca.cse([residual, by_sag, by_tension])
+    return ca.Function("cable_length", [sag, tension], results)

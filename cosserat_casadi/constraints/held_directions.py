@@ -1,4 +1,4 @@
-"""What each kind of support and joint holds: a choice of directions.
+"""What each kind of support and joint holds: a choice of directions, P and D of docs/theory.md, section 8.
 
 A rod that stays in the x–z plane of its base needs to be held in that plane alone; what nothing can move is not held a
 second time, or the equations would depend on each other.
@@ -66,18 +66,24 @@ def prismatic(axis: Sequence[float], place: NumericPose) -> HeldDirections:
 def prismatic_in_plane(axis: Sequence[float], place: NumericPose) -> HeldDirections:
     """The same in the x–z plane of the tip, where something else keeps the body in that plane."""
     direction = place.rotation.T @ np.asarray(axis, dtype=float)
-    across = np.cross([0.0, 1.0, 0.0], direction / np.linalg.norm(direction))
+    unit_direction = direction / np.linalg.norm(direction)
+    # The y axis of the tip is the normal of the plane: the one direction left to hold lies across the slide in it.
+    across = np.cross([0.0, 1.0, 0.0], unit_direction)
     return HeldDirections(across[:, None], NORMAL, turn_with_place=True)
 
 
 def _across(axis: Sequence[float], place: NumericPose) -> FloatArray:
     """Two unit vectors at right angles to an axis, in the axes of the place, shape (3, 2)."""
     direction = place.rotation.T @ np.asarray(axis, dtype=float)
+    # The first right singular vector of a row is along it; the others span what is orthogonal to it.
     _, _, rows = np.linalg.svd(direction[None, :])
     return np.asarray(rows[1:].T)
 
 
 def stays_in_plane(rod: RodProperties) -> bool:
     """Whether nothing takes a rod out of the local x–z plane of its base."""
-    leans = any(rod.intrinsic[3:][1]) or 4 in rod.admitted
-    return rod.turning_axes in ((), (1,)) and not leans
+    # Component 4 of the strain is the shear along y, out of the plane.
+    shears_out = any(rod.intrinsic[4]) or 4 in rod.admitted
+    if shears_out:
+        return False
+    return rod.turning_axes in ((), (1,))

@@ -2,6 +2,7 @@
 
 The kinds of support and joint differ in the directions that they hold, and in nothing else. The residual and the
 wrench are written once, as small expressions of poses and multipliers; CasADi differentiates them.
+Docs/theory.md, section 8.
 
 The multipliers are the force (unit EI/ℓ²) and the moment (unit EI/ℓ) on the section along the held directions, so
 they are of the order of the dimensionless residual. The opposite wrench acts on the other frame.
@@ -71,7 +72,10 @@ class Poses(NamedTuple):
     @property
     def stacked(self) -> list[Matrix]:
         """Positions and quaternions, as the kernels take them."""
-        return [part for pose in self for part in (pose.position, pose.quaternion)]
+        parts: list[Matrix] = []
+        for pose in self:
+            parts += [pose.position, pose.quaternion]
+        return parts
 
 
 @dataclass(frozen=True)
@@ -109,27 +113,31 @@ class SectionConstraint:
 
     def residual_variation(self, poses: Poses) -> Variations:
         """Derivative of the residual with the poses, size×6 each."""
-        return Variations(*self._residual_kernel(*poses.stacked)[1:])
+        _, *by_poses = self._residual_kernel(*poses.stacked)
+        return Variations(*by_poses)
 
     def wrench_basis(self, poses: Poses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
+        displacements = force.shape[1]
         basis = np.zeros((6, self.size))
-        basis[3:, : force.shape[1]] = force
-        basis[:3, force.shape[1] :] = moment
-        constant = ca.sparsify(ca.DM(basis))
+        basis[3:, :displacements] = force
+        basis[:3, displacements:] = moment
+        # Sparse, so that directions along the axes of the base cost no product.
+        in_given_axes = ca.sparsify(ca.DM(basis))
         if not self.held.turn_with_place:
-            return constant
+            return in_given_axes
         rotation = self._target(poses).rotation
-        return ca.diagcat(rotation, rotation) @ constant
+        return ca.diagcat(rotation, rotation) @ in_given_axes
 
     def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
         """Derivative of the wrench on the section with the poses at fixed multipliers, base axes, 6×6 each."""
         if not self.held.turn_with_place:
-            none = ca.DM(6, 6)
-            return Variations(none, none, none)
-        return Variations(*self._wrench_kernel(*poses.stacked, multipliers)[1:])
+            zero = ca.DM(6, 6)
+            return Variations(zero, zero, zero)
+        _, *by_poses = self._wrench_kernel(*poses.stacked, multipliers)
+        return Variations(*by_poses)
 
     def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
@@ -146,13 +154,16 @@ class SectionConstraint:
         return poses.base.seen(poses.frame.then(self.place.pose))
 
     def _residual(self, poses: Poses) -> Matrix:
+        """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
+        section = poses.section
         target = self._target(poses)
         back = quaternion_conjugate(target.quaternion)
-        displacement = poses.section.position - target.position
-        turn = quaternion_product(poses.section.quaternion, back)
         if self.held.turn_with_place:
-            displacement = target.rotation.T @ displacement
-            turn = quaternion_product(back, poses.section.quaternion)
+            displacement = target.rotation.T @ (section.position - target.position)
+            turn = quaternion_product(back, section.quaternion)
+        else:
+            displacement = section.position - target.position
+            turn = quaternion_product(section.quaternion, back)
         along = ca.DM(self.held.positions).T @ displacement / self.rod.length
         # The vector part of a quaternion is half the rotation that is left, to first order.
         about = 2 * ca.DM(self.held.rotations).T @ turn[1:]
@@ -166,10 +177,13 @@ class SectionConstraint:
         wrench = self._wrench(poses, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
-        lever = poses.frame.rotation @ ca.DM(self.place.position)
         if self.slides:
-            lever = poses.base.then(poses.section).position - poses.frame.position
-        return -ca.vertcat(ca.cross(lever, force) + moment, force)
+            section = poses.base.then(poses.section)
+            arm = section.position - poses.frame.position
+        else:
+            arm = poses.frame.rotation @ ca.DM(self.place.position)
+        moment_about_origin = ca.cross(arm, force) + moment
+        return -ca.vertcat(moment_about_origin, force)
 
     @cached_property
     def _residual_kernel(self) -> ca.Function:
@@ -201,18 +215,27 @@ class SectionConstraint:
 
 def _symbols() -> tuple[Poses, list[ca.SX]]:
     """Symbols of the three poses and of their motions."""
-    names = Poses._fields
-    poses = Poses(*[Pose(ca.SX.sym(f"{name}_position", 3), ca.SX.sym(f"{name}_quaternion", 4)) for name in names])
-    motions = [ca.SX.sym(f"{name}_motion", 6) for name in names]
-    return poses, motions
+    poses = []
+    motions = []
+    for name in Poses._fields:
+        position = ca.SX.sym(f"{name}_position", 3)
+        quaternion = ca.SX.sym(f"{name}_quaternion", 4)
+        poses.append(Pose(position, quaternion))
+        motions.append(ca.SX.sym(f"{name}_motion", 6))
+    return Poses(*poses), motions
 
 
 def _moved(poses: Poses, motions: list[ca.SX]) -> Poses:
-    return Poses(*[pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)])
+    """The poses after small motions."""
+    moved = [pose.varied(motion) for pose, motion in zip(poses, motions, strict=True)]
+    return Poses(*moved)
 
 
 def _at_rest(expression: Matrix, variables: list[ca.SX], motions: list[ca.SX]) -> list[Matrix]:
     """Derivatives of an expression with some variables where all motions are zero."""
-    rest = ca.DM.zeros(sum(motion.numel() for motion in motions))
+    all_motions = ca.vertcat(*motions)
+    rest = ca.DM.zeros(all_motions.numel())
     derivatives = [ca.jacobian(expression, variable) for variable in variables]
-    return [ca.sparsify(d) for d in ca.substitute(derivatives, [ca.vertcat(*motions)], [rest])]
+    at_rest = ca.substitute(derivatives, [all_motions], [rest])
+    # Entries that are zero at rest would be instructions otherwise.
+    return [ca.sparsify(derivative) for derivative in at_rest]

@@ -2,7 +2,9 @@
 
 Scene ── rods.rod_properties ─▶ RodProperties        what each rod is made of
       ── inputs.input_layout ─▶ InputLayout          what stays free at run time
-      ── mesh.discretise     ─▶ Discretisation       modes, nodes, element ends
-      ── system.assemble     ─▶ System               residual, Jacobian, fields as expressions
+      ── discretise          ─▶ Discretisation       modes, nodes, element ends
+      ── discrete_scene      ─▶ DiscreteScene        constant matrices, constraints, the order of the unknowns
+      ── system.System       ─▶ System               rods, frames and loads as expressions
+      ── equations.Equations ─▶ Equations            residual and Jacobian as expressions
       ── build.build         ─▶ Model                named Functions
 """

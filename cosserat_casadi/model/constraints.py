@@ -1,12 +1,13 @@
-"""The constraints of a scene: supports, bases of carried rods, joints; each put in its place.
+"""The constraints of a scene: supports, bases of carried rods and joints, each between a section and a frame.
 
-What does not depend on the unknowns is settled here, from the poses of the unloaded scene.
+This module settles what does not depend on the unknowns, from the poses of the unloaded scene: the pose that closes
+each constraint, and the directions that it holds. Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.rods import base_pose
 
 SUPPORT_WEIGHT = 2.0
-"""Step weight of the multipliers of a support: a rod that is pulled to a place has many equilibria there, close by."""
+"""Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
 
 FORCE_WEIGHT = 0.1
 """Step weight of other multipliers and of tensions: one unit bends a rod by about 0.1 rad; Euler's load is π² EI/ℓ²."""
@@ -73,6 +74,7 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     Supports of rods that start in the world, bases of carried rods, joints, then supports of carried rods.
     """
     supports = [_support(unloaded, i) for i in range(len(unloaded.scene.supports))]
+    # A support of a rod that starts in the world couples no rods: it stands next to the strains in x.
     still = [placed for placed in supports if not placed.closes_assembly]
     carried = [placed for placed in supports if placed.closes_assembly]
     bases = [_base(unloaded, rod) for rod in unloaded.carried]
@@ -80,90 +82,138 @@ def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:
     return [*still, *bases, *joints, *carried]
 
 
-def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
-    support = unloaded.scene.supports[index]
-    words = (f"supports[{index}]", f"the tip of {support.rod!r} at its support")
-    turned = isinstance(support, scenes.ClampedSupport)
-    quaternion = _array(support.quaternion) if isinstance(support, scenes.ClampedSupport) else IDENTITY.quaternion
-    place = NumericPose(_array(support.position), quaternion)
-    spatial, planar = held.SUPPORTS[support.kind]
-    if unloaded.floating_base(support.rod) is None:
-        in_plane = held.stays_in_plane(unloaded.rods[support.rod].properties)
-        return _placed(
-            unloaded, (support.rod, 1.0), None, place, planar if in_plane else spatial, words, STILL, SUPPORT_WEIGHT
+@dataclass(frozen=True)
+class _Section:
+    """A section of a rod of the unloaded scene.
+
+    Attributes:
+        unloaded: the scene.
+        rod: name of the rod.
+        at: abscissa.
+    """
+
+    unloaded: UnloadedScene
+    rod: str
+    at: float = 1.0
+
+    def held_to(
+        self, target: NumericPose, directions: HeldDirections, frame: FrameName | None, words: tuple[str, str]
+    ) -> PlacedConstraint:
+        """The constraint that holds the section to a pose in a frame; ``words``: its path and its two sides."""
+        discrete_rod = self.unloaded.rods[self.rod]
+        where, what = words
+        return PlacedConstraint(
+            constraint=SectionConstraint(
+                discrete_rod.properties, discrete_rod.energy_unit, self.at, directions, target
+            ),
+            rod=self.rod,
+            node=discrete_rod.grid.node_at(self.at),
+            frame=frame,
+            where=where,
+            what=what,
         )
+
+    def nearer_sign(self, target: NumericPose, frame: FrameName | None) -> NumericPose:
+        """A pose in a frame with that sign of its quaternion that is nearer to the section.
+
+        Q and −Q are one rotation; from the farther one the section would be turned by more than half a turn.
+        """
+        world_target = target
+        if frame is not None:
+            world_target = self.unloaded.frames[frame].start.then(target)
+        quaternion = self.unloaded.section(self.rod, self.at).quaternion
+        if world_target.quaternion @ quaternion >= 0:
+            return target
+        return NumericPose(target.position, -target.quaternion)
+
+
+def _support(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """The tip of a rod at a pose in the world."""
+    support = unloaded.scene.supports[index]
+    rod = support.rod
+    words = (f"supports[{index}]", f"the tip of {rod!r} at its support")
+    tip = _Section(unloaded, rod)
+    target = _support_pose(support)
+    spatial, planar = held.SUPPORTS[support.kind]
+    if unloaded.floating_base(rod) is None:
+        in_plane = held.stays_in_plane(unloaded.rods[rod].properties)
+        directions = planar if in_plane else spatial
+        # The scene's own sign of the quaternion says by which way round the tip is to be turned.
+        placed = tip.held_to(target, directions, None, words)
+        return replace(placed, compliance=STILL, step_weight=SUPPORT_WEIGHT)
+    directions = planar if _supported_in_plane(unloaded, support, target) else spatial
+    return tip.held_to(tip.nearer_sign(target, None), directions, None, words)
+
+
+def _support_pose(support: scenes.Support) -> NumericPose:
+    """World pose of a support; a pinned one has no rotation to hold."""
+    quaternion = IDENTITY.quaternion
+    if isinstance(support, scenes.ClampedSupport):
+        quaternion = _array(support.quaternion)
+    return NumericPose(_array(support.position), quaternion)
+
+
+def _supported_in_plane(unloaded: UnloadedScene, support: scenes.Support, target: NumericPose) -> bool:
+    """Whether a carried rod stays in one plane that its support lies in."""
     plane = unloaded.plane(support.rod)
+    if plane is None:
+        return False
     length = unloaded.records[support.rod].length
-    in_plane = plane is not None and same_plane(plane, place, length, tilted=not turned)
-    near = _near(unloaded, (support.rod, 1.0), None, place)
-    return _placed(unloaded, (support.rod, 1.0), None, near, planar if in_plane else spatial, words)
+    tilted = not isinstance(support, scenes.ClampedSupport)
+    return same_plane(plane, target, length, tilted=tilted)
 
 
 def _base(unloaded: UnloadedScene, rod: scenes.Rod) -> PlacedConstraint:
-    """The base of a rod on a section of another: its frame offers the section the inverse of the base's pose."""
+    """The base of a rod on a section of another."""
     carrier = rod.base.rod
     assert carrier is not None
     frame = FrameName("rod", rod.name)
     index = list(unloaded.records).index(rod.name)
     words = (f"rods[{index}].base", f"the base of {rod.name!r} on {carrier!r}")
-    section = (carrier, rod.base.at)
-    place = _near(unloaded, section, frame, NumericPose(*base_pose(rod)).inverse)
-    return _placed(unloaded, section, frame, place, held.CLAMPED, words)
+    section = _Section(unloaded, carrier, rod.base.at)
+    # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+    section_in_base = NumericPose(*base_pose(rod)).inverse
+    target = section.nearer_sign(section_in_base, frame)
+    return section.held_to(target, held.CLAMPED, frame, words)
 
 
 def _joint(unloaded: UnloadedScene, index: int) -> PlacedConstraint:
+    """The tip of a rod at a body."""
     joint = unloaded.scene.joints[index]
     frame = FrameName("body", joint.body)
     words = (f"joints[{index}]", f"the tip of {joint.rod!r} at {joint.body!r}")
-    section = (joint.rod, 1.0)
-    place = _near(unloaded, section, frame, _place(joint))
-    return _placed(unloaded, section, frame, place, _joint_directions(unloaded, joint, place), words)
+    tip = _Section(unloaded, joint.rod)
+    target = tip.nearer_sign(_joint_pose(joint), frame)
+    directions = _joint_directions(unloaded, joint, target)
+    return tip.held_to(target, directions, frame, words)
 
 
-def _placed(
-    unloaded: UnloadedScene,
-    section: tuple[str, float],
-    frame: FrameName | None,
-    place: NumericPose,
-    directions: HeldDirections,
-    words: tuple[str, str],
-    compliance: Compliance = ASSEMBLED,
-    step_weight: float = FORCE_WEIGHT,
-) -> PlacedConstraint:
-    rod, at = section
-    discrete_rod = unloaded.rods[rod]
-    constraint = SectionConstraint(discrete_rod.properties, discrete_rod.energy_unit, at, directions, place)
-    node = discrete_rod.grid.node_at(at)
-    return PlacedConstraint(constraint, rod, node, frame, *words, compliance, step_weight)
-
-
-def _near(
-    unloaded: UnloadedScene, section: tuple[str, float], frame: FrameName | None, place: NumericPose
-) -> NumericPose:
-    """A place with the sign of its quaternion that is near the unloaded section."""
-    wanted = place if frame is None else unloaded.frames[frame].start.then(place)
-    quaternion = unloaded.section(*section).quaternion
-    if wanted.quaternion @ quaternion >= 0:
-        return place
-    return NumericPose(place.position, -place.quaternion)
-
-
-def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint, place: NumericPose) -> HeldDirections:
+def _joint_directions(unloaded: UnloadedScene, joint: scenes.Joint, target: NumericPose) -> HeldDirections:
     """What a joint holds: of planar rods that hold one body in their plane, only the first keeps it there.
 
     Several such rods keep the body in the plane, and each of their joints turns about its normal alone.
     """
-    together = list(_coplanar(unloaded, joint))
-    follows_others = len(together) > 1 and together[0] != joint
+    coplanar = list(_coplanar(unloaded, joint))
+    if len(coplanar) > 1 and coplanar[0] != joint:
+        return _directions_in_plane(joint, target)
     if isinstance(joint, scenes.PrismaticJoint):
-        return held.prismatic_in_plane(joint.axis, place) if follows_others else held.prismatic(joint.axis, place)
+        return held.prismatic(joint.axis, target)
     if isinstance(joint, scenes.RevoluteJoint):
-        return held.PINNED_IN_PLANE if follows_others else held.revolute(joint.axis, place)
+        return held.revolute(joint.axis, target)
     if joint.kind == "fixed":
-        return held.CLAMPED_IN_PLANE if follows_others else held.CLAMPED
-    if follows_others:
-        return held.PINNED_IN_PLANE
-    return held.PINNED_UPRIGHT if len(together) > 1 else held.PINNED
+        return held.CLAMPED
+    if len(coplanar) > 1:
+        return held.PINNED_UPRIGHT
+    return held.PINNED
+
+
+def _directions_in_plane(joint: scenes.Joint, target: NumericPose) -> HeldDirections:
+    """What a joint holds of a body that a joint before it keeps in the plane."""
+    if isinstance(joint, scenes.PrismaticJoint):
+        return held.prismatic_in_plane(joint.axis, target)
+    if joint.kind == "fixed":
+        return held.CLAMPED_IN_PLANE
+    return held.PINNED_IN_PLANE
 
 
 def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.Joint]:
@@ -172,8 +222,9 @@ def _coplanar(unloaded: UnloadedScene, joint: scenes.Joint) -> Iterator[scenes.J
     if plane is None or not _moves_in_plane(joint):
         return
     for candidate in unloaded.scene.joints:
-        same_body = candidate.body == joint.body
-        if same_body and _moves_in_plane(candidate) and _shares_plane(unloaded, joint, plane, candidate):
+        if candidate.body != joint.body or not _moves_in_plane(candidate):
+            continue
+        if _shares_plane(unloaded, joint, plane, candidate):
             yield candidate
 
 
@@ -181,7 +232,8 @@ def _moves_in_plane(joint: scenes.Joint) -> bool:
     """Whether a joint leaves its body in the x–z plane of the tip: a hinge about its normal, a slide along it."""
     if not isinstance(joint, scenes.RevoluteJoint | scenes.PrismaticJoint):
         return True
-    axis = _place(joint).rotation.T @ np.asarray(joint.axis)
+    axis = _joint_pose(joint).rotation.T @ np.asarray(joint.axis)
+    # The y axis of the tip is the normal of its plane.
     out_of_plane = abs(axis[1]) / np.linalg.norm(axis)
     if isinstance(joint, scenes.RevoluteJoint):
         return bool(out_of_plane >= 1 - FLAT)
@@ -194,14 +246,17 @@ def _shares_plane(unloaded: UnloadedScene, joint: scenes.Joint, plane: NumericPo
     length = unloaded.records[joint.rod].length
     if second is None or not same_plane(plane, second, length):
         return False
-    first_place = _place(joint)
-    second_place = _place(candidate)
-    world_side = float(plane.rotation[:, 1] @ second.rotation[:, 1])
-    body_side = float(first_place.rotation[:, 1] @ second_place.rotation[:, 1])
-    return world_side * body_side > 0 and same_plane(first_place, second_place, length)
+    first_joint = _joint_pose(joint)
+    second_joint = _joint_pose(candidate)
+    # Normals may be opposite, if they are so in the world and in the body alike.
+    in_world = float(plane.rotation[:, 1] @ second.rotation[:, 1])
+    in_body = float(first_joint.rotation[:, 1] @ second_joint.rotation[:, 1])
+    if in_world * in_body <= 0:
+        return False
+    return same_plane(first_joint, second_joint, length)
 
 
-def _place(joint: scenes.Joint) -> NumericPose:
+def _joint_pose(joint: scenes.Joint) -> NumericPose:
     """Pose of the tip section in the body."""
     return NumericPose(_array(joint.position), _array(joint.quaternion))
 

@@ -1,4 +1,8 @@
-"""A scene with everything settled that does not depend on the unknowns."""
+"""A scene with everything settled that does not depend on the unknowns.
+
+The order of x follows from it: strains of the rods, multipliers of the constraints, deviations of the floating frames,
+tensions of the cables of given length, as in docs/theory.md, section 8.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +30,7 @@ class CableOfLength:
 
     Attributes:
         tendon: as the scene has it.
-        routing: where it runs.
+        routing: its line through the sections.
         compliance: how its equation yields on the way to the scene.
     """
 
@@ -35,9 +39,12 @@ class CableOfLength:
 
     @property
     def compliance(self) -> Compliance:
-        """The spring between its length and the wanted one; slack cables have their tension in the equation."""
-        slack = EFFECTS[self.tendon.kind].may_go_slack(self.tendon)
-        return Compliance(power=1, sign=1.0 if slack else -1.0)
+        """The spring between its length and the wanted one."""
+        member = EFFECTS[self.tendon.kind]
+        # The row of a cable that may go slack grows with its tension; that of another cable, −s, falls with it.
+        if member.may_go_slack(self.tendon):
+            return Compliance(power=1, sign=1.0)
+        return Compliance(power=1, sign=-1.0)
 
 
 @dataclass(frozen=True)
@@ -76,12 +83,21 @@ class DiscreteScene:
         for actuator in self.scene.actuators:
             member = EFFECTS[actuator.kind]
             if member.prescribes_conjugate(actuator):
-                cables.append(CableOfLength(actuator, member.quantity(actuator, self.rods[actuator.rod].grid)))
+                grid = self.rods[actuator.rod].grid
+                routing = member.quantity(actuator, grid)
+                cables.append(CableOfLength(actuator, routing))
         return cables
 
     def constraint(self, where: str) -> SectionConstraint:
-        """The constraint of a table of the scene, by its path."""
-        return next(placed.constraint for placed in self.constraints if placed.where == where)
+        """The constraint of a table of the scene, by its path.
+
+        Raises:
+            KeyError: there is no such table.
+        """
+        for placed in self.constraints:
+            if placed.where == where:
+                return placed.constraint
+        raise KeyError(where)
 
     @property
     def is_assembly(self) -> bool:
@@ -94,28 +110,60 @@ class DiscreteScene:
 
     @cached_property
     def unknowns(self) -> Unknowns:
-        """What the unknowns x are and where they stand: strains, multipliers, poses, tensions."""
-        blocks = [*self._strain_blocks(), *self._multiplier_blocks(), *self._pose_blocks(), *self._tension_blocks()]
+        """The unknowns x in their order: strains, multipliers, poses, tensions."""
+        blocks = [
+            *self._strain_blocks(),
+            *self._multiplier_blocks(),
+            *self._pose_blocks(),
+            *self._tension_blocks(),
+        ]
         return Unknowns(tuple(blocks))
 
     def _strain_blocks(self) -> Iterator[Block]:
         for name, rod in self.rods.items():
-            yield Block(BlockKind.STRAIN, name, name, rod.size, rod.energy_unit, 1.0)
+            yield Block(
+                kind=BlockKind.STRAIN,
+                owner=name,
+                rod=name,
+                size=rod.size,
+                unit=rod.energy_unit,
+                step_weight=1.0,
+            )
 
     def _multiplier_blocks(self) -> Iterator[Block]:
         for placed in self.constraints:
-            unit = placed.constraint.unit
-            yield Block(BlockKind.MULTIPLIER, placed.where, placed.rod, placed.size, unit, placed.step_weight)
+            yield Block(
+                kind=BlockKind.MULTIPLIER,
+                owner=placed.where,
+                rod=placed.rod,
+                size=placed.size,
+                unit=placed.constraint.unit,
+                step_weight=placed.step_weight,
+            )
 
     def _pose_blocks(self) -> Iterator[Block]:
         for name, frame in self.frames.items():
-            yield Block(BlockKind.POSE, str(name), None, FloatingFrame.SIZE, frame.unit, 1.0)
+            # Several rods may meet in a frame, so that it is solved with none of them.
+            yield Block(
+                kind=BlockKind.POSE,
+                owner=str(name),
+                rod=None,
+                size=FloatingFrame.SIZE,
+                unit=frame.unit,
+                step_weight=1.0,
+            )
 
     def _tension_blocks(self) -> Iterator[Block]:
         for cable in self.cables:
-            rod = cable.tendon.rod
-            unit = self.rods[rod].energy_unit
-            yield Block(BlockKind.TENSION, cable.tendon.name, rod, 1, unit, FORCE_WEIGHT)
+            tendon = cable.tendon
+            yield Block(
+                kind=BlockKind.TENSION,
+                owner=tendon.name,
+                rod=tendon.rod,
+                size=1,
+                unit=self.rods[tendon.rod].energy_unit,
+                step_weight=FORCE_WEIGHT,
+            )
 
     @property
     def size(self) -> int:
@@ -123,25 +171,29 @@ class DiscreteScene:
         return self.unknowns.size
 
     def multipliers(self, placed: PlacedConstraint) -> slice:
-        """Where the multipliers of a constraint stand in x."""
+        """Slice of the multipliers of a constraint in x."""
         return self.unknowns.slice_of(BlockKind.MULTIPLIER, placed.where)
 
     def deviation(self, frame: FrameName) -> slice:
-        """Where the deviation of a floating frame stands in x."""
+        """Slice of the deviation of a floating frame in x."""
         return self.unknowns.slice_of(BlockKind.POSE, str(frame))
 
     def tension(self, cable: CableOfLength) -> slice:
-        """Where the tension of a cable of given length stands in x."""
+        """Slice of the tension of a cable of given length in x."""
         return self.unknowns.slice_of(BlockKind.TENSION, cable.tendon.name)
 
     def tension_unit(self, rod: str) -> float:
         """EI/ℓ² of a rod, N."""
-        return self.rods[rod].energy_unit / self.rods[rod].properties.length
+        discrete_rod = self.rods[rod]
+        return discrete_rod.energy_unit / discrete_rod.properties.length
 
 
 def discrete_scene(
     scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]
 ) -> DiscreteScene:
     """Constant matrices of every rod of a scene."""
-    rods = {rod.name: DiscreteRod(rod_properties(rod), discretisation[rod.name]) for rod in scene.rods}
+    rods = {}
+    for rod in scene.rods:
+        properties = rod_properties(rod)
+        rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
     return DiscreteScene(scene, layout, rods)

@@ -9,20 +9,23 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.discretisation import Discretisation
 
 DEFAULT_MODES = 6
-"""Polynomials per strain component where neither the scene nor the tolerance says."""
+"""Polynomials per strain component where neither the scene nor the caller gives them."""
 
 DEFAULT_TRANSPORT = "magnus6"
-"""Integration method of the rotation where nobody says."""
+"""Integration method of the rotation where neither the scene nor the caller gives one."""
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
     """Abscissae at which a rod is cut: its ends and where a load, or a rod that it carries, makes a jump."""
     cuts = {0.0, 1.0}
-    for cause in scene.causes:
-        effect = EFFECTS[cause.kind]
-        if effect.acts_on(cause, rod):
-            cuts.update(effect.breaks(cause))
-    cuts.update(carried.base.at for carried in scene.rods if carried.base.rod == rod)
+    for record in scene.causes:
+        member = EFFECTS[record.kind]
+        if member.acts_on(record, rod):
+            cuts.update(member.breaks(record))
+    # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
+    for carried in scene.rods:
+        if carried.base.rod == rod:
+            cuts.add(carried.base.at)
     return tuple(sorted(cuts))
 
 
@@ -37,7 +40,7 @@ def discretise(
     nodes: int | None = None,
     transport: str | None = None,
 ) -> dict[str, Discretisation]:
-    """A discretisation for every rod: what is given here, else what the scene fixes, else a default.
+    """A discretisation for every rod: what the caller gives, else what the scene fixes, else a default.
 
     Args:
         scene: the scene.
@@ -55,11 +58,16 @@ def discretise(
     chosen = {}
     for rod in scene.rods:
         modes_of_rod = _per_strain(modes, len(rod.admitted))
-        intervals = nodes_for(max(modes_of_rod)) if nodes is None else nodes
-        chosen[rod.name] = Discretisation(modes_of_rod, intervals, element_ends(scene, rod.name), transport)
+        intervals = nodes
+        if intervals is None:
+            intervals = nodes_for(max(modes_of_rod))
+        breaks = element_ends(scene, rod.name)
+        chosen[rod.name] = Discretisation(modes_of_rod, intervals, breaks, transport)
     return chosen
 
 
 def _per_strain(modes: int | Sequence[int], strains: int) -> tuple[int, ...]:
     """Modes of every admitted strain."""
-    return (modes,) * strains if isinstance(modes, int) else tuple(modes)
+    if isinstance(modes, int):
+        return (modes,) * strains
+    return tuple(modes)

@@ -1,6 +1,7 @@
 """Floating frames: rigid bodies, and the bases of rods that other rods carry. Their poses are unknown.
 
-Here is what does not depend on the unknowns: where each frame is in the unloaded scene, and its units.
+This module settles what does not depend on the unknowns: the pose of each frame in the unloaded scene, and its units.
+Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class FrameName(NamedTuple):
 
 @dataclass(frozen=True)
 class FloatingFrame:
-    """A frame whose pose is unknown: a deviation (p − p₀)/ℓ, Q − Q₀ from where the unloaded scene has it.
+    """A frame whose pose is unknown: a deviation (p − p₀)/ℓ, Q − Q₀ from its pose in the unloaded scene.
 
     Attributes:
         body: the body, or None for the base of a rod.
@@ -81,15 +82,20 @@ class UnloadedScene:
 
     def floating_base(self, rod: str) -> FrameName | None:
         """The floating frame that a rod's base is; None where it rests in the world."""
-        return None if self.records[rod].base.rod is None else FrameName("rod", rod)
+        carrier = self.records[rod].base.rod
+        if carrier is None:
+            return None
+        return FrameName("rod", rod)
 
     @cached_property
     def frames(self) -> dict[FrameName, FloatingFrame]:
         """Floating frames: bases of carried rods in the order of the scene, then bodies."""
         frames = {}
         for rod in self.carried:
+            name = FrameName("rod", rod.name)
             unit = self.rods[rod.name].energy_unit
-            frames[FrameName("rod", rod.name)] = FloatingFrame(None, unit, rod.length, self.base(rod.name))
+            start = self.base(rod.name)
+            frames[name] = FloatingFrame(None, unit, rod.length, start)
         for body in self.scene.bodies:
             frames[FrameName("body", body.name)] = self._body_frame(body)
         return frames
@@ -99,17 +105,25 @@ class UnloadedScene:
         record = self.records[rod]
         own = NumericPose(*base_pose(record))
         carrier = record.base.rod
-        return own if carrier is None else self.section(carrier, record.base.at).then(own)
+        if carrier is None:
+            return own
+        # The pose of a carried rod is given in the section of its carrier.
+        return self.section(carrier, record.base.at).then(own)
 
     def section(self, rod: str, at: float) -> NumericPose:
         """World pose of a section of a rod."""
-        discrete_rod = self.rods[rod]
+        node = self.rods[rod].grid.node_at(at)
+        rod_shape = self._shape(rod)
+        in_base = numeric(Pose(rod_shape.position_at(node), rod_shape.quaternion[:, node]))
+        unit_quaternion = in_base.quaternion / np.linalg.norm(in_base.quaternion)
+        return self.base(rod).then(NumericPose(in_base.position, unit_quaternion))
+
+    def _shape(self, rod: str) -> Shape:
+        """Shape of an unloaded rod in its base, kept: several sections of a rod are asked for."""
         if rod not in self._shapes:
+            discrete_rod = self.rods[rod]
             self._shapes[rod] = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
-        node = discrete_rod.grid.node_at(at)
-        local = numeric(Pose(self._shapes[rod].position_at(node), self._shapes[rod].quaternion[:, node]))
-        unit = local.quaternion / np.linalg.norm(local.quaternion)
-        return self.base(rod).then(NumericPose(local.position, unit))
+        return self._shapes[rod]
 
     def plane(self, rod: str) -> NumericPose | None:
         """Base of a rod that never leaves its x–z plane; None where the rod or what carries it may."""
@@ -119,40 +133,61 @@ class UnloadedScene:
         carrier = self.records[rod].base.rod
         if carrier is None:
             return own
-        below = self.plane(carrier)
-        return own if below is not None and same_plane(below, own, self.records[rod].length) else None
+        plane_of_carrier = self.plane(carrier)
+        if plane_of_carrier is None:
+            return None
+        if not same_plane(plane_of_carrier, own, self.records[rod].length):
+            return None
+        return own
 
     @cached_property
     def all_in_parallel_planes(self) -> bool:
         """Whether all rods stay in parallel planes, so that bodies turn about one axis."""
-        planes = [self.plane(rod) for rod in self.records]
-        first = planes[0]
-        if first is None:
-            return False
-        normals = [None if plane is None else np.cross(first.rotation[:, 1], plane.rotation[:, 1]) for plane in planes]
-        return all(normal is not None and np.linalg.norm(normal) <= FLAT for normal in normals)
+        normals = []
+        for rod in self.records:
+            plane = self.plane(rod)
+            if plane is None:
+                return False
+            normals.append(plane.rotation[:, 1])
+        # Of two unit normals, the product is the sine of the angle between the planes.
+        sines = [np.linalg.norm(np.cross(normals[0], normal)) for normal in normals]
+        return all(sine <= FLAT for sine in sines)
 
     def _body_frame(self, body: scenes.Body) -> FloatingFrame:
-        """A body's frame, in units of the stiffest and the longest rod that holds it, where the unloaded rods want it.
-
-        Mean position, and mean rotation by the singular value decomposition: the rotation that turns the orientations
-        of joints that hold one, and the arms of all, nearest to what the tips ask for.
-        """
+        """A body's frame in its mean pose over the unloaded rods, in units of the stiffest and the longest of them."""
         joints = [joint for joint in self.scene.joints if joint.body == body.name]
         rods = [self.rods[joint.rod] for joint in joints]
         unit = max(rod.energy_unit for rod in rods)
         length = max(rod.properties.length for rod in rods)
+        start = self._mean_pose(joints, length)
+        return FloatingFrame(body, unit, length, start)
+
+    def _mean_pose(self, joints: list[scenes.Joint], length: float) -> NumericPose:
+        """Pose of a body between those in which each tip alone would close its joint.
+
+        The rotation is the one that turns the arms of all joints, and the orientations of joints that hold one,
+        nearest to the tips in the sense of least squares: G. Wahba, *SIAM Review* 7 (1965) 409, solved by a singular
+        value decomposition.
+
+        Args:
+            joints: those of the body.
+            length: weight of an orientation against an arm, m.
+        """
         tips = [self.section(joint.rod, 1.0) for joint in joints]
         arms = np.array([joint.position for joint in joints])
         points = np.array([tip.position for tip in tips])
-        spread = (points - points.mean(axis=0)).T @ (arms - arms.mean(axis=0))
+        mean_arm = arms.mean(axis=0)
+        mean_point = points.mean(axis=0)
+        correlation = (points - mean_point).T @ (arms - mean_arm)
         for joint, tip in zip(joints, tips, strict=True):
+            # A spherical joint leaves the orientation free: it counts by its arm alone.
             if joint.kind != "spherical":
-                place = NumericPose(np.zeros(3), np.asarray(joint.quaternion, dtype=float))
-                spread = spread + length**2 * tip.then(place.inverse).rotation
-        rotation = _nearest_rotation(spread)
-        position = points.mean(axis=0) - rotation @ arms.mean(axis=0)
-        return FloatingFrame(body, unit, length, NumericPose(position, matrix_to_quaternion(rotation)))
+                tip_in_body = NumericPose(np.zeros(3), np.asarray(joint.quaternion, dtype=float))
+                wanted = tip.then(tip_in_body.inverse)
+                correlation = correlation + length**2 * wanted.rotation
+        rotation = _nearest_rotation(correlation)
+        position = mean_point - rotation @ mean_arm
+        return NumericPose(position, matrix_to_quaternion(rotation))
 
 
 def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted: bool = False) -> bool:
@@ -161,11 +196,15 @@ def same_plane(first: NumericPose, second: NumericPose, length: float, *, tilted
     distance = abs(float(normal @ (second.position - first.position)))
     if distance > FLAT * length:
         return False
-    return tilted or float(np.linalg.norm(np.cross(normal, second.rotation[:, 1]))) <= FLAT
+    if tilted:
+        return True
+    sine = float(np.linalg.norm(np.cross(normal, second.rotation[:, 1])))
+    return sine <= FLAT
 
 
 def _nearest_rotation(matrix: FloatArray) -> FloatArray:
     """The rotation R with the largest trace of Rᵀ M."""
     left, _, right = np.linalg.svd(matrix)
+    # The sign makes it a rotation where the nearest orthogonal matrix is a reflection.
     sign = np.sign(np.linalg.det(left @ right))
     return np.asarray(left @ np.diag([1.0, 1.0, sign]) @ right)

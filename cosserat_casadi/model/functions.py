@@ -14,6 +14,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs, rod_actuation
@@ -63,27 +64,29 @@ class ModelFunctions:
     @scene_function(Output("residual"), differentiable=True)
     def residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ residual of report (2.20), without unit, zero in equilibrium."""
-        return [written.system.residual]
+        return [Equations(written.system).residual]
 
     @scene_function(Output("jacobian"), Output("residual"))
     def jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ (jacobian, residual): the order that a rootfinder's ``jacobian_function`` has."""
-        return [written.system.jacobian, written.system.residual]
+        equations = Equations(written.system)
+        return [equations.jacobian, equations.residual]
 
     @scene_function(Output("input_jacobian"))
     def input_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs) ↦ derivative of the residual with respect to the inputs."""
-        return [ca.jacobian(written.system.residual, written["inputs"])]
+        residual = Equations(written.system).residual
+        return [ca.jacobian(residual, written["inputs"])]
 
     @scene_function(Output("residual"), arguments=PATH, kernel="residual")
     def path_residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
-        return [written.system.residual]
+        return [Equations(written.system).residual]
 
     @scene_function(Output("jacobian"), arguments=PATH, kernel="jacobian")
     def path_jacobian(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ ∂ residual / ∂x of the scene at a load factor."""
-        return [written.system.jacobian]
+        return [Equations(written.system).jacobian]
 
     @scene_function(Output("residual_rate"), arguments=(*PATH, "inputs_rate", "load_factor_rate"), kernel="rate")
     def path_rate(self, written: Expressions) -> list[Matrix]:
@@ -92,8 +95,10 @@ class ModelFunctions:
         speed = ca.vertcat(written["inputs_rate"], written["load_factor_rate"])
         # One symbol for all that moves, so that one derivative in one direction is taken.
         joined = ca.MX.sym("inputs_and_load_factor", moving.shape[0])
-        system = System(written.discrete, Arguments(written["x"], joined[:-1], joined[-1]))
-        return [ca.substitute(ca.jtimes(system.residual, joined, speed), joined, moving)]
+        arguments = Arguments(written["x"], joined[:-1], joined[-1])
+        equations = Equations(System(written.discrete, arguments))
+        rate = ca.jtimes(equations.residual, joined, speed)
+        return [ca.substitute(rate, joined, moving)]
 
     @scene_function(Output("tangent"), arguments=("inputs",), kernel="tangent")
     def path_tangent(self, written: Expressions) -> list[Matrix]:
@@ -265,16 +270,23 @@ def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
     # The rate at the origin, and with one input at a time set to one.
     probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
     probes[:, 1:][:, geometry] = 0.0
-    rates = model.path_rate.map(size + 1)(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
+    all_rates = model.path_rate.map(size + 1)
+    rates = all_rates(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
+    deviation = inputs
     if geometry:
         rate = model.path_rate(unloaded, inputs, 0.0, no_rate, 1.0)
         slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
-        rates[:, 1:][:, geometry] = rates[:, :1] + slope(discrete.layout.pack()).full()[:, geometry]
-    response = -np.linalg.solve(jacobian.full(), rates) if discrete.size else rates
-    constant = ca.DM(_without_noise(response[:, 0]))
-    matrix = ca.sparsify(ca.DM(_without_noise(response[:, 1:] - response[:, :1])))
-    moved = inputs - ca.DM(origin) if geometry else inputs
-    return constant + matrix @ moved
+        slopes = slope(discrete.layout.pack()).full()
+        rates[:, 1:][:, geometry] = rates[:, :1] + slopes[:, geometry]
+        deviation = inputs - ca.DM(origin)
+    response = rates
+    # A scene whose rods admit no strain has nothing to solve for.
+    if discrete.size:
+        response = -np.linalg.solve(jacobian.full(), rates)
+    at_origin = response[:, :1]
+    constant = ca.DM(_without_noise(at_origin[:, 0]))
+    by_inputs = _without_noise(response[:, 1:] - at_origin)
+    return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
 
 
 def _without_noise(values: FloatArray) -> FloatArray:
@@ -290,14 +302,17 @@ def _resolution_index(written: Expressions) -> Matrix:
         q = written["x"][written.discrete.unknowns.strain(name)]
         ratio = ratio_of(written.discrete, name, written.arguments)
         if rod.discretisation.transport == "permuted":
-            tip = kinematics.shape(rod, q, ratio).quaternion[:, -1]
-            indices.append(ca.fabs(ca.norm_2(tip) - 1) / RESOLVED_NORM)
+            # Its quaternion keeps its norm only as far as the nodes resolve the rod.
+            quaternion = kinematics.shape(rod, q, ratio).quaternion[:, -1]
+            error = ca.fabs(ca.norm_2(quaternion) - 1)
+            indices.append(error / RESOLVED_NORM)
         elif rod.properties.turning_axes:
             indices.append(largest_turn(rod, q, ratio) / RESOLVED_TURN)
     return ca.mmax(ca.vertcat(*indices))
 
 
 def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
+    """Generalised force of loads and actuators, and base wrench in world axes, of a rod on its own."""
     rod = written.discrete.rods[written.owner]
     arguments = Arguments(written["q"], written["inputs"])
     rotation = quaternion_to_matrix(written["base_quaternion"])
@@ -310,12 +325,15 @@ def _inverse_geometric_model(written: Expressions) -> list[Matrix]:
     force = model.generalised_force
     if model.actuation_force is not None:
         force = force + model.actuation_force
-    return [force, rotation @ model.statics.base_force, rotation @ model.statics.base_moment]
+    base_force = rotation @ model.statics.base_force
+    base_moment = rotation @ model.statics.base_moment
+    return [force, base_force, base_moment]
 
 
 def _in_world(base: Pose, section: Pose) -> Pose:
     """World pose of a section given in the base of its rod."""
-    return Pose(ca.MX(base.position), ca.MX(base.quaternion)).then(section)
+    symbolic_base = Pose(ca.MX(base.position), ca.MX(base.quaternion))
+    return symbolic_base.then(section)
 
 
 def _tip_in_world(written: Expressions) -> Pose:
@@ -329,6 +347,7 @@ def _tip_derivatives(written: Expressions) -> list[Matrix]:
     pose = ca.vertcat(tip.position, tip.quaternion)
     floats = discrete.unloaded.floating_base(written.owner) is not None
     literal = discrete.rods[written.owner].discretisation.transport == "permuted"
+    # A floating base moves with unknowns of its own, and the literal system has no variations.
     if floats or literal:
         by_unknowns = ca.jacobian(pose, written["x"])
     else:
@@ -340,19 +359,24 @@ def _tip_derivatives(written: Expressions) -> list[Matrix]:
 
 
 def _by_strains(written: Expressions) -> Matrix:
+    """Derivative of a tip's position and quaternion with x, 7×size: zero but for the strains of its rod."""
     system = written.system
     tangent = system.tangents[written.owner]
+    tip = system.tip(written.owner)
     base = system.base(written.owner)
     count = written.discrete.rods[written.owner].size
-    quaternion = ca.repmat(ca.densify(system.tip(written.owner).quaternion), 1, count)
+    quaternions = ca.repmat(ca.densify(tip.quaternion), 1, count)
+    # One column a strain coordinate: δQ = ½ (0, δθ) ⊗ Q in the base, then turned into the world.
     spin = ca.vertcat(ca.DM.zeros(1, count), ca.densify(tangent.rotation_of(-1)))
-    turned = quaternion_product(spin, quaternion) / 2
-    turned_in_world = quaternion_product(ca.MX(ca.repmat(base.quaternion, 1, count)), turned)
+    turned = quaternion_product(spin, quaternions) / 2
+    base_quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+    turned_in_world = quaternion_product(base_quaternions, turned)
     moved_in_world = quaternion_to_matrix(base.quaternion) @ tangent.position(-1)
+    by_own_strains = ca.vertcat(moved_in_world, turned_in_world)
     strains = written.discrete.unknowns.strain(written.owner)
     before = ca.DM(7, strains.start)
     after = ca.DM(7, written.discrete.size - strains.stop)
-    return ca.horzcat(before, ca.vertcat(moved_in_world, turned_in_world), after)
+    return ca.horzcat(before, by_own_strains, after)
 
 
 def operations(function: ca.Function) -> int:
@@ -361,16 +385,20 @@ def operations(function: ca.Function) -> int:
     The kernels of the intervals stay functions of their own; each call counts with all its operations.
     """
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    return _operations(ca.Function("scalar", symbols, ca.cse(list(function.call(symbols)))))
+    results = ca.cse(list(function.call(symbols)))
+    return _operations(ca.Function("scalar", symbols, results))
 
 
 def _operations(scalar: ca.Function) -> int:
+    # An instruction shows the sizes of the function that it calls, not its name: kernels differ in them.
     called = {(f.nnz_in(), f.nnz_out()): _operations(f) for f in scalar.find_functions(0)}
     total = 0
     for i in range(scalar.n_instructions()):
         kind = scalar.instruction_id(i)
         if kind == ca.OP_CALL:
-            total += called[len(scalar.instruction_input(i)), len(scalar.instruction_output(i))]
+            entries_in = len(scalar.instruction_input(i))
+            entries_out = len(scalar.instruction_output(i))
+            total += called[entries_in, entries_out]
         elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
             total += 1
     return total
@@ -381,24 +409,34 @@ def _interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matr
     grid = discrete.rods[rod].grid
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
     rows = []
-    for e in range(grid.elements):
-        a, b = grid.breaks[e], grid.breaks[e + 1]
-        polynomials = _chebyshev_row(grid.intervals, (X - a) / (b - a))
-        row = ca.DM(to_coefficients).T @ polynomials
-        rows.append(row if grid.elements == 1 else _inside(grid.breaks, e, X) * row)
+    for element in range(grid.elements):
+        start = grid.breaks[element]
+        end = grid.breaks[element + 1]
+        local = (X - start) / (end - start)
+        weights = ca.DM(to_coefficients).T @ _chebyshev_values(grid.intervals, local)
+        if grid.elements > 1:
+            weights = _inside(grid.breaks, element, X) * weights
+        rows.append(weights)
     return ca.vertcat(*rows)
 
 
 def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
-    above = breaks[element] < X if element else 1
-    below = breaks[element + 1] >= X if element + 2 < len(breaks) else 1
+    above: Matrix | int = 1
+    below: Matrix | int = 1
+    # The first and the last element hold what lies before and beyond the rod: their polynomials extrapolate.
+    if element > 0:
+        above = breaks[element] < X
+    if element + 2 < len(breaks):
+        below = breaks[element + 1] >= X
     return above * below
 
 
-def _chebyshev_row(degree: int, X: Matrix) -> Matrix:
+def _chebyshev_values(degree: int, X: Matrix) -> Matrix:
+    """Chebyshev polynomials on [0, 1] up to a degree at X, (degree + 1)×1, by their recurrence."""
     x = 2 * X - 1
     values = [ca.MX(1.0), x]
     for _ in range(degree - 1):
-        values.append(2 * x * values[-1] - values[-2])
+        following = 2 * x * values[-1] - values[-2]
+        values.append(following)
     return ca.vertcat(*values[: degree + 1])

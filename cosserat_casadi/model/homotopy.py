@@ -2,8 +2,8 @@
 
 At λ = 0 nothing acts and every constraint is a limp spring; at λ = 1 the loads have grown to their values and the
 springs are rigid. A row r of a constraint, with its own unknown u, becomes λ r + (1 − λ)^p s u: the spring's
-compliance falls from one to zero. So do the rows of a floating frame, which a spring holds where the unloaded scene
-has it, from rigid to limp. The mechanics know nothing of λ.
+compliance falls from one to zero. So do the rows of a floating frame, which a spring holds at its pose in the unloaded
+scene, from rigid to limp. The mechanics know nothing of λ. Docs/theory.md, section 8.
 """
 
 from __future__ import annotations
@@ -47,8 +47,13 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
 
 
 def _scaled_wrench(load: PointWrench | LineWrench, load_factor: Matrix) -> PointWrench | LineWrench:
-    force = None if load.force is None else load_factor * load.force
-    moment = None if load.moment is None else load_factor * load.moment
+    force = load.force
+    moment = load.moment
+    # An absent force or moment stays absent, so that it adds no instruction.
+    if force is not None:
+        force = load_factor * force
+    if moment is not None:
+        moment = load_factor * moment
     return replace(load, force=force, moment=moment)
 
 
@@ -60,15 +65,25 @@ def scaled_effort(actuation: Actuation, load_factor: LoadFactor) -> Actuation:
 
 
 def row_at(row: Matrix, unknown: Matrix, compliance: Compliance, load_factor: LoadFactor) -> Matrix:
-    """An equation at a load factor."""
+    """An equation at a load factor, λ r + (1 − λ)^p s u.
+
+    Args:
+        row: r, what is zero in the scene itself, k×1.
+        unknown: u, the unknown that a spring of this equation acts on, k×1.
+        compliance: p and s.
+        load_factor: λ.
+    """
     if load_factor is None:
         return row
-    return load_factor * row + compliance.at(load_factor) * unknown
+    spring_row = compliance.at(load_factor) * unknown
+    return load_factor * row + spring_row
 
 
 def column_at(columns: Matrix, load_factor: LoadFactor) -> Matrix:
     """Derivatives of an equation at a load factor, but for those of its own spring."""
-    return columns if load_factor is None else load_factor * columns
+    if load_factor is None:
+        return columns
+    return load_factor * columns
 
 
 def spring(size: int, compliance: Compliance, load_factor: LoadFactor) -> Matrix | None:

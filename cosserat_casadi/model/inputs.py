@@ -1,6 +1,6 @@
 """What stays free at run time: the model's inputs as records, their order and their values in the scene.
 
-Names, units, bounds and shapes of an input are said once, by the record of the scene that it belongs to
+Names, units, bounds and shapes of an input are declared once, by the record of the scene that it belongs to
 (``InputField``). Whoever needs them asks the :class:`Input`; no name is taken apart.
 """
 
@@ -32,7 +32,7 @@ class Input:
     Attributes:
         owner: name of the rod, the load or the actuator that it belongs to.
         field: its name in the table of the owner.
-        declared: what the record of the owner says of it: unit, components, bounds.
+        declared: what the record of the owner declares: unit, components, bounds.
         default: the scene's value, shape (components, k): column k holds the k-th Legendre coefficient.
         axes: "none" of a number, else "world" or "section".
         of_rod: whether the owner is a rod.
@@ -47,7 +47,7 @@ class Input:
 
     @property
     def name(self) -> str:
-        """``owner.field``, as the scene and the command line say it."""
+        """``owner.field``, as the scene and the command line spell it."""
         return f"{self.owner}.{self.field}"
 
     @property
@@ -63,14 +63,19 @@ class Input:
     @property
     def shape(self) -> tuple[int, int]:
         """Components and Legendre coefficients."""
-        return (self.default.shape[0], self.default.shape[1])
+        components, degrees = self.default.shape
+        return components, degrees
 
     @property
     def lower(self) -> float:
-        """Least value of each entry by what it is; -inf where there is none."""
+        """Least value that each entry may have; -inf where there is none."""
         if self.declared.positive:
-            return SHORTEST * float(self.default.min())
-        return -np.inf if self.declared.lower is None else self.declared.lower
+            # A rod cannot have length zero: a small share of the scene's value is the end of the range.
+            least_default = float(self.default.min())
+            return SHORTEST * least_default
+        if self.declared.lower is None:
+            return -np.inf
+        return self.declared.lower
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
         """What is wrong with a value."""
@@ -111,26 +116,33 @@ class InputLayout:
 
     @cached_property
     def slices(self) -> dict[str, slice]:
-        """Where each input stands in the stacked vector, column after column."""
-        ends = np.cumsum([0, *[entry.size for entry in self.entries]])
-        return {n: slice(int(a), int(b)) for n, a, b in zip(self.names, ends, ends[1:], strict=False)}
+        """Slice of each input in the stacked vector, column after column."""
+        slices = {}
+        start = 0
+        for entry in self.entries:
+            stop = start + entry.size
+            slices[entry.name] = slice(start, stop)
+            start = stop
+        return slices
 
     def __iter__(self) -> Iterator[tuple[Input, slice]]:
-        """The inputs with where they stand in the stacked vector."""
+        """The inputs with their slices of the stacked vector."""
         return zip(self.entries, self.slices.values(), strict=True)
 
     def of_load(self, name: str, field: str) -> slice | None:
-        """Where a field of a load or an actuator stands in the stacked vector; None where the scene fixes it."""
+        """Slice of a field of a load or an actuator in the stacked vector; None where the scene fixes it."""
         return self._slice_of(name, field, of_rod=False)
 
     def of_rod(self, name: str, field: str) -> slice | None:
-        """Where a field of a rod stands in the stacked vector; None where the scene fixes it."""
+        """Slice of a field of a rod in the stacked vector; None where the scene fixes it."""
         return self._slice_of(name, field, of_rod=True)
 
     def _slice_of(self, owner: str, field: str, *, of_rod: bool) -> slice | None:
-        for entry, indices in self:
-            if (entry.owner, entry.field, entry.of_rod) == (owner, field, of_rod):
-                return indices
+        for entry, span in self:
+            # A rod and a load may share a name, so that the name of the owner alone does not identify an input.
+            same_owner = entry.owner == owner and entry.of_rod == of_rod
+            if same_owner and entry.field == field:
+                return span
         return None
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
@@ -146,69 +158,95 @@ class InputLayout:
             SceneError: a name is unknown, or a value has another shape or is not finite.
         """
         given = dict(values or {})
-        known = ", ".join(self.names) or "none"
-        unknown = [name for name in given if name not in self.names]
-        problems = [Problem(name, "is not an input of this model", f"its inputs are {known}") for name in unknown]
+        problems = list(self._unknown_names(given))
+        # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
         parts = [np.zeros(0)]
         for entry in self.entries:
             value = np.asarray(given.get(entry.name, entry.default), dtype=float)
             problems.extend(entry.faults(value))
+            # Legendre coefficients are stacked degree after degree: column-major order.
             parts.append(value.ravel(order="F"))
         if problems:
             raise SceneError(*problems)
         return np.concatenate(parts)
 
+    def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
+        """A problem for every name that is not an input."""
+        known = ", ".join(self.names) or "none"
+        for name in given:
+            if name not in self.names:
+                yield Problem(name, "is not an input of this model", f"its inputs are {known}")
+
     @cached_property
     def geometry(self) -> list[int]:
         """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
-        indices = np.arange(self.size)
-        return [int(i) for entry, own in self if entry.declared.geometry for i in indices[own]]
+        indices: list[int] = []
+        for entry, span in self:
+            if entry.declared.geometry:
+                indices.extend(range(span.start, span.stop))
+        return indices
 
     def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
         """Values by name from the stacked vector, each shaped as its default."""
-        return {entry.name: stacked[own].reshape(entry.shape, order="F") for entry, own in self}
+        return {entry.name: stacked[span].reshape(entry.shape, order="F") for entry, span in self}
 
 
-def magnitude(cause: Entry, field: str) -> FloatArray:
-    """A magnitude as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
-    value = getattr(cause, field, None)
+def scene_value(record: Entry, field: str) -> FloatArray:
+    """An input of a load or an actuator as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
+    value = getattr(record, field, None)
     if value is None:
-        return np.zeros((cause.inputs[field].components, 1))
+        components = record.inputs[field].components
+        return np.zeros((components, 1))
     if isinstance(value, int | float):
         return np.array([[float(value)]])
     return coefficients(value)
 
 
 def input_layout(scene: scenes.Scene) -> InputLayout:
-    """The inputs a scene asks for, by default every magnitude of loads and actuators."""
+    """The inputs a scene asks for, by default all that its loads and actuators declare."""
     return InputLayout(tuple(_input(free) for free in scene.free_inputs()))
 
 
 def _input(free: scenes.FreeInput) -> Input:
     record = free.record
-    of_rod = isinstance(record, scenes.Rod)
-    default = _rod_value(record, free.field) if isinstance(record, scenes.Rod) else magnitude(record, free.field)
+    if isinstance(record, scenes.Rod):
+        default = _rod_value(record, free.field)
+        of_rod = True
+    else:
+        default = scene_value(record, free.field)
+        of_rod = False
     return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod)
 
 
 def _rod_value(rod: scenes.Rod, field: str) -> FloatArray:
     """What may be free of a rod itself, as the scene has it: shape (1, 1), (3, 1) or (4, 1)."""
     position, quaternion = base_pose(rod)
-    values = {"length": np.array([rod.length]), "base.position": position, "base.quaternion": quaternion}
+    values = {
+        "length": np.array([rod.length]),
+        "base.position": position,
+        "base.quaternion": quaternion,
+    }
     return values[field][:, None]
 
 
 def _axes(free: scenes.FreeInput) -> str:
+    """Axes of an input: those of the record's ``frame`` where the field is declared to follow it."""
     if free.declared.components == 1:
         return "none"
-    follows = free.declared.axes == "frame" and getattr(free.record, "frame", "world") == "body"
-    return "section" if follows else "world"
+    if free.declared.axes != "frame":
+        return "world"
+    frame = getattr(free.record, "frame", "world")
+    if frame == "body":
+        return "section"
+    return "world"
 
 
 def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) -> dict[str, dict[str, FloatArray]]:
-    """Numeric magnitudes of every load and actuator for given inputs, by name and field."""
-    values = {cause.name: {field: magnitude(cause, field) for field in cause.inputs} for cause in scene.causes}
-    for entry, indices in layout:
+    """Values of every load and actuator for given inputs, by name and field: the scene's where they are fixed."""
+    values: dict[str, dict[str, FloatArray]] = {}
+    for record in scene.causes:
+        values[record.name] = {field: scene_value(record, field) for field in record.inputs}
+    for entry, span in layout:
         if not entry.of_rod:
-            values[entry.owner][entry.field] = inputs[indices].reshape(entry.shape, order="F")
+            values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")
     return values

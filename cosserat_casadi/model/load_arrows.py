@@ -42,34 +42,38 @@ class LoadArrows:
     def all(self) -> list[Arrow]:
         """Arrows of all loads, in the order of the scene."""
         values = load_values(self.discrete.scene, self.discrete.layout, self.inputs)
-        found: list[Arrow] = []
+        arrows: list[Arrow] = []
         for load in self.discrete.scene.loads:
             numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[load.name].items()}
-            found += self._on_rods(load, numbers)
-            found += self._on_bodies(load, numbers)
-        return found
+            arrows += self._on_rods(load, numbers)
+            arrows += self._on_bodies(load, numbers)
+        return arrows
 
     def _on_rods(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
-        X = DRAWN_SECTIONS if at is None else np.array([at])
-        found: list[Arrow] = []
+        X = DRAWN_SECTIONS
+        if at is not None:
+            X = np.array([at])
+        arrows: list[Arrow] = []
         for rod, discrete_rod in self.discrete.rods.items():
             if not member.acts_on(load, rod):
                 continue
             to_sections = discrete_rod.grid.interpolation_matrix(X)
             site = Site(discrete_rod.properties, X, partial(unloaded_poses, self.discrete, rod, to_sections))
-            kernel = traced(member, load, values, len(member.data(load, site)))
+            data_size = len(member.data(load, site))
+            kernel = traced(member, load, values, data_size)
             poses = self.rod_poses(rod, X)
             force, moment = _wrench(kernel, values, poses, kernel.data(site))
-            # The first rod's legend speaks for the others.
-            label = "" if found else load.name
-            found += member.arrows(load, label, poses[0], force, moment)
-        return found
+            # The legend names a load once: the arrows of its first rod carry the label.
+            label = "" if arrows else load.name
+            positions, _ = poses
+            arrows += member.arrows(load, label, positions, force, moment)
+        return arrows
 
     def _on_bodies(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
         member = EFFECTS[load.kind]
-        found: list[Arrow] = []
+        arrows: list[Arrow] = []
         for body in self.discrete.scene.bodies:
             point = member.on_body(load, body)
             if point is None:
@@ -77,11 +81,19 @@ class LoadArrows:
             position, rotation = self.body_pose(body.name)
             start = position + rotation[0] @ np.array(point.position)[:, None]
             kernel = traced(member, load, values)
-            force, moment = _wrench(kernel, values, (start, rotation), np.ones((sum(kernel.columns), 1)))
-            names_its_body = getattr(load, "body", None) is not None
-            label = load.name if names_its_body else f"{load.name} of {body.name}"
-            found += member.point_arrows(label, start, point.factor * force, point.factor * moment)
-        return found
+            # Profiles are those of a load per length: at a point they are one.
+            profiles = np.ones((sum(kernel.columns), 1))
+            force, moment = _wrench(kernel, values, (start, rotation), profiles)
+            label = _body_label(load, body)
+            arrows += member.point_arrows(label, start, point.factor * force, point.factor * moment)
+        return arrows
+
+
+def _body_label(load: scenes.Load, body: scenes.Body) -> str:
+    """Name of a load, with the body where the load acts on bodies that it does not name, as a weight does."""
+    if getattr(load, "body", None) is not None:
+        return load.name
+    return f"{load.name} of {body.name}"
 
 
 def _wrench(
@@ -89,9 +101,11 @@ def _wrench(
 ) -> tuple[FloatArray, FloatArray]:
     """Force and moment at sections, world axes, shape (3, k) each."""
     position, rotation = poses
-    forces, moments = [], []
-    for k, matrix in enumerate(rotation):
-        force, moment = kernel.kernel.world_wrench(position[:, k], matrix, stored(values), data[:, k])
+    parameters = stored(values)
+    forces = []
+    moments = []
+    for k, section_rotation in enumerate(rotation):
+        force, moment = kernel.kernel.world_wrench(position[:, k], section_rotation, parameters, data[:, k])
         forces.append(force.full()[:, 0])
         moments.append(moment.full()[:, 0])
     return np.array(forces).T, np.array(moments).T

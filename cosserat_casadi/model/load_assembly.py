@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import casadi as ca
 import numpy as np
@@ -15,7 +16,7 @@ from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.homotopy import LoadFactor
-from cosserat_casadi.model.inputs import InputLayout, load_values, magnitude
+from cosserat_casadi.model.inputs import InputLayout, load_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.kinematics import shape
@@ -37,7 +38,9 @@ class RodBase:
 
     def in_base_axes(self, vector: Matrix | None, *, follower: bool) -> Matrix | None:
         """Coordinates that the mechanics want: of the base for a dead vector, of the section for a follower."""
-        return vector if vector is None or follower else self.base_R_world @ vector
+        if vector is None or follower:
+            return vector
+        return self.base_R_world @ vector
 
 
 @dataclass(frozen=True)
@@ -60,32 +63,40 @@ class RodLoads:
 
     def all(self) -> list[RodLoad]:
         """What all loads do to the rod, in the axes of its base."""
-        found: list[RodLoad] = []
+        rod_loads: list[RodLoad] = []
         for load in self.discrete.scene.loads:
             if EFFECTS[load.kind].acts_on(load, self.rod):
-                found += self._of(load)
-        return found
+                rod_loads += self._of(load)
+        return rod_loads
 
     def _of(self, load: scenes.Load) -> list[RodLoad]:
+        """What one load does to the rod."""
         member = EFFECTS[load.kind]
         values = input_values(self.discrete.layout, load, self.inputs)
         site = _site(self.discrete, self.rod, load)
-        kernel = traced(member, load, values, len(member.data(load, site)))
+        data_size = len(member.data(load, site))
+        kernel = traced(member, load, values, data_size)
         if not kernel.pose_free:
             return [self._pose_wrench(kernel, site)]
-        force, moment = (self.base.in_base_axes(v, follower=kernel.follower) for v in kernel.coefficients(values))
+        # Free of the pose, the load is constant coefficients times profiles: it costs a rotation, not a kernel a node.
+        given_force, given_moment = kernel.coefficients(values)
+        force = self.base.in_base_axes(given_force, follower=kernel.follower)
+        moment = self.base.in_base_axes(given_moment, follower=kernel.follower)
         at = member.abscissa(load)
         if at is not None:
             return [PointWrench(at, force, moment, kernel.follower)]
         # Profiles of force and of moment may differ: a line wrench for each.
-        lines = [self._line_wrench(kernel, site, force, None), self._line_wrench(kernel, site, None, moment)]
-        return [line for line in lines if line is not None]
+        force_line = self._line_wrench(kernel, site, force, None)
+        moment_line = self._line_wrench(kernel, site, None, moment)
+        return [line for line in (force_line, moment_line) if line is not None]
 
     def _line_wrench(
         self, kernel: TracedLoad, site: Site, force: Matrix | None, moment: Matrix | None
     ) -> LineWrench | None:
         """Coefficients of a force or of a moment per length, times their profiles; None where there is nothing."""
-        coefficients = moment if force is None else force
+        coefficients = force
+        if coefficients is None:
+            coefficients = moment
         if coefficients is None:
             return None
         profiles = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
@@ -97,25 +108,36 @@ class RodLoads:
         return LineWrench(scaled, None, profiles, kernel.follower)
 
     def _pose_wrench(self, kernel: TracedLoad, site: Site) -> PoseWrench:
+        """A load that depends on the pose of its sections: its kernel, evaluated at each of them."""
         at = kernel.member.abscissa(kernel.load)
+        values = input_values(self.discrete.layout, kernel.load, self.inputs)
+        # A load per length of a rod whose length is free acts on that length; a load at a point does not.
+        scale: Matrix | float = 1.0
+        if at is None and self.ratio is not None:
+            scale = self.ratio
         return PoseWrench(
             at=at,
             kernel=kernel.kernel,
             base_position=self.base.position,
             base_rotation=self.base.base_R_world.T,
-            parameters=stored(input_values(self.discrete.layout, kernel.load, self.inputs)),
+            parameters=stored(values),
             data=kernel.data(site),
-            scale=1.0 if at is not None or self.ratio is None else self.ratio,
+            scale=scale,
         )
 
 
 def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
     """Sections of a rod that a load acts on: one, or those of all nodes."""
-    discrete_rod, at = discrete.rods[rod], EFFECTS[load.kind].abscissa(load)
+    discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
-    nodes = np.arange(grid.size) if at is None else np.array([grid.node_at(at)])
+    at = EFFECTS[load.kind].abscissa(load)
+    nodes = np.arange(grid.size)
+    if at is not None:
+        nodes = np.array([grid.node_at(at)])
     at_nodes = np.eye(grid.size)[nodes]
-    return Site(discrete_rod.properties, grid.nodes[nodes], lambda: unloaded_poses(discrete, rod, at_nodes))
+    # A function: few loads ask for the unloaded poses, which take a walk along all carriers.
+    poses = partial(unloaded_poses, discrete, rod, at_nodes)
+    return Site(discrete_rod.properties, grid.nodes[nodes], poses)
 
 
 def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> Poses:
@@ -126,48 +148,70 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
         rod: name of the rod.
         interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
     """
-    discrete_rod, base = discrete.rods[rod], discrete.unloaded.base(rod)
+    discrete_rod = discrete.rods[rod]
+    base = discrete.unloaded.base(rod)
     unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
-    position, *directors = (ca.evalf(ca.densify(field)).full() for field in (unloaded.position, *unloaded.directors))
+    nodal_position = _numbers(unloaded.position)
+    directors = [_numbers(director) @ interpolation.T for director in unloaded.directors]
     # Column a of the rotation matrix is director a.
-    rotations = np.stack([director @ interpolation.T for director in directors], axis=-1).transpose(1, 0, 2)
-    return base.position[:, None] + base.rotation @ position @ interpolation.T, base.rotation @ rotations
+    rotations = np.stack(directors, axis=-1).transpose(1, 0, 2)
+    position = base.position[:, None] + base.rotation @ nodal_position @ interpolation.T
+    return position, base.rotation @ rotations
+
+
+def _numbers(field: Matrix) -> FloatArray:
+    """Values of a constant expression."""
+    values: FloatArray = ca.evalf(ca.densify(field)).full()
+    return values
 
 
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs of loads that depend on poses: the equations need not be linear in them."""
     layout = discrete.layout
-    found: list[int] = []
+    indices: list[int] = []
     for load in discrete.scene.loads:
-        free = [own for entry, own in layout if entry.owner == load.name and not entry.of_rod]
-        values = {field: ca.DM.ones(*magnitude(load, field).shape) for field in load.inputs}
-        if free and not all(kernel.pose_free for kernel in _kernels(discrete, load, values)):
-            for own in free:
-                found += range(layout.size)[own]
-    return found
+        free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
+        if not free:
+            continue
+        # Ones, since an input that is zero in the scene may be given another value.
+        values = {field: ca.DM.ones(*scene_value(load, field).shape) for field in load.inputs}
+        if all(kernel.pose_free for kernel in _kernels(discrete, load, values)):
+            continue
+        for span in free:
+            indices.extend(range(span.start, span.stop))
+    return indices
 
 
 def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Matrix]) -> list[TracedLoad]:
     """The kernel of a load for each rod and body that it acts on."""
     member = EFFECTS[load.kind]
-    sizes = [len(member.data(load, _site(discrete, rod, load))) for rod in discrete.rods if member.acts_on(load, rod)]
-    sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
-    return [traced(member, load, values, size) for size in sizes]
+    data_sizes = []
+    for rod in discrete.rods:
+        if member.acts_on(load, rod):
+            site = _site(discrete, rod, load)
+            data_sizes.append(len(member.data(load, site)))
+    # A body has no data that differ from section to section.
+    data_sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
+    return [traced(member, load, values, size) for size in data_sizes]
 
 
-def input_values(layout: InputLayout, cause: scenes.Load | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
+def input_values(layout: InputLayout, record: scenes.Load | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
     """Inputs of a load or an actuator; zero for good is a matrix that stores nothing."""
     values = {}
-    for field in cause.inputs:
-        value = input_value(layout, cause, field, inputs)
-        values[field] = ca.DM(*magnitude(cause, field).shape) if value is None else value
+    for field in record.inputs:
+        value = input_value(layout, record, field, inputs)
+        if value is None:
+            value = ca.DM(*scene_value(record, field).shape)
+        values[field] = value
     return values
 
 
-def input_value(layout: InputLayout, cause: scenes.Load | scenes.Actuator, field: str, inputs: Matrix) -> Matrix | None:
+def input_value(
+    layout: InputLayout, record: scenes.Load | scenes.Actuator, field: str, inputs: Matrix
+) -> Matrix | None:
     """One input of a load or an actuator; None where it is zero for good."""
-    entries = layout.of_load(cause.name, field)
-    default = magnitude(cause, field)
+    entries = layout.of_load(record.name, field)
+    default = scene_value(record, field)
     if entries is None:
         return constant(default)
     return ca.reshape(inputs[entries], *default.shape)
@@ -203,7 +247,9 @@ class BodyLoad:
         """The load at a load factor."""
         if load_factor is None:
             return self
-        stiffness = None if self.stiffness is None else load_factor * self.stiffness
+        stiffness = self.stiffness
+        if stiffness is not None:
+            stiffness = load_factor * stiffness
         force = load_factor * self.force
         moment = load_factor * self.moment
         return replace(self, force=force, moment=moment, stiffness=stiffness)
@@ -211,13 +257,17 @@ class BodyLoad:
     @property
     def wrench(self) -> Matrix:
         """Wrench [moment about the origin; force] on the body, 6×1."""
-        return ca.vertcat(ca.cross(self.arm, self.force) + self.moment, self.force)
+        moment = ca.cross(self.arm, self.force) + self.moment
+        return ca.vertcat(moment, self.force)
 
     @property
     def variation(self) -> Matrix:
         """Derivative of the wrench with the motion [δθ; δr] of the body, world axes, 6×6."""
+        # A shift δr moves the origin, which the moment is about, and the point alike.
         if self.follower:
-            by_turn = ca.vertcat(-hat(ca.cross(self.arm, self.force) + self.moment), -hat(self.force))
+            # All of the wrench turns with the body: δθ × M = −M^ δθ.
+            moment = ca.cross(self.arm, self.force) + self.moment
+            by_turn = ca.vertcat(-hat(moment), -hat(self.force))
             return ca.horzcat(by_turn, ca.DM(6, 3))
         # The arm turns: (δθ × arm) × f = f^ arm^ δθ.
         by_turn = ca.vertcat(hat(self.force) @ hat(self.arm), ca.DM(3, 3))
@@ -232,7 +282,8 @@ class BodyLoad:
         """Change of the wrench [moment about the origin; force] for three motions [δr; δθ] of the point, 6×3."""
         assert self.stiffness is not None
         force, moment = ca.vertsplit(self.stiffness @ motion, 3)
-        return ca.vertcat(hat(self.arm) @ force + moment, force)
+        moment_about_origin = hat(self.arm) @ force + moment
+        return ca.vertcat(moment_about_origin, force)
 
 
 @dataclass(frozen=True)
@@ -255,14 +306,18 @@ class BodyLoads:
 
     def all(self) -> list[BodyLoad]:
         """What all loads do to the body."""
-        found = []
+        body_loads = []
         for load in self.discrete.scene.loads:
             point = EFFECTS[load.kind].on_body(load, self.body)
-            if point is not None:
-                found.append(self._of(load, point))
-        return [load for load in found if load is not None]
+            if point is None:
+                continue
+            body_load = self._of(load, point)
+            if body_load is not None:
+                body_loads.append(body_load)
+        return body_loads
 
     def _of(self, load: scenes.Load, point: BodyPoint) -> BodyLoad | None:
+        """What one load does at a point of the body; None where it is zero for good."""
         values = input_values(self.discrete.layout, load, self.inputs)
         kernel = traced(EFFECTS[load.kind], load, values)
         if not kernel.pose_free:
@@ -270,23 +325,39 @@ class BodyLoads:
         given_force, given_moment = kernel.coefficients(values)
         if given_force is None and given_moment is None:
             return None
-        force = ca.DM.zeros(3, 1) if given_force is None else point.factor * given_force
-        moment = ca.DM.zeros(3, 1) if given_moment is None else point.factor * given_moment
+        force: Matrix = ca.DM.zeros(3, 1)
+        moment: Matrix = ca.DM.zeros(3, 1)
+        if given_force is not None:
+            force = point.factor * given_force
+        if given_moment is not None:
+            moment = point.factor * given_moment
         if kernel.follower:
-            force, moment = self.rotation @ force, self.rotation @ moment
+            force = self.rotation @ force
+            moment = self.rotation @ moment
         aligns = given_force is not None and not kernel.follower
         return BodyLoad(point.position, self._arm(point), force, moment, kernel.follower, aligns)
 
     def _pose_dependent(self, kernel: TracedLoad, point: BodyPoint) -> BodyLoad:
+        """A load that depends on the pose of the point: its kernel, evaluated there."""
+        section_kernel = kernel.kernel
         arm = self._arm(point)
         parameters = stored(input_values(self.discrete.layout, kernel.load, self.inputs))
+        # Profiles are those of a load per length: at a point they are one.
         profiles = ca.DM.ones(sum(kernel.columns), 1)
         # A body is seen from the world: its base is the origin.
         base = [ca.DM.zeros(3, 1), ca.DM.eye(3)]
-        given = [self.position + arm, self.rotation, *base, parameters, profiles]
-        force, moment = (point.factor * part for part in kernel.kernel.wrench.call(given))
-        stiffness = point.factor * kernel.kernel.stiffness.call(given)[0]
-        return BodyLoad(point.position, arm, force, moment, follower=False, aligns=True, stiffness=stiffness)
+        arguments = [self.position + arm, self.rotation, *base, parameters, profiles]
+        force, moment = section_kernel.wrench.call(arguments)
+        (stiffness,) = section_kernel.stiffness.call(arguments)
+        return BodyLoad(
+            position=point.position,
+            arm=arm,
+            force=point.factor * force,
+            moment=point.factor * moment,
+            follower=False,
+            aligns=True,
+            stiffness=point.factor * stiffness,
+        )
 
     def _arm(self, point: BodyPoint) -> Matrix:
         return self.rotation @ ca.DM(point.position)
@@ -299,19 +370,28 @@ def loads_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
     """Whether all loads of a scene have a potential at these inputs."""
     values = load_values(discrete.scene, discrete.layout, inputs)
     for load in discrete.scene.loads:
-        member = EFFECTS[load.kind]
-        on_bodies = any(member.on_body(load, body) is not None for body in discrete.scene.bodies)
-        if on_bodies and not has_potential(
-            member, load, values[load.name], 0, one_axis=discrete.unloaded.all_in_parallel_planes
-        ):
+        numbers = values[load.name]
+        if not _has_potential_on_bodies(discrete, load, numbers):
             return False
-        for rod in discrete.rods:
-            if member.acts_on(load, rod) and not _has_potential_on(discrete, rod, load, values[load.name]):
-                return False
+        if not all(_has_potential_on_rod(discrete, rod, load, numbers) for rod in discrete.rods):
+            return False
     return True
 
 
-def _has_potential_on(discrete: DiscreteScene, rod: str, load: scenes.Load, values: Mapping[str, FloatArray]) -> bool:
+def _has_potential_on_bodies(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, FloatArray]) -> bool:
+    """Whether a load has a potential on the bodies that it acts on; it has on none."""
+    member = EFFECTS[load.kind]
+    if all(member.on_body(load, body) is None for body in discrete.scene.bodies):
+        return True
+    return has_potential(member, load, values, 0, one_axis=discrete.unloaded.all_in_parallel_planes)
+
+
+def _has_potential_on_rod(
+    discrete: DiscreteScene, rod: str, load: scenes.Load, values: Mapping[str, FloatArray]
+) -> bool:
+    """Whether a load has a potential on a rod, be it that it does not act there."""
+    if not EFFECTS[load.kind].acts_on(load, rod):
+        return True
     member = EFFECTS[load.kind]
     data_size = len(member.data(load, _site(discrete, rod, load)))
     return has_potential(member, load, values, data_size, one_axis=_turns_about_one_axis(discrete, rod))
@@ -329,13 +409,14 @@ def _turns_about_one_axis(discrete: DiscreteScene, rod: str) -> bool:
 
 def rod_actuation(discrete: DiscreteScene, rod: str, inputs: Matrix) -> list[Actuation]:
     """Efforts on one rod that the scene or its inputs give."""
-    found = []
+    actuation = []
     for actuator in discrete.scene.actuators:
         member = EFFECTS[actuator.kind]
+        # The effort of an actuator of given length is an unknown, not an input.
         if not member.acts_on(actuator, rod) or member.prescribes_conjugate(actuator):
             continue
         effort = input_value(discrete.layout, actuator, member.effort, inputs)
         if effort is not None:
             quantity = member.quantity(actuator, discrete.rods[rod].grid)
-            found.append(Actuation(quantity, member.energy_sign * effort))
-    return found
+            actuation.append(Actuation(quantity, member.energy_sign * effort))
+    return actuation

@@ -1,4 +1,4 @@
-"""Joints that hold too much or too little, told before anything is solved.
+"""Joints that hold too much or too little, refused before anything is solved.
 
 Those that over-constrain show in the rank of the linearised gaps.
 
@@ -19,6 +19,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.spins import free_spins
 from cosserat_casadi.model.system import Arguments, System
@@ -72,7 +73,7 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
 def _gap_rows(system: System) -> FloatArray:
     """Linearised gaps of supports and ties against strains and moving frames."""
     unknowns = system.discrete.unknowns
-    jacobian = ca.evalf(system.jacobian).full()
+    jacobian = ca.evalf(Equations(system).jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
     last = first + unknowns.count(BlockKind.MULTIPLIER)
     return np.asarray(np.delete(jacobian[first:last], slice(first, last), axis=1))

@@ -1,4 +1,4 @@
-"""The unknowns x of a scene as records: what each run of entries is, whose it is, and where it stands.
+"""The unknowns x of a scene as records: what each block of entries is, which owner it has, and its slice of x.
 
 The order of x is settled here and nowhere else. Whoever needs a part of x asks for its block.
 """
@@ -24,7 +24,7 @@ class BlockKind(Enum):
     MULTIPLIER = "multiplier"
     """Forces and moments of a support, a joint or the base of a carried rod."""
     POSE = "pose"
-    """Deviation of a floating frame from where the unloaded scene has it."""
+    """Deviation of a floating frame from its pose in the unloaded scene."""
     TENSION = "tension"
     """Tension of a cable of given length."""
 
@@ -52,6 +52,7 @@ class Block:
     @property
     def differential(self) -> bool:
         """Whether the unknowns are coordinates that move; multipliers and tensions are algebraic."""
+        # Multipliers and tensions follow from the coordinates at every instant and have no rate of their own.
         return self.kind in (BlockKind.STRAIN, BlockKind.POSE)
 
 
@@ -72,22 +73,23 @@ class Unknowns:
 
     @cached_property
     def slices(self) -> dict[tuple[BlockKind, str], slice]:
-        """Where each block stands in x, by kind and owner."""
+        """Slice of each block in x, by kind and owner."""
         slices = {}
         start = 0
         for block in self.blocks:
-            slices[block.kind, block.owner] = slice(start, start + block.size)
-            start += block.size
+            stop = start + block.size
+            slices[block.kind, block.owner] = slice(start, stop)
+            start = stop
         return slices
 
     def of_kind(self, *kinds: BlockKind) -> Iterator[tuple[Block, slice]]:
-        """The blocks of some kinds with where they stand in x."""
+        """The blocks of some kinds with their slices of x."""
         for block, entries in zip(self.blocks, self.slices.values(), strict=True):
             if block.kind in kinds:
                 yield block, entries
 
     def slice_of(self, kind: BlockKind, owner: str) -> slice:
-        """Where a block stands in x.
+        """Slice of a block in x.
 
         Raises:
             KeyError: there is no such block.
@@ -95,7 +97,7 @@ class Unknowns:
         return self.slices[kind, owner]
 
     def strain(self, rod: str) -> slice:
-        """Where the strain coordinates of a rod stand in x."""
+        """Slice of the strain coordinates of a rod in x."""
         return self.slice_of(BlockKind.STRAIN, rod)
 
     def count(self, *kinds: BlockKind) -> int:
@@ -105,17 +107,22 @@ class Unknowns:
     @cached_property
     def step_weights(self) -> FloatArray:
         """How much each unknown counts in the length of a continuation step, shape (size,)."""
-        return self._each([block.step_weight for block in self.blocks])
+        weights = [block.step_weight for block in self.blocks]
+        return self._repeated(weights)
 
     @cached_property
     def units(self) -> FloatArray:
         """Energy that each equation is divided by, shape (size,), J."""
-        return self._each([block.unit for block in self.blocks])
+        units = [block.unit for block in self.blocks]
+        return self._repeated(units)
 
     @cached_property
     def differential(self) -> npt.NDArray[np.bool_]:
         """Whether each unknown is a coordinate that moves, shape (size,)."""
-        return self._each([block.differential for block in self.blocks]) > 0.0
+        flags = [block.differential for block in self.blocks]
+        return self._repeated(flags) > 0.0
 
-    def _each(self, values: Sequence[float]) -> FloatArray:
-        return np.repeat(np.asarray(values, dtype=float), [block.size for block in self.blocks])
+    def _repeated(self, values: Sequence[float]) -> FloatArray:
+        """One value for each block, repeated for each of its unknowns, shape (size,)."""
+        sizes = [block.size for block in self.blocks]
+        return np.repeat(np.asarray(values, dtype=float), sizes)
