@@ -34,29 +34,29 @@ static double now_us(void) {
   clock_gettime(CLOCK_MONOTONIC, &t);
   return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
 }
-static double d_q[PLATFORM_UNKNOWNS * PLATFORM_INPUTS];
+static double d_x[PLATFORM_UNKNOWNS * PLATFORM_INPUTS];
 static double d_poses[PLATFORM_POSES * 7 * PLATFORM_INPUTS];
 static platform_workspace workspace;
 static platform_memory memory;
 int main(void) {
-  double inputs[PLATFORM_INPUTS] = {@}, q[PLATFORM_UNKNOWNS] = {0}, best = 1e30, both = 1e30, turn = 1e30;
-  double near[PLATFORM_INPUTS], start_q[PLATFORM_UNKNOWNS];
+  double inputs[PLATFORM_INPUTS] = {@}, x[PLATFORM_UNKNOWNS] = {0}, best = 1e30, both = 1e30, turn = 1e30;
+  double near[PLATFORM_INPUTS], start_x[PLATFORM_UNKNOWNS];
   platform_info info;
-  int i, k, status = platform_solve(inputs, q, &workspace, &info);
+  int i, k, status = platform_solve(inputs, x, &workspace, &info);
   for (k = 0; k < REPEAT; k++) {
     const double start = now_us();
     double took;
-    status += platform_solve_sensitivity(inputs, q, d_q, d_poses, &workspace);
+    status += platform_solve_sensitivity(inputs, x, d_x, d_poses, &workspace);
     took = now_us() - start;
     if (took < best) best = took;
   }
   for (k = 0; k < REPEAT; k++) {
     double start, took;
     for (i = 0; i < PLATFORM_INPUTS; i++) near[i] = inputs[i] * (k % 2 ? 0.99 : 1.01);
-    memcpy(start_q, q, sizeof q);
+    memcpy(start_x, x, sizeof x);
     start = now_us();
-    status += platform_solve(near, start_q, &workspace, 0);
-    status += platform_solve_sensitivity(near, start_q, d_q, d_poses, &workspace);
+    status += platform_solve(near, start_x, &workspace, 0);
+    status += platform_solve_sensitivity(near, start_x, d_x, d_poses, &workspace);
     took = now_us() - start;
     if (took < both) both = took;
   }
@@ -64,7 +64,7 @@ int main(void) {
     double start, took;
     for (i = 0; i < PLATFORM_INPUTS; i++) near[i] = inputs[i] * (k % 2 ? 0.99 : 1);
     start = now_us();
-    status += platform_track(near, q, &memory, 0, d_q, d_poses, &workspace, 0);
+    status += platform_track(near, x, &memory, 0, d_x, d_poses, &workspace, 0);
     took = now_us() - start;
     if (took < turn) turn = took;
   }

@@ -50,8 +50,8 @@ enum {
   MAX_ITERATIONS = 60,     /* of one Newton */
   MAX_HALVINGS = 12,
   MAX_STEPS = 400,         /* of one continuation */
-  FEW_JACOBIANS = 2,       /* up to which the next step grows */
-  MAX_STEP_JACOBIANS = 4   /* beyond which a step is refused */
+  GROW_BELOW = 2,          /* Jacobians of a correction up to which the next step grows */
+  REJECT_ABOVE = 4         /* Jacobians of a correction beyond which its step is refused */
 };
 static const nitinol_wire_real SUFFICIENT_DECREASE = (nitinol_wire_real)0.0001;
 static const nitinol_wire_real REUSE_DECREASE = (nitinol_wire_real)0.5;

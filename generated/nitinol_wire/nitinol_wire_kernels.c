@@ -7859,7 +7859,7 @@ CASADI_SYMBOL_EXPORT int nitinol_wire_k_tangent(const casadi_real** arg, casadi_
   return casadi_f7(arg, res, iw, w, mem);
 }
 
-/* nitinol_wire_k_resolution_index:(x[7],inputs[6])->(coarseness) */
+/* nitinol_wire_k_resolution_index:(x[7],inputs[6])->(resolution_index) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;

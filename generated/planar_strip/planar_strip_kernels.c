@@ -2077,7 +2077,7 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_tangent(const casadi_real** arg, casadi_
   return casadi_f7(arg, res, iw, w, mem);
 }
 
-/* planar_strip_k_resolution_index:(x[4],inputs[6])->(coarseness) */
+/* planar_strip_k_resolution_index:(x[4],inputs[6])->(resolution_index) */
 static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10;
   a00=0.;

@@ -267,7 +267,7 @@ static newton_result correct_next(const load_path *path, const progress *now, in
   path_point *next = now->next;
   const newton_limits limits = {
       .max_iterations = max_iterations < MAX_ITERATIONS ? max_iterations : MAX_ITERATIONS,
-      .max_jacobians = MAX_STEP_JACOBIANS,
+      .max_jacobians = REJECT_ABOVE,
       .max_halvings = 0,
       .inexact = next->t == 1 ? 0 : INEXACT,
       .reuse_jacobian = 0,
@@ -326,7 +326,7 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
       continue;
     }
     if (now.next->t < 1) {
-      if (result.jacobians <= FEW_JACOBIANS) step *= 2;
+      if (result.jacobians <= GROW_BELOW) step *= 2;
       info->jacobians += tangent_at(path, now.next, result.jacobians > 0, now.spare, work);
     }
     accept_next(&now);
