@@ -10,6 +10,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+import casadi as ca
+import numpy as np
+
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints
@@ -21,7 +24,11 @@ from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.strain import DiscreteRod
+
+NO_SOFTNESS = 1e-9
+"""Softness below which a rod does not yield to a cable, but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -31,20 +38,33 @@ class CableOfLength:
     Attributes:
         tendon: as the scene has it.
         routing: its line through the sections.
-        compliance: how its equation yields on the way to the scene.
+        softness: length, relative to the rod's, that a unit of tension takes from the cable in the unloaded rod.
     """
 
     tendon: scenes.Actuator
     routing: Routing
+    softness: float
 
     @property
     def compliance(self) -> Compliance:
-        """The spring between its length and the wanted one."""
+        """The spring between its length and the wanted one, as soft as the rod: tensions grow all along the way."""
         member = EFFECTS[self.tendon.kind]
         # The row of a cable that may go slack grows with its tension; that of another cable, −s, falls with it.
         if member.may_go_slack(self.tendon):
-            return Compliance(power=1, sign=1.0)
-        return Compliance(power=1, sign=-1.0)
+            return Compliance(power=1, scale=self.softness)
+        return Compliance(power=1, scale=-self.softness)
+
+
+def _softness(rod: DiscreteRod, routing: Routing) -> float:
+    """Length, relative to the rod's, that a unit of tension takes from a cable: gᵀ K⁻¹ g with g = ∂L/∂q / ℓ at q = 0.
+
+    One where the unloaded rod does not yield at all, as to a cable along the axis of a rod that does not stretch.
+    """
+    unloaded = shape(rod, ca.MX.zeros(rod.size))
+    gradient = ca.evalf(ca.MX(routing.on(unloaded).gradient)).full()[:, 0]
+    pull = gradient / rod.properties.length
+    softness = float(pull @ np.linalg.solve(rod.stiffness, pull))
+    return softness if softness > NO_SOFTNESS else 1.0
 
 
 @dataclass(frozen=True)
@@ -83,9 +103,9 @@ class DiscreteScene:
         for actuator in self.scene.actuators:
             member = EFFECTS[actuator.kind]
             if member.prescribes_conjugate(actuator):
-                grid = self.rods[actuator.rod].grid
-                routing = member.quantity(actuator, grid)
-                cables.append(CableOfLength(actuator, routing))
+                rod = self.rods[actuator.rod]
+                routing = member.quantity(actuator, rod.grid)
+                cables.append(CableOfLength(actuator, routing, _softness(rod, routing)))
         return cables
 
     def constraint(self, where: str) -> SectionConstraint:

@@ -26,15 +26,22 @@ class Compliance:
 
     Attributes:
         power: p of (1 − λ)^p; 3 for what holds rods that do not fit, which is far stiffer than they are.
-        sign: s, so that the spring pulls towards its target.
+        scale: s, without unit; below zero where the equation falls with its unknown.
     """
 
     power: int
-    sign: float = 1.0
+    scale: float = 1.0
 
     def at(self, load_factor: Matrix) -> Matrix:
         """Compliance (1 − λ)^p s, 1×1."""
-        return self.sign * (1 - load_factor) ** self.power
+        return self.scale * (1 - load_factor) ** self.power
+
+
+def smoothing_at(first: float, last: float, load_factor: LoadFactor) -> Matrix:
+    """Smoothing of a corner: falls from what the unloaded scene has to that of the scene."""
+    if load_factor is None:
+        return ca.DM(last)
+    return last + (1 - load_factor) * first
 
 
 def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:

@@ -12,7 +12,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.cable_length import CableLength
+from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength
 from cosserat_casadi.constraints.section_constraint import Poses
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
@@ -21,7 +21,7 @@ from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_pose import FramePose
-from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort
+from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
@@ -32,6 +32,9 @@ from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Tangent
 from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
+
+CORNER = 0.01
+"""Smoothing, relative to the rod's length, of the corner between slack and taut in the unloaded scene."""
 
 ROUNDING = 1e-16
 """Entry of a rotation matrix below which it is rounding."""
@@ -209,6 +212,8 @@ class System:
             wanted=wanted,
             tension=self.arguments.x[self.discrete.tension(cable)],
             slack=EFFECTS[tendon.kind].may_go_slack(tendon),
+            softness=cable.softness,
+            smoothing=smoothing_at(CORNER, SMOOTHING, self.arguments.load_factor),
         )
 
     def _among_unknowns(self, rod: str, columns: Matrix) -> Matrix:

@@ -66,7 +66,8 @@ int main(int count, char **words) {
     most_iterations = (int)largest(most_iterations, info.iterations);
     warm_failures += @{name}_solve(inputs, warm, &workspace, 0) != @{MACRO}_CONVERGED;
     if (end == @{MACRO}_CONVERGED) {
-      for (int i = 0; i < N; i++) apart = largest(apart, fabs(x[i] - warm[i]));
+      /* Relative where large: tensions are hundreds of units where strains are one. */
+      for (int i = 0; i < N; i++) apart = largest(apart, fabs(x[i] - warm[i]) / (1 + fabs(warm[i])));
     }
   }
   printf("{\"failures\": %d, \"lost\": %d, \"moved_when_lost\": %d, \"warm_failures\": %d, \"cold_starts\": %d, ",
