@@ -43,5 +43,5 @@ def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
     """The scene without one of its loads or actuators, and without the inputs that were its."""
     loads = tuple(load for load in scene.loads if load.name != name)
     actuators = tuple(actuator for actuator in scene.actuators if actuator.name != name)
-    inputs = tuple(entry for entry in scene.input_names() if not entry.startswith(f"{name}."))
+    inputs = tuple(entry.name for entry in scene.free_inputs() if entry.owner != name)
     return scene.model_copy(update={"loads": loads, "actuators": actuators, "inputs": inputs})

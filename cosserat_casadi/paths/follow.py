@@ -123,7 +123,7 @@ class EquilibriumPath:
         if tip_is_free:
             return 1.0
         # The tip of a held rod does not move, so that its way tells nothing.
-        load_name = self.name.split(".")[0]
+        load_name = next(entry.owner for entry, _ in self.model.inputs if entry.name == self.name)
         load = next(load for load in scene.causes if load.name == load_name)
         if getattr(load, "rod", name) != name:
             return 0.5

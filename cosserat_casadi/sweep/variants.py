@@ -101,22 +101,24 @@ def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
     # Targets and bounds may name inputs that are none in a sweep.
     tables.pop("targets", None)
     tables.pop("bounds", None)
-    names = dict.fromkeys(_input_of_column(column) for column in columns)
-    inputs = [name for name in names if _may_be_input(tables, name)]
+    possible = _possible_inputs(scene)
+    names = dict.fromkeys(_input_of_column(column, possible) for column in columns)
+    inputs = [name for name in names if name is not None and _may_be_input(tables, name)]
     return scene_from_dict({**tables, "inputs": inputs})
 
 
-def _input_of_column(column: str) -> str:
-    """The input that a column would be an entry of, by the rule that columns are written with.
+def _possible_inputs(scene: Scene) -> list[str]:
+    """Names of all that the records of a scene say may stay free."""
+    return [f"{record.name}.{field}" for record in (*scene.causes, *scene.rods) for field in record.inputs]
 
-    An input is ``owner.field``, of the base of a rod ``rod.base.field``; a column adds an axis and a degree to it:
-    ``push.force.x.1`` is of ``push.force``, ``leg.base.position.x`` of ``leg.base.position``. This is the one function
-    here that cuts names; whether there is such an input is for the scene to say.
+
+def _input_of_column(column: str, possible: Sequence[str]) -> str | None:
+    """The input that a column is an entry of; None where there is none.
+
+    A column adds an axis and a degree to the name of its input: ``push.force.x.1`` is of ``push.force``.
     """
-    words = column.split(".")
-    is_of_base = words[1:2] == ["base"]
-    count = 3 if is_of_base else 2
-    return ".".join(words[:count])
+    named = [name for name in possible if f"{column}.".startswith(f"{name}.")]
+    return max(named, key=len, default=None)
 
 
 def _may_be_input(tables: Mapping[str, Any], name: str) -> bool:
