@@ -43,7 +43,11 @@ IPOPT = {
 }
 """Options of the interior-point method; bounds are kept as they are written."""
 
+UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
+"""How the message of an unstable result begins."""
+
 NOT_STABLE = " No stable equilibrium was found that comes as near."
+"""How it ends where a stable one was wanted."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,8 @@ class Inverse:
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
         gaps: how far each target is missed, in the order of the scene.
-        met: whether the equilibrium was found and every gap is within the scene's tolerance.
+        met: whether the equilibrium was found and every gap is within the scene's tolerance; where a stable one was
+            wanted, whether it is that too.
         rounds: runs of the optimiser.
     """
 
@@ -61,6 +66,11 @@ class Inverse:
     gaps: tuple[Gap, ...]
     met: bool
     rounds: int
+
+    @property
+    def unstable(self) -> bool:
+        """Whether the equilibrium is known not to be stable; without a potential none is."""
+        return self.solution.converged and self.solution.stable is False
 
     @property
     def values(self) -> dict[str, FloatArray]:
@@ -118,16 +128,18 @@ def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
 def _with_verdict(result: Inverse, stable: bool) -> Inverse:
     """The result with a sentence on the targets."""
     solution = result.solution
-    unstable = stable and solution.stable is False
     message = solution.message
     if solution.converged:
         message += _targets_sentence(result)
-    if solution.converged and unstable:
+    if result.unstable:
+        message = UNSTABLE + message
+    refused = stable and result.unstable
+    if refused:
         message += NOT_STABLE
     return replace(
         result,
         solution=replace(solution, message=message),
-        met=result.met and not unstable,
+        met=result.met and not refused,
     )
 
 

@@ -444,3 +444,29 @@ def test_stable_is_refused_where_loads_have_no_potential(tmp_path: Path) -> None
     assert done.returncode == 2
     assert "no potential" in done.stderr
     assert not (tmp_path / "r.json").exists()
+
+
+def test_inverse_ends_with_three_at_an_unstable_equilibrium_unless_asked(tmp_path: Path) -> None:
+    """Beyond its critical load a column meets its target straight: that counts only where it is asked for."""
+    target = """
+[[targets]]
+kind = "position"
+rod = "column"
+position = [0, 0, 1.0]
+[[bounds]]
+input = "push.force"
+lower = [0, 0, -5.0]
+upper = [0, 0, -4.0]
+"""
+    (tmp_path / "column.toml").write_text(COLUMN + target)
+    refused = cosserat("inverse", "column.toml", "--output", "r.json", cwd=tmp_path)
+    assert refused.returncode == 3, refused.stderr
+    assert refused.stdout.splitlines()[1].startswith("Not stable: a real rod leaves this equilibrium.")
+    assert "--unstable" in refused.stderr
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert (result["targets_met"], result["stable"]) == (True, False)
+    accepted = cosserat("inverse", "column.toml", "--unstable", cwd=tmp_path)
+    assert accepted.returncode == 0, accepted.stderr
+    assert "Not stable" in accepted.stdout
+    both = cosserat("inverse", "column.toml", "--unstable", "--stable", cwd=tmp_path)
+    assert both.returncode == 2

@@ -50,6 +50,23 @@ def test_tensions_are_recovered_from_a_pose() -> None:
         assert_allclose(found.values[name].item(), tension, rtol=1e-7, atol=0)
 
 
+def test_only_what_is_bounded_changes() -> None:
+    """A payload that is listed for a controller keeps the scene's value where tensions alone have bounds."""
+    base = read_scene(ROOT / "examples" / "two_section_robot.toml")
+    truth = dict(zip(TENSIONS, [3.0, 7.0, 2.0, 9.0], strict=True))
+    robot = changed(base, inputs=[*TENSIONS, "payload.force"], accuracy={"modes": 3, "nodes": 12})
+    # A heavier payload than the scene's: with the scene's own the tensions alone cannot meet the pose.
+    target = pose_of(solve(build(robot), {**truth, "payload.force": [0.0, 0.0, -0.4]}), "backbone")
+    bounds = [{"input": name, "upper": 12.0} for name in TENSIONS]
+    found = inverse(build(changed(robot, targets=[target], bounds=bounds)))
+    assert_allclose(found.values["payload.force"].ravel(), [0.0, 0.0, -0.1], rtol=0, atol=0)
+    assert not found.met
+    # One limit, far off, sets it free.
+    bounds.append({"input": "payload.force", "upper": 10.0})
+    freed = inverse(build(changed(robot, targets=[target], bounds=bounds)))
+    assert freed.met
+
+
 def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
     """Four tensions for three coordinates: no solution on the line of solutions is nearer by more than the damping."""
     base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
@@ -166,7 +183,8 @@ def test_a_stable_equilibrium_when_asked() -> None:
         bounds=[{"input": "push.force", "lower": [0.0, 0.0, -12.0], "upper": [0.0, 0.0, -10.0]}],
     )
     straight = inverse(build(column))
-    assert (straight.met, straight.solution.stable) == (True, False)
+    assert (straight.met, straight.solution.stable, straight.unstable) == (True, False, True)
+    assert straight.solution.message.startswith("Not stable: a real rod leaves this equilibrium.")
     assert "unstable" in straight.solution.message
     asked = inverse(build(column), stable=True)
     assert not asked.met

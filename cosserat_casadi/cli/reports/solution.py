@@ -29,11 +29,18 @@ STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Print the outcome, the rods, bodies and actuators, the figures of merit, and the files that were written."""
-    scene = solution.model.scene
-    print_plain(console, title_line(scene.title))
+    _print_outcome(console, solution)
+    _print_equilibrium(console, solution, written)
+
+
+def _print_outcome(console: Console, solution: Solution) -> None:
+    print_plain(console, title_line(solution.model.scene.title))
     print_plain(console, f"[bold {_outcome_colour(solution)}]{escape(solution.message)}[/]")
+
+
+def _print_equilibrium(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     console.print(_rod_table(solution))
-    if scene.actuators:
+    if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
     print_plain(console, _merit_sentence(solution))
     print_written(console, written)
@@ -49,8 +56,19 @@ def print_unstable(console: Console) -> None:
     )
 
 
+def print_unstable_inverse(console: Console) -> None:
+    """Say what to do about inputs that lead to an unstable equilibrium."""
+    print_plain(
+        console,
+        "[bold yellow]Warning:[/] the equilibrium at these inputs is not stable: a real rod leaves it. "
+        "Add --stable to look for a stable one, or --unstable to accept this one.",
+        soft_wrap=True,
+    )
+
+
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
-    """Print the inputs found, how far the targets are missed, then the equilibrium like that of a solve."""
+    """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
+    _print_outcome(console, inverse.solution)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
         inputs.add_row(escape(name), ", ".join(digits(value.ravel(order="F"))))
@@ -60,7 +78,7 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     for gap in inverse.gaps:
         targets.add_row(escape(gap.what), f"{gap.position:.3g}", _angle(gap))
     console.print(targets)
-    print_solution(console, inverse.solution, written)
+    _print_equilibrium(console, inverse.solution, written)
 
 
 def _angle(gap: Gap) -> str:
