@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
-from cosserat_casadi.control.target_errors import Gap, length_of, target_errors, weighted_errors
+from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -57,8 +57,8 @@ class Inverse:
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
         gaps: how far each target is missed, in the order of the scene.
-        met: whether the equilibrium was found and every gap is within the scene's tolerance; where a stable one was
-            wanted, whether it is that too.
+        met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
+            estimated the error of the model too; where a stable one was wanted, whether it is that as well.
         rounds: runs of the optimiser.
     """
 
@@ -95,6 +95,11 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
+    return with_verdict(search(model, start, stable), stable)
+
+
+def search(model: Model, start: Solution | None, stable: bool) -> Inverse:
+    """The inverse problem of a model without a verdict on its targets; arguments and errors are those of inverse."""
     if not model.scene.targets:
         raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
     variables = decision_variables(model)
@@ -110,7 +115,7 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
     result = problem.solve(x)
     if stable and result.solution.stable is False:
         result = _from_relaxed(problem, result)
-    return _with_verdict(result, stable)
+    return result
 
 
 def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
@@ -125,9 +130,17 @@ def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
     return result
 
 
-def _with_verdict(result: Inverse, stable: bool) -> Inverse:
-    """The result with a sentence on the targets."""
+def with_verdict(result: Inverse, stable: bool) -> Inverse:
+    """The result of a search, judged: gaps, error of the model where it was estimated, and stability.
+
+    Args:
+        result: of :func:`search`, with an estimate of its error or without.
+        stable: whether a stable equilibrium was wanted.
+    """
     solution = result.solution
+    gaps = target_errors(solution)
+    met = solution.converged and all(_met(solution, gaps))
+    result = replace(result, gaps=gaps, met=met)
     message = solution.message
     if solution.converged:
         message += _targets_sentence(result)
@@ -144,12 +157,25 @@ def _with_verdict(result: Inverse, stable: bool) -> Inverse:
 
 
 def _targets_sentence(result: Inverse) -> str:
-    verdicts = _met(result.solution, result.gaps)
-    missed = [gap for gap, met in zip(result.gaps, verdicts, strict=True) if not met]
-    if not missed:
+    verdicts = _reached(result.solution, result.gaps)
+    missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
+    if missed:
+        misses = "; ".join(_words(gap) for gap in missed)
+        return f" The targets are not all met; the closest that was found misses {misses}."
+    if all(_met(result.solution, result.gaps)):
         return " The targets are met."
-    misses = "; ".join(_words(gap) for gap in missed)
-    return f" The targets are not all met; the closest that was found misses {misses}."
+    return _model_sentence(result.solution)
+
+
+def _model_sentence(solution: Solution) -> str:
+    """Why targets that the discrete model meets are not met by the rod, as far as is known."""
+    scene = solution.model.scene
+    errors = [model_error(solution, target) or 0.0 for target in scene.targets]
+    return (
+        " The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
+        f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "
+        "larger tolerance."
+    )
 
 
 def _words(gap: Gap) -> str:
@@ -159,15 +185,23 @@ def _words(gap: Gap) -> str:
     return f"{distance} and {gap.angle:.3g} rad"
 
 
-def _met(solution: Solution, errors: tuple[Gap, ...]) -> list[bool]:
-    """Whether each target is met."""
-    model = solution.model
-    tolerance = model.scene.accuracy.tolerance
-    verdicts = []
-    for error, target in zip(errors, model.scene.targets, strict=True):
-        length = length_of(model, target)
-        verdicts.append(error.within(length, tolerance))
-    return verdicts
+def _met(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+    """Whether each target is met: by the discrete model, and that within its error."""
+    tolerance = solution.model.scene.accuracy.tolerance
+    lengths = _lengths(solution.model)
+    return [gap.within(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+
+
+def _reached(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+    """Whether the discrete model meets each target, whatever its own error."""
+    tolerance = solution.model.scene.accuracy.tolerance
+    lengths = _lengths(solution.model)
+    return [gap.reached(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+
+
+def _lengths(model: Model) -> list[float]:
+    """Length that each target is measured by, m."""
+    return [length_of(model, target) for target in model.scene.targets]
 
 
 @dataclass(frozen=True)

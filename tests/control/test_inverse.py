@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
+    Outcome,
     Scene,
     SceneError,
     Solution,
@@ -171,6 +172,39 @@ def test_the_equilibrium_is_that_of_a_solve() -> None:
     assert file["targets"][0]["position_gap"] <= 1e-7 * 0.1
     assert file["error_estimate"] <= 1e-7
     json.dumps(file, allow_nan=False)
+
+
+def test_a_gap_is_not_smaller_than_the_error_of_its_model() -> None:
+    """Modes and nodes that the user fixed meet the target on their own rod, which is far from the scene's."""
+    base = read_scene(ROOT / "examples" / "finger_to_point.toml")
+    coarse = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-6}))
+    (gap,) = coarse.gaps
+    assert gap.position <= 1e-6 * 0.1
+    assert gap.position_error is not None
+    assert coarse.solution.error_estimate is not None
+    assert_allclose(gap.position_error, coarse.solution.error_estimate * 0.1, rtol=1e-12, atol=0)
+    assert gap.position_error > 1e-6 * 0.1
+    assert not coarse.met
+    assert "The targets are met." not in coarse.solution.message
+    assert "estimated error of the model" in coarse.solution.message
+    file = inverse_result(coarse)
+    assert file["targets"][0]["position_error_estimate"] == gap.position_error
+    # The estimate is honest: at the same inputs the resolved rod misses the target by no more than it.
+    resolved = solve(build(changed(base, accuracy={"modes": 12, "nodes": 24})), coarse.values)
+    miss = np.linalg.norm(resolved.tip().position[0] - base.targets[0].position)
+    assert 1e-6 * 0.1 < miss <= gap.position_error
+    wide = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 0.1}))
+    assert wide.met
+
+
+def test_modes_that_do_not_resolve_the_rod_are_no_result() -> None:
+    """As in a solve: beyond a tenth of the length the equilibrium is not one of the rod, however small the gap."""
+    base = read_scene(ROOT / "examples" / "finger_to_point.toml")
+    found = inverse_scene(changed(base, accuracy={"modes": 1, "nodes": 4}))
+    assert found.gaps[0].position <= 1e-10
+    assert found.solution.outcome is Outcome.UNRESOLVED
+    assert "The estimated error is 0.17 of the length." in found.solution.message
+    assert not found.met
 
 
 def test_a_stable_equilibrium_when_asked() -> None:

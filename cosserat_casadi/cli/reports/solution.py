@@ -76,15 +76,24 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
 
     targets = table_of("target", "position missed by, m", "angle missed by, rad")
     for gap in inverse.gaps:
-        targets.add_row(escape(gap.what), f"{gap.position:.3g}", _angle(gap))
+        targets.add_row(escape(gap.what), _with_error(gap.position, gap.position_error), _angle(gap))
     console.print(targets)
+    if any(gap.position_error is not None for gap in inverse.gaps):
+        print_plain(console, "± is the estimated error of the model that the gap was measured on.")
     _print_equilibrium(console, inverse.solution, written)
 
 
 def _angle(gap: Gap) -> str:
     if gap.angle is None:
         return "free"
-    return f"{gap.angle:.3g}"
+    return _with_error(gap.angle, gap.angle_error)
+
+
+def _with_error(gap: float, error: float | None) -> str:
+    """A gap with the error of the model that it was measured on: it is not known more exactly."""
+    if error is None:
+        return f"{gap:.3g}"
+    return f"{gap:.3g} ± {error:.1g}"
 
 
 def _outcome_colour(solution: Solution) -> str:
