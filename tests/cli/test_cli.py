@@ -115,6 +115,9 @@ def test_check_prices_the_scene(wire: Path) -> None:
         (["solve", "wire.toml", "--output", "."], "is a folder"),
         (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
         (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
+        (["solve", "wire.toml", "--set", "wire.length=1e-200"], "wire: its length of 1e-200 m"),
+        (["check", "wire.toml", "--set", "wire.length=1e200"], "too large or too small to compute with"),
+        (["solve", "wire.toml", "--set", "wire.section.radius=1e-100"], "EI/ℓ² = 0 N"),
         (["solve", "wire.toml", "--colour"], "colour"),
         (["path", "wire.toml"], "--input"),
         (["path", "wire.toml", "--input", "shove.force", "--to", "[0,0,1]"], "shove.force: is not an input"),
@@ -470,3 +473,11 @@ upper = [0, 0, -4.0]
     assert "Not stable" in accepted.stdout
     both = cosserat("inverse", "column.toml", "--unstable", "--stable", cwd=tmp_path)
     assert both.returncode == 2
+
+
+def test_iterations_are_those_of_the_whole_search(wire: Path) -> None:
+    """A wire that is bent from rest takes Newton steps, although the last correction may take none."""
+    done = cosserat("solve", "wire.toml", "--output", "r.json", cwd=wire)
+    iterations = json.loads((wire / "r.json").read_text())["iterations"]
+    assert iterations > 5
+    assert f"{iterations} iterations" in " ".join(done.stdout.split())

@@ -348,3 +348,9 @@ def test_bar_that_only_stretches_vs_hookes_law(modes: int) -> None:
     solution = solve(build(parse_scene(text)))
     assert solution.converged
     assert_allclose(solution.tip().position[0], [0.0, 0.0, 2.0 * (1 + 25.0 / 500.0)], rtol=0, atol=1e-14)
+
+
+def test_a_path_from_a_solution_does_not_speak_of_the_unloaded_rod_alone() -> None:
+    """Continuation from a solution that stalls has grown no load from zero, and its sentence must fit that too."""
+    assert "growing the load from zero" not in Outcome.LOAD_STALLED.value
+    assert "the solution started at" in Outcome.LOAD_STALLED.value

@@ -12,6 +12,7 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import (
     digits,
     discretisation_sentences,
+    plural,
     print_plain,
     print_written,
     table_of,
@@ -137,7 +138,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 def _merit_sentence(solution: Solution) -> str:
     """How good the solution is, and what it was found on."""
-    parts = [f"residual {solution.residual_norm:.1e}", f"{solution.iterations} iterations"]
+    parts = [f"residual {solution.residual_norm:.1e}", plural(solution.iterations, "iteration")]
     if solution.error_estimate is not None:
         parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
     if solution.shape_error_estimate is not None:
