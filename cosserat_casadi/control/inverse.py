@@ -8,6 +8,7 @@ its inputs is computed anew and judged like any other.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -43,6 +44,18 @@ IPOPT = {
 }
 """Options of the interior-point method; bounds are kept as they are written."""
 
+STARTS = 8
+"""Further starts, scattered in the bounds, where the first leaves a gap."""
+
+SEED = 20_240
+"""Of the generator that scatters them: the same scene has the same starts."""
+
+AT_BOUND = 1e-6
+"""Distance from a bound, in half its range, below which an input is at it."""
+
+NEAR_BOUND = 1e-3
+"""Distance from a bound, in the scales, below which an input is tried at the bound itself."""
+
 UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
 """How the message of an unstable result begins."""
 
@@ -59,13 +72,17 @@ class Inverse:
         gaps: how far each target is missed, in the order of the scene.
         met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
             estimated the error of the model too; where a stable one was wanted, whether it is that as well.
-        rounds: runs of the optimiser.
+        rounds: runs of the optimiser, from all starts together.
+        starts: starts that were tried, 1 where the first has met the targets.
+        at_bounds: decision variables that ended at a bound, by name.
     """
 
     solution: Solution
     gaps: tuple[Gap, ...]
     met: bool
     rounds: int
+    starts: int = 1
+    at_bounds: tuple[str, ...] = ()
 
     @property
     def unstable(self) -> bool:
@@ -79,7 +96,7 @@ class Inverse:
         return layout.unpack(self.solution.inputs)
 
 
-def inverse(model: Model, *, start: Solution | None = None, stable: bool = False) -> Inverse:
+def inverse(model: Model, *, start: Solution | None = None, stable: bool = False, starts: int = STARTS) -> Inverse:
     """Inputs for which a model's equilibrium meets the targets of its scene.
 
     Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds
@@ -90,15 +107,17 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
         stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
             once. For loads that have a potential.
+        starts: further starts where a gap stays: scattered, by a seed of our own, over the inputs that are bounded on
+            both sides; the best end counts. 0 for none.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
-    return with_verdict(search(model, start, stable), stable)
+    return with_verdict(search(model, start, stable, starts), stable)
 
 
-def search(model: Model, start: Solution | None, stable: bool) -> Inverse:
+def search(model: Model, start: Solution | None, stable: bool, starts: int) -> Inverse:
     """The inverse problem of a model without a verdict on its targets; arguments and errors are those of inverse."""
     if not model.scene.targets:
         raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
@@ -110,12 +129,53 @@ def search(model: Model, start: Solution | None, stable: bool) -> Inverse:
         check_potential(model, start.inputs)
     origin = variables.clipped(start.inputs)
     problem = _LiftedProblem(model, variables, scales(model, variables, start), origin)
-    # A failed first solve may end at no numbers.
-    x = start.x if np.all(np.isfinite(start.x)) else model.unloaded()
-    result = problem.solve(x)
-    if stable and result.solution.stable is False:
-        result = _from_relaxed(problem, result)
+    result = _from_start(problem, start, np.zeros(len(problem.scale)), stable)
+    for tried, change in enumerate(problem.scattered(starts), 1):
+        if _satisfies(result, stable):
+            break
+        inputs = problem.inputs(change)
+        begun = solve(model, model.inputs.unpack(inputs))
+        again = _from_start(problem, begun, change, stable)
+        rounds = result.rounds + again.rounds
+        best = min(result, again, key=lambda candidate: _rank(candidate, stable))
+        result = replace(best, rounds=rounds, starts=1 + tried)
     return result
+
+
+def _from_start(problem: _LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
+    """The search from one start.
+
+    Args:
+        problem: the problem.
+        start: a solve at the inputs that it starts from.
+        change: these inputs as changes from the origin, in their scales, shape (n,).
+        stable: whether a stable equilibrium is wanted.
+    """
+    # A failed first solve may end at no numbers.
+    x = start.x if np.all(np.isfinite(start.x)) else problem.model.unloaded()
+    result = problem.solve(x, change)
+    if stable and result.solution.stable is False:
+        return _from_relaxed(problem, result)
+    return result
+
+
+def _satisfies(result: Inverse, stable: bool) -> bool:
+    """Whether a result leaves nothing to look for from other starts."""
+    return result.met and not (stable and result.unstable)
+
+
+def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
+    """What is less is better: an equilibrium, a stable one where that is wanted, the smaller weighted gap."""
+    return not result.solution.converged, stable and result.unstable, _gap_left(result)
+
+
+def _gap_left(result: Inverse) -> float:
+    """Root of the weighted squares of what the targets are missed by; infinite without an equilibrium."""
+    solution = result.solution
+    if not solution.converged:
+        return np.inf
+    errors = weighted_errors(solution.model, ca.DM(solution.x), ca.DM(solution.inputs))
+    return float(np.linalg.norm(ca.evalf(ca.MX(errors)).full()))
 
 
 def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
@@ -124,7 +184,8 @@ def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
     if not relaxed.stable:
         return result
     # Damped about the relaxed inputs now, so that the search stays near the stable branch.
-    second = replace(problem, origin=relaxed.inputs).solve(relaxed.x)
+    relaxed_problem = replace(problem, origin=relaxed.inputs)
+    second = relaxed_problem.solve(relaxed.x, np.zeros(len(problem.scale)))
     if second.solution.stable:
         return second
     return result
@@ -161,10 +222,22 @@ def _targets_sentence(result: Inverse) -> str:
     missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
     if missed:
         misses = "; ".join(_words(gap) for gap in missed)
-        return f" The targets are not all met; the closest that was found misses {misses}."
+        sentence = f" The targets are not all met; the closest that was found misses {misses}."
+        return sentence + _minimum_sentence(result)
     if all(_met(result.solution, result.gaps)):
         return " The targets are met."
     return _model_sentence(result.solution)
+
+
+def _minimum_sentence(result: Inverse) -> str:
+    """Where a search that leaves a gap ended: it is local, whatever the number of its starts."""
+    where = "within the bounds"
+    if result.at_bounds:
+        where = f"at the bound of {', '.join(result.at_bounds)}"
+    starts = "1 start"
+    if result.starts > 1:
+        starts = f"{result.starts} starts"
+    return f" It is a local minimum {where}, the best of {starts}."
 
 
 def _model_sentence(solution: Solution) -> str:
@@ -220,7 +293,7 @@ class _LiftedProblem:
     scale: FloatArray
     origin: FloatArray
 
-    def solve(self, x: FloatArray) -> Inverse:
+    def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
 
         The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
@@ -228,11 +301,12 @@ class _LiftedProblem:
 
         Args:
             x: unknowns to start from, shape (size,).
+            change: decision variables to start from, as changes from the origin in their scales, shape (n,).
         """
-        optimiser = self._optimiser()
+        optimiser = self._optimiser
         bounds = self._bounds()
         size = self.model.size
-        centre = np.zeros(len(self.scale))
+        centre = change
         rounds = 0
         largest_change = np.inf
         while rounds < ROUNDS and largest_change > SETTLED:
@@ -253,20 +327,81 @@ class _LiftedProblem:
             change = optimum[size:]
             largest_change = float(np.abs(change - centre).max())
             centre = change
-        return self._judged(x, centre, rounds)
+        result = self._judged(x, centre, rounds)
+        if result.met:
+            return result
+        return self._polished(result, x, centre)
+
+    def _polished(self, result: Inverse, x: FloatArray, change: FloatArray) -> Inverse:
+        """The search once more with the inputs that are near a bound held at it; the better of the two.
+
+        An interior-point method stays off a bound by the root of its tolerance where nothing presses against it.
+        """
+        lower, upper = self._ranges()
+        at_lower = change <= lower + NEAR_BOUND
+        at_upper = change >= upper - NEAR_BOUND
+        if not np.any(at_lower | at_upper):
+            return result
+        held_lower = np.where(at_upper & ~at_lower, upper, lower)
+        held_upper = np.where(at_lower, lower, upper)
+        held = np.clip(change, held_lower, held_upper)
+        unbounded = np.full(self.model.size, np.inf)
+        optimum = self._optimiser(
+            x0=np.concatenate([x, held]),
+            p=np.concatenate([held, [DAMPING[-1]]]),
+            lbg=0.0,
+            ubg=0.0,
+            lbx=np.concatenate([-unbounded, held_lower]),
+            ubx=np.concatenate([unbounded, held_upper]),
+        )["x"].full()[:, 0]
+        rounds = result.rounds + 1
+        if not np.all(np.isfinite(optimum)):
+            return replace(result, rounds=rounds)
+        polished = self._judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
+        return min(polished, replace(result, rounds=rounds), key=_gap_left)
 
     def _judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
         """The equilibrium at the inputs found, solved and judged like any other."""
-        inputs = self.origin.copy()
-        inputs[self.variables.indices] += self.scale * change
-        # Rounding may leave a range by the last digit.
-        inputs = self.variables.clipped(inputs)
+        inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
         solution = solve(self.model, values, start=x)
         errors = target_errors(solution)
         met = solution.converged and all(_met(solution, errors))
-        return Inverse(solution, errors, met, rounds)
+        return Inverse(solution, errors, met, rounds, at_bounds=self._at_bounds(inputs))
 
+    def inputs(self, change: FloatArray) -> FloatArray:
+        """Stacked inputs for a change of the decision variables, shape (inputs,)."""
+        inputs = self.origin.copy()
+        inputs[self.variables.indices] += self.scale * change
+        # Rounding may leave a range by the last digit.
+        return self.variables.clipped(inputs)
+
+    def scattered(self, count: int) -> FloatArray:
+        """Changes of the decision variables to start from, shape (count, n); none where no range is closed.
+
+        Entries without a range on both sides stay at the origin.
+        """
+        lower, upper = self._ranges()
+        closed = np.isfinite(upper - lower) & (upper > lower)
+        if not np.any(closed):
+            return np.zeros((0, len(self.scale)))
+        shares = np.random.default_rng(SEED).random((count, len(self.scale)))
+        least = np.where(closed, lower, 0.0)
+        most = np.where(closed, upper, 0.0)
+        return np.asarray(least + shares * (most - least))
+
+    def _at_bounds(self, inputs: FloatArray) -> tuple[str, ...]:
+        """Names of the decision variables that are at a bound, those aside that their bounds hold at one value."""
+        variables = self.variables
+        values = inputs[variables.indices]
+        near = AT_BOUND * self.scale
+        at_bound = (values <= variables.lower + near) | (values >= variables.upper - near)
+        free = variables.upper > variables.lower
+        stacked = set(variables.indices[at_bound & free].tolist())
+        slices = self.model.inputs.slices.items()
+        return tuple(name for name, entries in slices if stacked & set(range(entries.start, entries.stop)))
+
+    @cached_property
     def _optimiser(self) -> ca.Function:
         """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
         count = len(self.scale)
@@ -303,12 +438,17 @@ class _LiftedProblem:
             count,
         )
 
-    def _bounds(self) -> dict[str, FloatArray]:
-        """Ranges of the changes; the unknowns have none."""
-        unbounded = np.full(self.model.size, np.inf)
+    def _ranges(self) -> tuple[FloatArray, FloatArray]:
+        """Least and largest changes of the decision variables, each of shape (n,)."""
         start = self.origin[self.variables.indices]
         lower = (self.variables.lower - start) / self.scale
         upper = (self.variables.upper - start) / self.scale
+        return lower, upper
+
+    def _bounds(self) -> dict[str, FloatArray]:
+        """Ranges of the changes; the unknowns have none."""
+        unbounded = np.full(self.model.size, np.inf)
+        lower, upper = self._ranges()
         return {
             "lbx": np.concatenate([-unbounded, lower]),
             "ubx": np.concatenate([unbounded, upper]),

@@ -9,7 +9,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import Inverse, search, with_verdict
+from cosserat_casadi.control.inverse import STARTS, Inverse, search, with_verdict
 from cosserat_casadi.control.target_errors import model_error, target_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -41,9 +41,14 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
     accuracy = scene.accuracy
     model = build(scene) if accuracy.fixed else verified_model(scene, VERIFIED_MODES[0], 0.0)
     start: Solution | None = None
+    tried = 1
     for modes in VERIFIED_MODES[1:]:
         _report(model, report)
-        result = search(model, start, stable)
+        # Scattered on the first discretisation alone: the next ones start from its end.
+        scattered_starts = STARTS if start is None else 0
+        result = search(model, start, stable, scattered_starts)
+        tried = max(tried, result.starts)
+        result = replace(result, starts=tried)
         solution = result.solution
         if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
             return with_verdict(result, stable)

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
+    Model,
     Outcome,
     Scene,
     SceneError,
@@ -66,6 +67,41 @@ def test_only_what_is_bounded_changes() -> None:
     bounds.append({"input": "payload.force", "upper": 10.0})
     freed = inverse(build(changed(robot, targets=[target], bounds=bounds)))
     assert freed.met
+
+
+def reachable(tensions: list[float]) -> Model:
+    """The robot with a pose as its target that these tensions lead to, and tensions of at most 25 N to find."""
+    robot = changed(
+        read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS, accuracy={"modes": 3, "nodes": 10}
+    )
+    target = pose_of(solve(build(robot), dict(zip(TENSIONS, tensions, strict=True))), "backbone")
+    bounds = [{"input": name, "upper": 25.0} for name in TENSIONS]
+    return build(changed(robot, targets=[target], bounds=bounds))
+
+
+@pytest.mark.parametrize("tensions", [[9.81, 12.326, 0.0, 1.52], [0.0, 17.306, 15.885, 0.0]])
+def test_scattered_starts_leave_a_local_minimum(tensions: list[float]) -> None:
+    """From the scene's own tensions the search ends far off, at a bound; from another start the pose is met."""
+    model = reachable(tensions)
+    local = inverse(model, starts=0)
+    assert local.gaps[0].position > 0.1
+    assert local.at_bounds
+    assert f"a local minimum at the bound of {', '.join(local.at_bounds)}" in local.solution.message
+    assert "the best of 1 start." in local.solution.message
+    found = inverse(model)
+    assert found.met
+    assert 1 < found.starts <= 9
+    # The same scene has the same starts.
+    assert_allclose(inverse(model).solution.inputs, found.solution.inputs, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("tensions", [[1.219, 0.0, 0.0, 0.0], [0.0, 10.917, 5.081, 0.0]])
+def test_slack_tendons_are_found_slack(tensions: list[float]) -> None:
+    """A tension of zero that nothing presses to its bound is found exactly, where an interior point stays off it."""
+    found = inverse(reachable(tensions), starts=0)
+    assert found.met
+    for name, tension in zip(TENSIONS, tensions, strict=True):
+        assert_allclose(found.values[name].item(), tension, rtol=0, atol=1e-6)
 
 
 def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
@@ -145,6 +181,7 @@ def test_bounds_are_kept_and_reached() -> None:
     assert not found.met
     force = found.values["push.force"].ravel()
     assert_allclose(force, [0.3, 0.0, 0.0], rtol=0, atol=1e-6)
+    assert "a local minimum at the bound of push.force, the best of 9 starts." in found.solution.message
     assert np.all(np.abs(force) <= [0.3, 0.0, 0.0])
     tips = [solve(build(bounded), {"push.force": [f, 0, 0]}).tip().position[0] for f in np.linspace(-0.3, 0.3, 13)]
     scanned = min(float(np.linalg.norm(tip - target["position"])) for tip in tips)
