@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -90,10 +91,14 @@ class Inverse:
         return self.solution.converged and self.solution.stable is False
 
     @property
-    def values(self) -> dict[str, FloatArray]:
-        """The inputs found, by name."""
-        layout = self.solution.model.inputs
-        return layout.unpack(self.solution.inputs)
+    def values(self) -> dict[str, Any]:
+        """The inputs found, by name: a number for one entry, else an array of shape (components, k)."""
+        values: dict[str, Any] = {}
+        for name, value in self.solution.model.inputs.unpack(self.solution.inputs).items():
+            values[name] = value
+            if value.size == 1:
+                values[name] = np.float64(value.item())
+        return values
 
 
 def inverse(model: Model, *, start: Solution | None = None, stable: bool = False, starts: int = STARTS) -> Inverse:

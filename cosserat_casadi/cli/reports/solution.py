@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -72,7 +73,8 @@ def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -
     _print_outcome(console, inverse.solution)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
-        inputs.add_row(escape(name), ", ".join(digits(value.ravel(order="F"))))
+        stacked = np.ravel(value, order="F")
+        inputs.add_row(escape(name), ", ".join(digits(stacked)))
     console.print(inputs)
 
     targets = table_of("target", "position missed by, m", "angle missed by, rad")
