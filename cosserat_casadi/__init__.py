@@ -4,6 +4,8 @@ scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Func
 Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
 """
 
+from importlib.metadata import version
+
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
@@ -26,6 +28,8 @@ from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.sweep import Sweep, read_sweep, sweep_scene
+
+__version__ = version("cosserat-casadi")
 
 __all__ = [
     "Compiled",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 
@@ -26,6 +27,14 @@ class Problem:
 
 class CosseratError(Exception):
     """Root of the errors of this package."""
+
+
+class WriteError(CosseratError, OSError):
+    """A file could not be written, as on a full disk; what was there before is as it was."""
+
+    def __init__(self, file: str | os.PathLike[str], error: OSError) -> None:
+        reason = error.strerror or str(error)
+        super().__init__(f"{os.fspath(file)} could not be written: {reason}")
 
 
 class SceneError(CosseratError):

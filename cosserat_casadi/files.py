@@ -7,8 +7,9 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem, SceneError, WriteError
 
 
 def check_writable(path: Path, option: str) -> None:
@@ -34,14 +35,46 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """A temporary file beside a path, to be filled; it is moved there at the end, or removed where that fails."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    os.close(handle)
-    temporary = Path(name)
+    """A temporary file beside a path, to be filled; it is moved there at the end, or removed where that fails.
+
+    Raises:
+        WriteError: the disk is full, or the folder cannot be written to.
+    """
+    with write_errors(path):
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        temporary = Path(name)
+        try:
+            os.close(handle)
+            yield temporary
+            temporary.chmod(0o644)
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+
+
+def write_whole(stream: IO[bytes], content: bytes) -> None:
+    """Write all of a content: an unbuffered stream may take a part of it, and tells the next time why.
+
+    Raises:
+        OSError: the disk is full.
+    """
+    rest = memoryview(content)
+    while len(rest):
+        written = stream.write(rest)
+        rest = rest[written:]
+
+
+@contextmanager
+def write_errors(path: Path) -> Iterator[None]:
+    """Say of a failure inside which file could not be written: the system does not.
+
+    Raises:
+        WriteError: in place of the system's own error.
+    """
     try:
-        yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
+        yield
+    except WriteError:
         raise
+    except OSError as error:
+        raise WriteError(path, error) from error

@@ -101,6 +101,8 @@ def solve_scene(
         check_potential(coarsest, coarsest.pack(values))
     solver = _SceneSolver(scene, values, stable, progress, report)
     solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
+    # The last correction alone may need no step: a user asks what the search has cost.
+    solution = replace(solution, iterations=solver.iterations)
     if solver.relaxed and solution.stable:
         solution = _with_note(solution, PATH_OF_ENERGY)
     if stable and solution.converged and not solution.stable:
@@ -120,6 +122,7 @@ class _SceneSolver:
         report: told what is being tried.
         relaxed: whether the current equilibrium, or the one it was corrected from, was reached by descent in energy.
         relaxing_failed: whether descent was tried in vain; it is not tried again.
+        iterations: Newton steps so far, on all discretisations.
     """
 
     scene: scenes.Scene
@@ -129,6 +132,7 @@ class _SceneSolver:
     report: Report | None
     relaxed: bool = False
     relaxing_failed: bool = False
+    iterations: int = 0
 
     @property
     def tolerance(self) -> float:
@@ -163,8 +167,10 @@ class _SceneSolver:
             # Stays on the branch of the coarser solution, and costs a few Newton steps only.
             corrected = _corrected(model, prolong(coarser, model), coarser.inputs)
             if corrected is not None:
+                self.iterations += corrected.iterations
                 return corrected
         solution = solve(model, self.values, progress=self.progress)
+        self.iterations += solution.iterations
         self.relaxed = False
         if solution.outcome is Outcome.LOAD_STALLED:
             return self.relax(solution)
@@ -181,6 +187,7 @@ class _SceneSolver:
         if not solution.model.has_potential(solution.inputs):
             return solution
         relaxed = stabilised(solution, ContinuationSettings(), self.progress)
+        self.iterations += relaxed.iterations - solution.iterations
         self.relaxed = bool(relaxed.stable)
         self.relaxing_failed = not relaxed.stable
         return relaxed
@@ -253,6 +260,8 @@ def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
         coarsened = Coarsening(resolution.preview, bound).run()
         model = solver.build(coarsened.discretisation)
         solution = _corrected(model, coarsened.start, reference.inputs)
+        if solution is not None:
+            solver.iterations += solution.iterations
         if solution is None or not solution.converged:
             # The preview was too far off; a tighter bound keeps it nearer.
             continue

@@ -6,5 +6,11 @@ REFUSED = 2
 NOT_FOUND = 3
 """No equilibrium was found; the result file says so."""
 
+NOT_WRITTEN = 4
+"""A file or standard output could not be written, as on a full disk; nothing half-written stays."""
+
 INTERRUPTED = 130
 """Stopped by the user."""
+
+TERMINATED = 143
+"""Stopped by SIGTERM."""

@@ -18,9 +18,18 @@ from cosserat_casadi.cli.commands.path import path
 from cosserat_casadi.cli.commands.solve import solve
 from cosserat_casadi.cli.commands.sweep import sweep
 from cosserat_casadi.cli.commands.tune import tune
-from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, REFUSED
+from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.reports.problems import print_refusal
-from cosserat_casadi.errors import CosseratError, ExportError, SceneError
+from cosserat_casadi.cli.signals import (
+    StoppedError,
+    forget_signals,
+    install_handlers,
+    remove_handlers,
+    was_interrupted,
+    was_terminated,
+)
+from cosserat_casadi.cli.terminal import flush_streams, prepare_streams, silence_output
+from cosserat_casadi.errors import CosseratError, ExportError, SceneError, WriteError
 
 __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 
@@ -38,14 +47,22 @@ for command in (solve, path, inverse, sweep, check, export, tune, bench):
 
 def main() -> None:
     """Entry point: errors become sentences and exit codes."""
-    sys.exit(run(app))
+    prepare_streams()
+    install_handlers()
+    exit_code = run(app)
+    remove_handlers()
+    if exit_code == INTERRUPTED and was_terminated():
+        exit_code = TERMINATED
+    sys.exit(exit_code)
 
 
 def run(command: Callable[..., object]) -> int:
     """Run a command; return its exit code, and print the reasons of a refusal on standard error."""
     console = Console(stderr=True)
+    forget_signals()
     try:
         exit_code = command(standalone_mode=False)
+        flush_streams()
     except (SceneError, ExportError) as error:
         print_refusal(console, error)
         return REFUSED
@@ -53,26 +70,58 @@ def run(command: Callable[..., object]) -> int:
     except NoReferenceError as error:
         _print_error(console, str(error))
         return NOT_FOUND
+    # Likewise: the disk is full.
+    except WriteError as error:
+        _print_error(console, str(error))
+        return NOT_WRITTEN
     except CosseratError as error:
         _print_error(console, str(error))
         return REFUSED
-    except KeyboardInterrupt:
-        console.print("Stopped. Files that were not finished were not written.")
+    except BrokenPipeError:
+        # The reader has seen enough, as head does.
+        silence_output()
+        return NOT_WRITTEN
+    except OSError as error:
+        # Without a number it is not the system's word on a file.
+        if error.errno is None:
+            raise
+        silence_output()
+        _print_error(console, _system_sentence(error))
+        return NOT_WRITTEN
+    except StoppedError:
         return INTERRUPTED
+    except (KeyboardInterrupt, typer.Abort):
+        return _stopped(console)
     # Raised by commands that end with a code of their own.
     except typer.Exit as stop:
         return stop.exit_code
-    except typer.Abort:
-        return INTERRUPTED
     except Exception as error:
+        # An interrupt inside CasADi comes out as some other error.
+        if was_interrupted():
+            return _stopped(console)
         # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
         if hasattr(error, "format_message") and hasattr(error, "exit_code"):
             _print_error(console, error.format_message())
             return int(error.exit_code)
         raise
+    # Typer makes this code of an interrupt that a command lets through.
+    if exit_code == INTERRUPTED:
+        return _stopped(console)
     if isinstance(exit_code, int):
         return exit_code
     return 0
+
+
+def _stopped(console: Console) -> int:
+    console.print("Stopped. Files that were not finished were not written.")
+    return INTERRUPTED
+
+
+def _system_sentence(error: OSError) -> str:
+    """What the system says, and of which file; without one it is standard output or a temporary file."""
+    if error.filename is None:
+        return f"Standard output or a temporary file could not be written: {error.strerror}"
+    return f"{error.filename}: {error.strerror}"
 
 
 def _print_error(console: Console, sentence: str) -> None:

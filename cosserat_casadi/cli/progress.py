@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-import typer
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -21,7 +19,7 @@ from rich.progress import (
 )
 from rich.text import Text
 
-from cosserat_casadi.cli.exit_codes import INTERRUPTED
+from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt
 
 CountCallback = Callable[[str, int, int], None]
 """Takes a stage, how much of it is done, and how much there is; 0 of 0 where that is not known."""
@@ -65,30 +63,6 @@ def progress_bar(*more: ProgressColumn) -> Progress:
 
 
 @contextmanager
-def remembered_interrupt() -> Iterator[Callable[[], None]]:
-    """A function that raises KeyboardInterrupt if the user has interrupted since.
-
-    CasADi calls Python to look at its arguments, and takes whatever that raises for a refusal of the argument: an
-    interrupt that falls there is lost. It is remembered, and raised again at the next report of progress.
-    """
-    signals: list[int] = []
-
-    def remember(number: int, frame: object) -> None:
-        signals.append(number)
-        raise KeyboardInterrupt
-
-    def raise_again() -> None:
-        if signals:
-            raise KeyboardInterrupt
-
-    handler_before = signal.signal(signal.SIGINT, remember)
-    try:
-        yield raise_again
-    finally:
-        signal.signal(signal.SIGINT, handler_before)
-
-
-@contextmanager
 def solve_display(command: str) -> Iterator[SolveDisplay]:
     """A bar for a solve; an interrupt inside ends the command with its exit code.
 
@@ -109,9 +83,9 @@ def solve_display(command: str) -> Iterator[SolveDisplay]:
         try:
             yield SolveDisplay(show_share, show_stage)
         except KeyboardInterrupt:
-            # Typer would end the process without a sentence.
+            # Whoever waits is told that no file has changed.
             bar.console.print("Stopped. Nothing was written.")
-            raise typer.Exit(INTERRUPTED) from None
+            raise StoppedError from None
 
 
 @contextmanager

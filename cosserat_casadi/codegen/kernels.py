@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import tempfile
 from collections.abc import Sequence
@@ -13,6 +15,7 @@ from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.names import QUERIES, Names
+from cosserat_casadi.errors import WriteError
 from cosserat_casadi.model.build import Model
 
 PARTED = ("path_residual", "path_jacobian")
@@ -57,8 +60,23 @@ def sources(functions: Sequence[ca.Function], stem: str, integer: str) -> dict[s
         generator.add(function)
     with tempfile.TemporaryDirectory() as folder:
         generator.generate(f"{folder}/")
-        return {name: (Path(folder) / name).read_text() for name in (f"{stem}.c", f"{stem}.h")}
+        return {name: _generated(Path(folder) / name) for name in (f"{stem}.c", f"{stem}.h")}
 
+
+def _generated(file: Path) -> str:
+    """Text of a file that CasADi has written.
+
+    Raises:
+        WriteError: the disk was full. CasADi does not look whether its files are written, and leaves them cut off.
+    """
+    text = file.read_text(encoding="utf-8")
+    if not text.endswith(ENDING):
+        raise WriteError(file, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
+    return text
+
+
+ENDING = '} /* extern "C" */\n#endif\n'
+"""How every file of CasADi ends."""
 
 PROLOGUE = """#ifdef {macro}_SINGLE
 #define casadi_real float

@@ -42,9 +42,11 @@ class DecisionVariables:
 
 
 def decision_variables(model: Model) -> DecisionVariables:
-    """The inputs that a scene asks for: those it lists, or else those it bounds.
+    """The inputs that a scene asks for: those it bounds, or else those it lists.
 
-    A tension is not below zero and a length not below a thousandth of the scene's, whatever the bounds.
+    An input that a scene lists without bounding it, beside others that it bounds, keeps the scene's value: it is
+    listed for a controller, as a payload is. A tension is not below zero and a length not below a thousandth of the
+    scene's, whatever the bounds.
 
     Raises:
         SceneError: the scene lists no inputs and bounds none.
@@ -90,8 +92,9 @@ def scales(model: Model, variables: DecisionVariables, start: Solution) -> Float
 def _chosen_names(model: Model) -> list[str]:
     """Names of the decision variables, in the order of the stacked inputs."""
     scene = model.scene
-    bounded = tuple(bound.input for bound in scene.bounds)
-    changeable = bounded if scene.inputs is None else scene.inputs
+    changeable = tuple(bound.input for bound in scene.bounds)
+    if not changeable and scene.inputs is not None:
+        changeable = scene.inputs
     return [name for name in model.inputs.names if name in changeable]
 
 
@@ -99,11 +102,8 @@ def _physical_lower(model: Model) -> FloatArray:
     """Least values that an input can have by what it is, shape (inputs,)."""
     layout = model.inputs
     lower = np.full(layout.size, -np.inf)
-    for name, default in zip(layout.names, layout.defaults, strict=True):
-        if name.endswith(".tension"):
-            lower[layout.slices[name]] = 0.0
-        elif name.endswith(".length"):
-            lower[layout.slices[name]] = SHORTEST * default.item()
+    for entry, indices in layout:
+        lower[indices] = entry.lower
     return lower
 
 

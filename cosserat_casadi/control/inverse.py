@@ -8,12 +8,14 @@ its inputs is computed anew and judged like any other.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
-from cosserat_casadi.control.target_errors import Gap, length_of, target_errors, weighted_errors
+from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, weighted_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -43,7 +45,23 @@ IPOPT = {
 }
 """Options of the interior-point method; bounds are kept as they are written."""
 
+STARTS = 8
+"""Further starts, scattered in the bounds, where the first leaves a gap."""
+
+SEED = 20_240
+"""Of the generator that scatters them: the same scene has the same starts."""
+
+AT_BOUND = 1e-6
+"""Distance from a bound, in half its range, below which an input is at it."""
+
+NEAR_BOUND = 1e-3
+"""Distance from a bound, in the scales, below which an input is tried at the bound itself."""
+
+UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
+"""How the message of an unstable result begins."""
+
 NOT_STABLE = " No stable equilibrium was found that comes as near."
+"""How it ends where a stable one was wanted."""
 
 
 @dataclass(frozen=True)
@@ -53,23 +71,37 @@ class Inverse:
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
         gaps: how far each target is missed, in the order of the scene.
-        met: whether the equilibrium was found and every gap is within the scene's tolerance.
-        rounds: runs of the optimiser.
+        met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
+            estimated the error of the model too; where a stable one was wanted, whether it is that as well.
+        rounds: runs of the optimiser, from all starts together.
+        starts: starts that were tried, 1 where the first has met the targets.
+        at_bounds: decision variables that ended at a bound, by name.
     """
 
     solution: Solution
     gaps: tuple[Gap, ...]
     met: bool
     rounds: int
+    starts: int = 1
+    at_bounds: tuple[str, ...] = ()
 
     @property
-    def values(self) -> dict[str, FloatArray]:
-        """The inputs found, by name."""
-        layout = self.solution.model.inputs
-        return layout.unpack(self.solution.inputs)
+    def unstable(self) -> bool:
+        """Whether the equilibrium is known not to be stable; without a potential none is."""
+        return self.solution.converged and self.solution.stable is False
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The inputs found, by name: a number for one entry, else an array of shape (components, k)."""
+        values: dict[str, Any] = {}
+        for name, value in self.solution.model.inputs.unpack(self.solution.inputs).items():
+            values[name] = value
+            if value.size == 1:
+                values[name] = np.float64(value.item())
+        return values
 
 
-def inverse(model: Model, *, start: Solution | None = None, stable: bool = False) -> Inverse:
+def inverse(model: Model, *, start: Solution | None = None, stable: bool = False, starts: int = STARTS) -> Inverse:
     """Inputs for which a model's equilibrium meets the targets of its scene.
 
     Of several solutions it finds one near the scene's own inputs. Where targets cannot all be met, within the bounds
@@ -80,11 +112,18 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         start: equilibrium of this model to start from; by default that at the scene's own inputs, brought into bounds.
         stable: whether a stable equilibrium is wanted: an unstable one is relaxed and the search goes on from there,
             once. For loads that have a potential.
+        starts: further starts where a gap stays: scattered, by a seed of our own, over the inputs that are bounded on
+            both sides; the best end counts. 0 for none.
 
     Raises:
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
+    return with_verdict(search(model, start, stable, starts), stable)
+
+
+def search(model: Model, start: Solution | None, stable: bool, starts: int) -> Inverse:
+    """The inverse problem of a model without a verdict on its targets; arguments and errors are those of inverse."""
     if not model.scene.targets:
         raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
     variables = decision_variables(model)
@@ -95,12 +134,53 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         check_potential(model, start.inputs)
     origin = variables.clipped(start.inputs)
     problem = _LiftedProblem(model, variables, scales(model, variables, start), origin)
+    result = _from_start(problem, start, np.zeros(len(problem.scale)), stable)
+    for tried, change in enumerate(problem.scattered(starts), 1):
+        if _satisfies(result, stable):
+            break
+        inputs = problem.inputs(change)
+        begun = solve(model, model.inputs.unpack(inputs))
+        again = _from_start(problem, begun, change, stable)
+        rounds = result.rounds + again.rounds
+        best = min(result, again, key=lambda candidate: _rank(candidate, stable))
+        result = replace(best, rounds=rounds, starts=1 + tried)
+    return result
+
+
+def _from_start(problem: _LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
+    """The search from one start.
+
+    Args:
+        problem: the problem.
+        start: a solve at the inputs that it starts from.
+        change: these inputs as changes from the origin, in their scales, shape (n,).
+        stable: whether a stable equilibrium is wanted.
+    """
     # A failed first solve may end at no numbers.
-    x = start.x if np.all(np.isfinite(start.x)) else model.unloaded()
-    result = problem.solve(x)
+    x = start.x if np.all(np.isfinite(start.x)) else problem.model.unloaded()
+    result = problem.solve(x, change)
     if stable and result.solution.stable is False:
-        result = _from_relaxed(problem, result)
-    return _with_verdict(result, stable)
+        return _from_relaxed(problem, result)
+    return result
+
+
+def _satisfies(result: Inverse, stable: bool) -> bool:
+    """Whether a result leaves nothing to look for from other starts."""
+    return result.met and not (stable and result.unstable)
+
+
+def _rank(result: Inverse, stable: bool) -> tuple[bool, bool, float]:
+    """What is less is better: an equilibrium, a stable one where that is wanted, the smaller weighted gap."""
+    return not result.solution.converged, stable and result.unstable, _gap_left(result)
+
+
+def _gap_left(result: Inverse) -> float:
+    """Root of the weighted squares of what the targets are missed by; infinite without an equilibrium."""
+    solution = result.solution
+    if not solution.converged:
+        return np.inf
+    errors = weighted_errors(solution.model, ca.DM(solution.x), ca.DM(solution.inputs))
+    return float(np.linalg.norm(ca.evalf(ca.MX(errors)).full()))
 
 
 def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
@@ -109,35 +189,71 @@ def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
     if not relaxed.stable:
         return result
     # Damped about the relaxed inputs now, so that the search stays near the stable branch.
-    second = replace(problem, origin=relaxed.inputs).solve(relaxed.x)
+    relaxed_problem = replace(problem, origin=relaxed.inputs)
+    second = relaxed_problem.solve(relaxed.x, np.zeros(len(problem.scale)))
     if second.solution.stable:
         return second
     return result
 
 
-def _with_verdict(result: Inverse, stable: bool) -> Inverse:
-    """The result with a sentence on the targets."""
+def with_verdict(result: Inverse, stable: bool) -> Inverse:
+    """The result of a search, judged: gaps, error of the model where it was estimated, and stability.
+
+    Args:
+        result: of :func:`search`, with an estimate of its error or without.
+        stable: whether a stable equilibrium was wanted.
+    """
     solution = result.solution
-    unstable = stable and solution.stable is False
+    gaps = target_errors(solution)
+    met = solution.converged and all(_met(solution, gaps))
+    result = replace(result, gaps=gaps, met=met)
     message = solution.message
     if solution.converged:
         message += _targets_sentence(result)
-    if solution.converged and unstable:
+    if result.unstable:
+        message = UNSTABLE + message
+    refused = stable and result.unstable
+    if refused:
         message += NOT_STABLE
     return replace(
         result,
         solution=replace(solution, message=message),
-        met=result.met and not unstable,
+        met=result.met and not refused,
     )
 
 
 def _targets_sentence(result: Inverse) -> str:
-    verdicts = _met(result.solution, result.gaps)
-    missed = [gap for gap, met in zip(result.gaps, verdicts, strict=True) if not met]
-    if not missed:
+    verdicts = _reached(result.solution, result.gaps)
+    missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
+    if missed:
+        misses = "; ".join(_words(gap) for gap in missed)
+        sentence = f" The targets are not all met; the closest that was found misses {misses}."
+        return sentence + _minimum_sentence(result)
+    if all(_met(result.solution, result.gaps)):
         return " The targets are met."
-    misses = "; ".join(_words(gap) for gap in missed)
-    return f" The targets are not all met; the closest that was found misses {misses}."
+    return _model_sentence(result.solution)
+
+
+def _minimum_sentence(result: Inverse) -> str:
+    """Where a search that leaves a gap ended: it is local, whatever the number of its starts."""
+    where = "within the bounds"
+    if result.at_bounds:
+        where = f"at the bound of {', '.join(result.at_bounds)}"
+    starts = "1 start"
+    if result.starts > 1:
+        starts = f"{result.starts} starts"
+    return f" It is a local minimum {where}, the best of {starts}."
+
+
+def _model_sentence(solution: Solution) -> str:
+    """Why targets that the discrete model meets are not met by the rod, as far as is known."""
+    scene = solution.model.scene
+    errors = [model_error(solution, target) or 0.0 for target in scene.targets]
+    return (
+        " The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
+        f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "
+        "larger tolerance."
+    )
 
 
 def _words(gap: Gap) -> str:
@@ -147,15 +263,23 @@ def _words(gap: Gap) -> str:
     return f"{distance} and {gap.angle:.3g} rad"
 
 
-def _met(solution: Solution, errors: tuple[Gap, ...]) -> list[bool]:
-    """Whether each target is met."""
-    model = solution.model
-    tolerance = model.scene.accuracy.tolerance
-    verdicts = []
-    for error, target in zip(errors, model.scene.targets, strict=True):
-        length = length_of(model, target)
-        verdicts.append(error.within(length, tolerance))
-    return verdicts
+def _met(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+    """Whether each target is met: by the discrete model, and that within its error."""
+    tolerance = solution.model.scene.accuracy.tolerance
+    lengths = _lengths(solution.model)
+    return [gap.within(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+
+
+def _reached(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+    """Whether the discrete model meets each target, whatever its own error."""
+    tolerance = solution.model.scene.accuracy.tolerance
+    lengths = _lengths(solution.model)
+    return [gap.reached(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+
+
+def _lengths(model: Model) -> list[float]:
+    """Length that each target is measured by, m."""
+    return [length_of(model, target) for target in model.scene.targets]
 
 
 @dataclass(frozen=True)
@@ -174,7 +298,7 @@ class _LiftedProblem:
     scale: FloatArray
     origin: FloatArray
 
-    def solve(self, x: FloatArray) -> Inverse:
+    def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
 
         The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
@@ -182,11 +306,12 @@ class _LiftedProblem:
 
         Args:
             x: unknowns to start from, shape (size,).
+            change: decision variables to start from, as changes from the origin in their scales, shape (n,).
         """
-        optimiser = self._optimiser()
+        optimiser = self._optimiser
         bounds = self._bounds()
         size = self.model.size
-        centre = np.zeros(len(self.scale))
+        centre = change
         rounds = 0
         largest_change = np.inf
         while rounds < ROUNDS and largest_change > SETTLED:
@@ -207,20 +332,81 @@ class _LiftedProblem:
             change = optimum[size:]
             largest_change = float(np.abs(change - centre).max())
             centre = change
-        return self._judged(x, centre, rounds)
+        result = self._judged(x, centre, rounds)
+        if result.met:
+            return result
+        return self._polished(result, x, centre)
+
+    def _polished(self, result: Inverse, x: FloatArray, change: FloatArray) -> Inverse:
+        """The search once more with the inputs that are near a bound held at it; the better of the two.
+
+        An interior-point method stays off a bound by the root of its tolerance where nothing presses against it.
+        """
+        lower, upper = self._ranges()
+        at_lower = change <= lower + NEAR_BOUND
+        at_upper = change >= upper - NEAR_BOUND
+        if not np.any(at_lower | at_upper):
+            return result
+        held_lower = np.where(at_upper & ~at_lower, upper, lower)
+        held_upper = np.where(at_lower, lower, upper)
+        held = np.clip(change, held_lower, held_upper)
+        unbounded = np.full(self.model.size, np.inf)
+        optimum = self._optimiser(
+            x0=np.concatenate([x, held]),
+            p=np.concatenate([held, [DAMPING[-1]]]),
+            lbg=0.0,
+            ubg=0.0,
+            lbx=np.concatenate([-unbounded, held_lower]),
+            ubx=np.concatenate([unbounded, held_upper]),
+        )["x"].full()[:, 0]
+        rounds = result.rounds + 1
+        if not np.all(np.isfinite(optimum)):
+            return replace(result, rounds=rounds)
+        polished = self._judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
+        return min(polished, replace(result, rounds=rounds), key=_gap_left)
 
     def _judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
         """The equilibrium at the inputs found, solved and judged like any other."""
-        inputs = self.origin.copy()
-        inputs[self.variables.indices] += self.scale * change
-        # Rounding may leave a range by the last digit.
-        inputs = self.variables.clipped(inputs)
+        inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
         solution = solve(self.model, values, start=x)
         errors = target_errors(solution)
         met = solution.converged and all(_met(solution, errors))
-        return Inverse(solution, errors, met, rounds)
+        return Inverse(solution, errors, met, rounds, at_bounds=self._at_bounds(inputs))
 
+    def inputs(self, change: FloatArray) -> FloatArray:
+        """Stacked inputs for a change of the decision variables, shape (inputs,)."""
+        inputs = self.origin.copy()
+        inputs[self.variables.indices] += self.scale * change
+        # Rounding may leave a range by the last digit.
+        return self.variables.clipped(inputs)
+
+    def scattered(self, count: int) -> FloatArray:
+        """Changes of the decision variables to start from, shape (count, n); none where no range is closed.
+
+        Entries without a range on both sides stay at the origin.
+        """
+        lower, upper = self._ranges()
+        closed = np.isfinite(upper - lower) & (upper > lower)
+        if not np.any(closed):
+            return np.zeros((0, len(self.scale)))
+        shares = np.random.default_rng(SEED).random((count, len(self.scale)))
+        least = np.where(closed, lower, 0.0)
+        most = np.where(closed, upper, 0.0)
+        return np.asarray(least + shares * (most - least))
+
+    def _at_bounds(self, inputs: FloatArray) -> tuple[str, ...]:
+        """Names of the decision variables that are at a bound, those aside that their bounds hold at one value."""
+        variables = self.variables
+        values = inputs[variables.indices]
+        near = AT_BOUND * self.scale
+        at_bound = (values <= variables.lower + near) | (values >= variables.upper - near)
+        free = variables.upper > variables.lower
+        stacked = set(variables.indices[at_bound & free].tolist())
+        slices = self.model.inputs.slices.items()
+        return tuple(name for name, entries in slices if stacked & set(range(entries.start, entries.stop)))
+
+    @cached_property
     def _optimiser(self) -> ca.Function:
         """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
         count = len(self.scale)
@@ -257,12 +443,17 @@ class _LiftedProblem:
             count,
         )
 
-    def _bounds(self) -> dict[str, FloatArray]:
-        """Ranges of the changes; the unknowns have none."""
-        unbounded = np.full(self.model.size, np.inf)
+    def _ranges(self) -> tuple[FloatArray, FloatArray]:
+        """Least and largest changes of the decision variables, each of shape (n,)."""
         start = self.origin[self.variables.indices]
         lower = (self.variables.lower - start) / self.scale
         upper = (self.variables.upper - start) / self.scale
+        return lower, upper
+
+    def _bounds(self) -> dict[str, FloatArray]:
+        """Ranges of the changes; the unknowns have none."""
+        unbounded = np.full(self.model.size, np.inf)
+        lower, upper = self._ranges()
         return {
             "lbx": np.concatenate([-unbounded, lower]),
             "ubx": np.concatenate([unbounded, upper]),

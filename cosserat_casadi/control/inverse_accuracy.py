@@ -8,7 +8,9 @@ from dataclasses import replace
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import VERIFIED_MODES, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
-from cosserat_casadi.control.inverse import Inverse, inverse
+from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
+from cosserat_casadi.control.inverse import STARTS, Inverse, search, with_verdict
+from cosserat_casadi.control.target_errors import model_error, target_errors
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.model.build import Model, build
@@ -25,7 +27,8 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
     """Inputs for which a scene meets its targets, with modes and nodes that meet its tolerance there.
 
     The equilibrium at the inputs found is solved with more modes too. Where that moves the poses by more than half of
-    the tolerance, the search goes on with those. Where the scene fixes modes or nodes, the error is only estimated.
+    the tolerance, the search goes on with those. Where the scene fixes modes or nodes, the error is only estimated:
+    targets count as met where the gap and this estimate are both within the tolerance.
 
     Args:
         scene: a validated scene with targets.
@@ -38,12 +41,17 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
     accuracy = scene.accuracy
     model = build(scene) if accuracy.fixed else verified_model(scene, VERIFIED_MODES[0], 0.0)
     start: Solution | None = None
+    tried = 1
     for modes in VERIFIED_MODES[1:]:
         _report(model, report)
-        result = inverse(model, start=start, stable=stable)
+        # Scattered on the first discretisation alone: the next ones start from its end.
+        scattered_starts = STARTS if start is None else 0
+        result = search(model, start, stable, scattered_starts)
+        tried = max(tried, result.starts)
+        result = replace(result, starts=tried)
         solution = result.solution
         if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
-            return result
+            return with_verdict(result, stable)
         finer_modes = modes
         if accuracy.fixed:
             finer_modes = max(modes, _most_modes(model) + FINER_MODES)
@@ -51,12 +59,30 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         # One solve at the same inputs tells what the modes leave, and is where a next search would start.
         reference = solve(finer, result.values, start=prolong(solution, finer))
         judged = _with_estimate(result, reference)
-        estimate = judged.solution.error_estimate
-        if accuracy.fixed or (estimate is not None and estimate <= accuracy.tolerance):
-            return judged
+        if accuracy.fixed:
+            return _fixed_verdict(judged, stable)
+        if _error_within(judged.solution):
+            return with_verdict(judged, stable)
         model = finer
         start = reference
     return _unresolved(result)
+
+
+def _fixed_verdict(judged: Inverse, stable: bool) -> Inverse:
+    """The verdict on modes and nodes that the user fixed: as a solve, unresolved where the shape is far off."""
+    shape_error = judged.solution.shape_error_estimate
+    # Without an estimate nothing vouches for the gaps.
+    if shape_error is None or shape_error > LARGEST_SHAPE_ERROR:
+        return _unresolved(judged)
+    return with_verdict(judged, stable)
+
+
+def _error_within(solution: Solution) -> bool:
+    """Whether the estimated error is within the tolerance: of the tips, and where the targets are."""
+    scene = solution.model.scene
+    at_targets = [model_error(solution, target) for target in scene.targets]
+    errors = [solution.error_estimate, *at_targets]
+    return all(error is not None and error <= scene.accuracy.tolerance for error in errors)
 
 
 def _report(model: Model, report: Report | None) -> None:
@@ -80,6 +106,10 @@ def _with_estimate(result: Inverse, reference: Solution) -> Inverse:
 
 
 def _unresolved(result: Inverse) -> Inverse:
+    """The result as one that is not of the rod; the gaps are those of the discrete model."""
     outcome = Outcome.UNRESOLVED
-    solution = replace(result.solution, outcome=outcome, message=outcome.value)
-    return replace(result, solution=solution, met=False)
+    message = outcome.value
+    if result.solution.shape_error_estimate is not None:
+        message += f" The estimated error is {result.solution.shape_error_estimate:.2g} of the length."
+    solution = replace(result.solution, outcome=outcome, message=message, stable=None)
+    return replace(result, solution=solution, gaps=target_errors(solution), met=False)

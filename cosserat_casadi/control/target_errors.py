@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -22,16 +22,26 @@ class Gap:
         what: the target in words.
         position: distance in m, of a curve the largest over its points.
         angle: angle between the target's orientation and the actual one, rad; None where the orientation is free.
+        position_error: estimated error of the discrete model that the distance was measured on, m; None where it was
+            not estimated.
+        angle_error: likewise of the angle, rad.
     """
 
     what: str
     position: float
     angle: float | None
+    position_error: float | None = None
+    angle_error: float | None = None
+
+    def reached(self, length: float, tolerance: float) -> bool:
+        """Whether the discrete model meets the target: position relative to a length, and angle, to a tolerance."""
+        angle_reached = self.angle is None or self.angle <= tolerance
+        return angle_reached and self.position <= tolerance * length
 
     def within(self, length: float, tolerance: float) -> bool:
-        """Whether the target is met: position relative to a length, and angle, to a tolerance."""
-        angle_met = self.angle is None or self.angle <= tolerance
-        return angle_met and self.position <= tolerance * length
+        """Whether the target is met: the gap and, where it was estimated, the error of the model that it is of."""
+        error_within = self.position_error is None or self.position_error <= tolerance * length
+        return error_within and self.reached(length, tolerance)
 
 
 def length_of(model: Model, target: scenes.Target) -> float:
@@ -57,9 +67,29 @@ def weighted_errors(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
 
 
 def target_errors(solution: Solution) -> tuple[Gap, ...]:
-    """How far a solution is from each of the targets of its scene."""
-    targets = solution.model.scene.targets
-    return tuple(_gap(solution, target) for target in targets)
+    """How far a solution is from each of the targets of its scene, and how far the model itself may be off there."""
+    gaps = []
+    for target in solution.model.scene.targets:
+        gap = _gap(solution, target)
+        error = model_error(solution, target)
+        if error is not None:
+            angle_error = None if gap.angle is None else error
+            gap = replace(gap, position_error=error * length_of(solution.model, target), angle_error=angle_error)
+        gaps.append(gap)
+    return tuple(gaps)
+
+
+def model_error(solution: Solution, target: scenes.Target) -> float | None:
+    """Estimated error of a solution where a target is: position relative to the length of the rod, and rad.
+
+    Returns:
+        None where it was not estimated.
+    """
+    is_curve = isinstance(target, scenes.CurveTarget)
+    # A body is where the tips of its rods are; of sections in between only the shape's estimate speaks.
+    if is_curve or (target.rod is not None and target.at != 1.0):
+        return solution.shape_error_estimate
+    return solution.error_estimate
 
 
 def _error(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> Matrix:

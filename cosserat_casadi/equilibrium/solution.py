@@ -56,7 +56,7 @@ class Solution:
         outcome: how the solve ended.
         message: a sentence for the user.
         residual_norm: relative norm of the dimensionless residual at x, computed again at the end.
-        iterations: Newton iterations, all load steps together.
+        iterations: Newton iterations, all load steps together; of a scene, on all discretisations that were tried.
         load_factor: share of the loads that was reached, 1 unless the load stalled.
         smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.

@@ -81,7 +81,7 @@ class _End:
 
 def solve(
     model: Model,
-    values: Mapping[str, npt.ArrayLike] | None = None,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
     *,
     start: Start = None,
     method: str = "continuation",
@@ -94,7 +94,8 @@ def solve(
 
     Args:
         model: what to solve.
-        values: inputs by name; those not named keep the scene's values.
+        values: inputs by name, those not named keeping the scene's values; or all of them stacked, shape
+            (model.inputs.size,), as a solution holds them.
         start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
             the inputs from those of the solution to the wanted ones, and so stays on its branch. From unknowns of
             shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
@@ -111,7 +112,7 @@ def solve(
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
         ValueError: unknown method, or a start of another model.
     """
-    inputs = model.pack(values)
+    inputs = _stacked(model, values)
     limits = settings or ContinuationSettings()
     task = _Task(model, inputs, start, limits, progress)
     unknowns = len(task.first_iterate)
@@ -137,6 +138,23 @@ def solve(
     if raise_on_failure and not solution.converged:
         raise SolveError(solution.message)
     return solution
+
+
+def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None) -> FloatArray:
+    """Stacked inputs, checked, shape (model.inputs.size,).
+
+    Raises:
+        SceneError: a name is unknown, or a value is refused.
+    """
+    if values is None or isinstance(values, Mapping):
+        return model.pack(values)
+    stacked = np.asarray(values, dtype=float).ravel()
+    size = model.inputs.size
+    if stacked.size != size:
+        names = ", ".join(model.inputs.names) or "none"
+        raise SceneError(Problem("inputs", f"must be {size} numbers, got {stacked.size}", f"they are {names}"))
+    # By name once more: each input has faults of its own.
+    return model.pack(model.inputs.unpack(stacked))
 
 
 def check_potential(model: Model, inputs: FloatArray) -> None:

@@ -135,7 +135,10 @@ class ModelFunctions:
         differentiable=True,
     )
     def tip(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame."""
+        """(x, inputs) ↦ (position, quaternion, rotation) of the tip, world frame.
+
+        Columns: position 3×1, quaternion w, x, y, z 4×1; rotation world_R_tip 3×3. All are CasADi matrices.
+        """
         tip = _tip_in_world(written)
         return [tip.position, tip.quaternion, tip.rotation]
 
@@ -161,7 +164,8 @@ class ModelFunctions:
         """(x, inputs, X) ↦ (position, quaternion) at any X in [0, 1], world frame: the interpolant itself.
 
         The polynomial through the nodes, element by element, as a Chebyshev series: no singularity at a node, and
-        exact derivatives with respect to X too.
+        exact derivatives with respect to X too. X is one number; position is 3×1 and the quaternion w, x, y, z 4×1.
+        For k abscissae, ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
         """
         rod_shape = written.system.rods[written.owner].shape
         weights = _interpolation_weights(written.discrete, written.owner, written["X"])

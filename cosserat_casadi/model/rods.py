@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod import section
@@ -14,10 +15,20 @@ from cosserat_casadi.rod.properties import STRAINS, RodProperties
 
 Field = Callable[[FloatArray], FloatArray]
 
+SMALLEST_FORCE = 1e-150
+"""Least EI/ℓ² that can be computed with, N: its square is still a number."""
+
+LARGEST_FORCE = 1e150
+"""Largest EI/ℓ² that can be computed with, N."""
+
 
 def rod_properties(rod: scenes.Rod) -> RodProperties:
-    """Stiffness, density and unloaded strain of a rod of the scene."""
-    return RodProperties(
+    """Stiffness, density and unloaded strain of a rod of the scene.
+
+    Raises:
+        SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
+    """
+    properties = RodProperties(
         name=rod.name,
         length=rod.length,
         admitted=rod.admitted,
@@ -26,6 +37,22 @@ def rod_properties(rod: scenes.Rod) -> RodProperties:
         intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
         linear_density=_linear_density(rod),
     )
+    _refuse_out_of_range(properties)
+    return properties
+
+
+def _refuse_out_of_range(properties: RodProperties) -> None:
+    """Refuse a rod whose EI/ℓ² overflows or vanishes: forces are measured by it."""
+    # Division by the length twice: its square alone may underflow.
+    with np.errstate(all="ignore"):
+        force = np.float64(properties.bending_stiffness) / properties.length / properties.length
+    if SMALLEST_FORCE <= force <= LARGEST_FORCE:
+        return
+    problem = (
+        f"its length of {properties.length:g} m and its stiffness EI give EI/ℓ² = {force:g} N, "
+        "which is too large or too small to compute with"
+    )
+    raise SceneError(Problem(properties.name, problem, "give lengths in m, moduli in Pa, stiffnesses in N m² and N"))
 
 
 def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:

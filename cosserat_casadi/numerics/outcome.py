@@ -16,8 +16,8 @@ class Outcome(Enum):
     NOT_FINITE = "No equilibrium found: the equations gave a value that is not a finite number."
     SINGULAR = "No equilibrium found: the Jacobian is singular and no step reduces the residual."
     LOAD_STALLED = (
-        "No equilibrium found: growing the load from zero, the path could not be followed further; "
-        "there may be a limit point or a buckling load."
+        "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be "
+        "followed further; there may be a limit point or a buckling load."
     )
     UNRESOLVED = (
         "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: "

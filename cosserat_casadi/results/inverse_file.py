@@ -18,6 +18,8 @@ def inverse_result(inverse: Inverse) -> dict[str, Any]:
             "what": gap.what,
             "position_gap": gap.position,
             "angle_gap": gap.angle,
+            "position_error_estimate": gap.position_error,
+            "angle_error_estimate": gap.angle_error,
         }
         targets.append(entry)
     data = {**result(inverse.solution), "targets_met": inverse.met, "targets": targets}

@@ -68,12 +68,20 @@ def write_sweep(sweep: Sweep, path: Path) -> None:
     """Write record and results, each whole or not at all; the same sweep gives the same bytes."""
     # The record comes first: results without one are not ours, and are never written over.
     text = json.dumps(sweep.record, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-    write_atomically(record_file(path), text.encode())
-    with atomic_file(path) as temporary:
-        if _is_parquet(path):
-            _write_parquet(sweep, temporary)
-        else:
-            _write_csv(sweep, temporary)
+    record = record_file(path)
+    recorded_before = record.exists()
+    write_atomically(record, text.encode())
+    try:
+        with atomic_file(path) as temporary:
+            if _is_parquet(path):
+                _write_parquet(sweep, temporary)
+            else:
+                _write_csv(sweep, temporary)
+    except BaseException:
+        # A record without its results would be of no use.
+        if not recorded_before:
+            record.unlink(missing_ok=True)
+        raise
 
 
 def read_sweep(path: str | Path) -> Sweep:

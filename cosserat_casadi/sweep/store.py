@@ -6,12 +6,14 @@ import json
 import struct
 import zlib
 from collections.abc import Iterator, Mapping
+from io import FileIO
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
 import numpy as np
 
+from cosserat_casadi.files import write_errors, write_whole
 from cosserat_casadi.maths.typing import FloatArray
 
 ENTRY = struct.Struct("<qqI")
@@ -27,7 +29,7 @@ class Store:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._file: BinaryIO | None = None
+        self._file: FileIO | None = None
 
     def head(self) -> dict[str, Any] | None:
         """What sweep the file is of; None where there is none, or where it is damaged."""
@@ -39,12 +41,20 @@ class Store:
         return head if isinstance(head, dict) else None
 
     def start(self, head: Mapping[str, Any]) -> None:
-        """Begin a sweep, over whatever the file held."""
-        self._file = self.path.open("wb")
+        """Begin a sweep, over whatever the file held.
+
+        Raises:
+            WriteError: it cannot be written; nothing is left of it.
+        """
         line = json.dumps(head).encode() + b"\n"
-        self._file.write(line)
-        # Out of this process at once, so that a kill does not lose it.
-        self._file.flush()
+        with write_errors(self.path):
+            try:
+                # Unbuffered: out of this process at once, so that a kill does not lose it.
+                self._file = self.path.open("wb", buffering=0)
+                write_whole(self._file, line)
+            except OSError:
+                self.remove()
+                raise
 
     def resume(self, width: int) -> dict[int, FloatArray]:
         """What is done, by number of chunk, with results of this width; the file is ready for more."""
@@ -56,19 +66,23 @@ class Store:
                 done[number] = results.reshape(-1, width)
                 end += ENTRY.size + len(content)
         # What was being written when the process was killed is cut off.
-        self._file = self.path.open("r+b")
+        self._file = self.path.open("r+b", buffering=0)
         self._file.truncate(end)
         self._file.seek(end)
         return done
 
     def add(self, number: int, results: FloatArray) -> None:
-        """Keep the results of a chunk."""
+        """Keep the results of a chunk.
+
+        Raises:
+            WriteError: it cannot be written; what was kept before stays.
+        """
         content = np.ascontiguousarray(results, dtype="<f8").tobytes()
         if self._file is None:
             raise ValueError("the store is not open")
         header = ENTRY.pack(number, len(content), zlib.crc32(content))
-        self._file.write(header + content)
-        self._file.flush()
+        with write_errors(self.path):
+            write_whole(self._file, header + content)
 
     def remove(self) -> None:
         """The sweep is finished and written."""

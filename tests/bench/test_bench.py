@@ -22,6 +22,7 @@ from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
 from cosserat_casadi.bench.reference import NoReferenceError
+from cosserat_casadi.bench.table import print_effects
 from cosserat_casadi.codegen.compiled import find_compiler
 from tests.scenes import push, rod, scene
 
@@ -167,3 +168,15 @@ def test_effects_are_priced_in_time() -> None:
     for times in parts.values():
         assert isinstance(times, Times)
         assert 0.0 < times.igm < 3 * whole.igm
+
+
+def test_the_rod_is_named_whose_igm_is_timed() -> None:
+    """Of several rods the first is timed alone: its name stands beside the figure."""
+    times = Times(cold=9.0, warm=3.0, igm=1.0, jacobian=4.0)
+    headings = []
+    for rods in (["left"], ["left", "right"]):
+        console = Console(file=io.StringIO(), width=160)
+        print_effects(console, rods, times, {"push": replace(times, igm=0.5)})
+        headings.append(console.file.getvalue())
+    assert "IGM, µs" in headings[0]
+    assert "IGM of left alone, µs" in headings[1]

@@ -115,6 +115,9 @@ def test_check_prices_the_scene(wire: Path) -> None:
         (["solve", "wire.toml", "--output", "."], "is a folder"),
         (["solve", "wire.toml", "--output", "r.json", "--plot", "f.doc"], "--plot"),
         (["solve", "wire.toml", "--output", "r.json", "--set", "wire.length=-1"], "must be > 0, got -1"),
+        (["solve", "wire.toml", "--set", "wire.length=1e-200"], "wire: its length of 1e-200 m"),
+        (["check", "wire.toml", "--set", "wire.length=1e200"], "too large or too small to compute with"),
+        (["solve", "wire.toml", "--set", "wire.section.radius=1e-100"], "EI/ℓ² = 0 N"),
         (["solve", "wire.toml", "--colour"], "colour"),
         (["path", "wire.toml"], "--input"),
         (["path", "wire.toml", "--input", "shove.force", "--to", "[0,0,1]"], "shove.force: is not an input"),
@@ -444,3 +447,37 @@ def test_stable_is_refused_where_loads_have_no_potential(tmp_path: Path) -> None
     assert done.returncode == 2
     assert "no potential" in done.stderr
     assert not (tmp_path / "r.json").exists()
+
+
+def test_inverse_ends_with_three_at_an_unstable_equilibrium_unless_asked(tmp_path: Path) -> None:
+    """Beyond its critical load a column meets its target straight: that counts only where it is asked for."""
+    target = """
+[[targets]]
+kind = "position"
+rod = "column"
+position = [0, 0, 1.0]
+[[bounds]]
+input = "push.force"
+lower = [0, 0, -5.0]
+upper = [0, 0, -4.0]
+"""
+    (tmp_path / "column.toml").write_text(COLUMN + target)
+    refused = cosserat("inverse", "column.toml", "--output", "r.json", cwd=tmp_path)
+    assert refused.returncode == 3, refused.stderr
+    assert refused.stdout.splitlines()[1].startswith("Not stable: a real rod leaves this equilibrium.")
+    assert "--unstable" in refused.stderr
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert (result["targets_met"], result["stable"]) == (True, False)
+    accepted = cosserat("inverse", "column.toml", "--unstable", cwd=tmp_path)
+    assert accepted.returncode == 0, accepted.stderr
+    assert "Not stable" in accepted.stdout
+    both = cosserat("inverse", "column.toml", "--unstable", "--stable", cwd=tmp_path)
+    assert both.returncode == 2
+
+
+def test_iterations_are_those_of_the_whole_search(wire: Path) -> None:
+    """A wire that is bent from rest takes Newton steps, although the last correction may take none."""
+    done = cosserat("solve", "wire.toml", "--output", "r.json", cwd=wire)
+    iterations = json.loads((wire / "r.json").read_text())["iterations"]
+    assert iterations > 5
+    assert f"{iterations} iterations" in " ".join(done.stdout.split())

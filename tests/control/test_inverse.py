@@ -10,6 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
+    Model,
+    Outcome,
     Scene,
     SceneError,
     Solution,
@@ -50,6 +52,58 @@ def test_tensions_are_recovered_from_a_pose() -> None:
         assert_allclose(found.values[name].item(), tension, rtol=1e-7, atol=0)
 
 
+def test_only_what_is_bounded_changes() -> None:
+    """A payload that is listed for a controller keeps the scene's value where tensions alone have bounds."""
+    base = read_scene(ROOT / "examples" / "two_section_robot.toml")
+    truth = dict(zip(TENSIONS, [3.0, 7.0, 2.0, 9.0], strict=True))
+    robot = changed(base, inputs=[*TENSIONS, "payload.force"], accuracy={"modes": 3, "nodes": 12})
+    # A heavier payload than the scene's: with the scene's own the tensions alone cannot meet the pose.
+    target = pose_of(solve(build(robot), {**truth, "payload.force": [0.0, 0.0, -0.4]}), "backbone")
+    bounds = [{"input": name, "upper": 12.0} for name in TENSIONS]
+    found = inverse(build(changed(robot, targets=[target], bounds=bounds)))
+    assert_allclose(found.values["payload.force"].ravel(), [0.0, 0.0, -0.1], rtol=0, atol=0)
+    assert not found.met
+    # One limit, far off, sets it free.
+    bounds.append({"input": "payload.force", "upper": 10.0})
+    freed = inverse(build(changed(robot, targets=[target], bounds=bounds)))
+    assert freed.met
+
+
+def reachable(tensions: list[float]) -> Model:
+    """The robot with a pose as its target that these tensions lead to, and tensions of at most 25 N to find."""
+    robot = changed(
+        read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS, accuracy={"modes": 3, "nodes": 10}
+    )
+    target = pose_of(solve(build(robot), dict(zip(TENSIONS, tensions, strict=True))), "backbone")
+    bounds = [{"input": name, "upper": 25.0} for name in TENSIONS]
+    return build(changed(robot, targets=[target], bounds=bounds))
+
+
+@pytest.mark.parametrize("tensions", [[9.81, 12.326, 0.0, 1.52], [0.0, 17.306, 15.885, 0.0]])
+def test_scattered_starts_leave_a_local_minimum(tensions: list[float]) -> None:
+    """From the scene's own tensions the search ends far off, at a bound; from another start the pose is met."""
+    model = reachable(tensions)
+    local = inverse(model, starts=0)
+    assert local.gaps[0].position > 0.1
+    assert local.at_bounds
+    assert f"a local minimum at the bound of {', '.join(local.at_bounds)}" in local.solution.message
+    assert "the best of 1 start." in local.solution.message
+    found = inverse(model)
+    assert found.met
+    assert 1 < found.starts <= 9
+    # The same scene has the same starts.
+    assert_allclose(inverse(model).solution.inputs, found.solution.inputs, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("tensions", [[1.219, 0.0, 0.0, 0.0], [0.0, 10.917, 5.081, 0.0]])
+def test_slack_tendons_are_found_slack(tensions: list[float]) -> None:
+    """A tension of zero that nothing presses to its bound is found exactly, where an interior point stays off it."""
+    found = inverse(reachable(tensions), starts=0)
+    assert found.met
+    for name, tension in zip(TENSIONS, tensions, strict=True):
+        assert_allclose(found.values[name].item(), tension, rtol=0, atol=1e-6)
+
+
 def test_of_many_tensions_those_near_the_scenes_are_taken() -> None:
     """Four tensions for three coordinates: no solution on the line of solutions is nearer by more than the damping."""
     base = changed(read_scene(ROOT / "examples" / "two_section_robot.toml"), inputs=TENSIONS)
@@ -74,7 +128,8 @@ def test_constant_curvature_closed_form() -> None:
     found = inverse_scene(scene(strain="planar", actuators=[cable], targets=[target], bounds=bounds))
     assert found.met
     assert_allclose(found.gaps[0].position, 0.0, rtol=0, atol=1e-8)
-    assert_allclose(found.values["cable.tension"].item(), tension, rtol=1e-7, atol=0)
+    assert isinstance(found.values["cable.tension"], float)
+    assert_allclose(found.values["cable.tension"], tension, rtol=1e-7, atol=0)
 
 
 @pytest.mark.slow
@@ -127,6 +182,7 @@ def test_bounds_are_kept_and_reached() -> None:
     assert not found.met
     force = found.values["push.force"].ravel()
     assert_allclose(force, [0.3, 0.0, 0.0], rtol=0, atol=1e-6)
+    assert "a local minimum at the bound of push.force, the best of 9 starts." in found.solution.message
     assert np.all(np.abs(force) <= [0.3, 0.0, 0.0])
     tips = [solve(build(bounded), {"push.force": [f, 0, 0]}).tip().position[0] for f in np.linspace(-0.3, 0.3, 13)]
     scanned = min(float(np.linalg.norm(tip - target["position"])) for tip in tips)
@@ -156,6 +212,39 @@ def test_the_equilibrium_is_that_of_a_solve() -> None:
     json.dumps(file, allow_nan=False)
 
 
+def test_a_gap_is_not_smaller_than_the_error_of_its_model() -> None:
+    """Modes and nodes that the user fixed meet the target on their own rod, which is far from the scene's."""
+    base = read_scene(ROOT / "examples" / "finger_to_point.toml")
+    coarse = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 1e-6}))
+    (gap,) = coarse.gaps
+    assert gap.position <= 1e-6 * 0.1
+    assert gap.position_error is not None
+    assert coarse.solution.error_estimate is not None
+    assert_allclose(gap.position_error, coarse.solution.error_estimate * 0.1, rtol=1e-12, atol=0)
+    assert gap.position_error > 1e-6 * 0.1
+    assert not coarse.met
+    assert "The targets are met." not in coarse.solution.message
+    assert "estimated error of the model" in coarse.solution.message
+    file = inverse_result(coarse)
+    assert file["targets"][0]["position_error_estimate"] == gap.position_error
+    # The estimate is honest: at the same inputs the resolved rod misses the target by no more than it.
+    resolved = solve(build(changed(base, accuracy={"modes": 12, "nodes": 24})), coarse.values)
+    miss = np.linalg.norm(resolved.tip().position[0] - base.targets[0].position)
+    assert 1e-6 * 0.1 < miss <= gap.position_error
+    wide = inverse_scene(changed(base, accuracy={"modes": 2, "nodes": 8, "tolerance": 0.1}))
+    assert wide.met
+
+
+def test_modes_that_do_not_resolve_the_rod_are_no_result() -> None:
+    """As in a solve: beyond a tenth of the length the equilibrium is not one of the rod, however small the gap."""
+    base = read_scene(ROOT / "examples" / "finger_to_point.toml")
+    found = inverse_scene(changed(base, accuracy={"modes": 1, "nodes": 4}))
+    assert found.gaps[0].position <= 1e-10
+    assert found.solution.outcome is Outcome.UNRESOLVED
+    assert "The estimated error is 0.17 of the length." in found.solution.message
+    assert not found.met
+
+
 def test_a_stable_equilibrium_when_asked() -> None:
     """Beyond its critical load a column meets its target straight; asked for a stable one, it is told that none is."""
     column = scene(
@@ -166,7 +255,8 @@ def test_a_stable_equilibrium_when_asked() -> None:
         bounds=[{"input": "push.force", "lower": [0.0, 0.0, -12.0], "upper": [0.0, 0.0, -10.0]}],
     )
     straight = inverse(build(column))
-    assert (straight.met, straight.solution.stable) == (True, False)
+    assert (straight.met, straight.solution.stable, straight.unstable) == (True, False, True)
+    assert straight.solution.message.startswith("Not stable: a real rod leaves this equilibrium.")
     assert "unstable" in straight.solution.message
     asked = inverse(build(column), stable=True)
     assert not asked.met

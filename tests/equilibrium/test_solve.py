@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import cosserat_casadi
 from cosserat_casadi import Outcome, SceneError, SolveError, build, discretise, parse_scene, solve, solve_scene
 from cosserat_casadi.numerics.broyden import UpdatedJacobian
 from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
@@ -348,3 +351,39 @@ def test_bar_that_only_stretches_vs_hookes_law(modes: int) -> None:
     solution = solve(build(parse_scene(text)))
     assert solution.converged
     assert_allclose(solution.tip().position[0], [0.0, 0.0, 2.0 * (1 + 25.0 / 500.0)], rtol=0, atol=1e-14)
+
+
+def test_a_path_from_a_solution_does_not_speak_of_the_unloaded_rod_alone() -> None:
+    """Continuation from a solution that stalls has grown no load from zero, and its sentence must fit that too."""
+    assert "growing the load from zero" not in Outcome.LOAD_STALLED.value
+    assert "the solution started at" in Outcome.LOAD_STALLED.value
+
+
+def test_stacked_inputs_are_those_by_name() -> None:
+    model = build(scene(push(), WEIGHT))
+    named = solve(model, {"push.force": [0.3, 0.1, -0.2]})
+    stacked = solve(model, named.inputs)
+    assert_allclose(stacked.x, named.x, rtol=0, atol=0)
+    assert_allclose(solve(model, named.inputs.tolist()).x, named.x, rtol=0, atol=0)
+    with pytest.raises(SceneError, match="inputs: must be 6 numbers, got 2"):
+        solve(model, [1.0, 2.0])
+    with pytest.raises(SceneError, match=r"push.force: must be finite"):
+        solve(model, np.full(6, np.nan))
+
+
+def test_shapes_of_tip_and_shape_are_those_documented() -> None:
+    model = build(scene(push()))
+    tip = model.tip["rod"]
+    assert [tip.size_out(i) for i in range(tip.n_out())] == [(3, 1), (4, 1), (3, 3)]
+    shape = model.shape["rod"]
+    assert [shape.size_out(i) for i in range(shape.n_out())] == [(3, 1), (4, 1)]
+    solution = solve(model)
+    abscissae = [0.2, 0.7, 1.0]
+    positions, _ = shape.map(3)(
+        np.tile(solution.x, (3, 1)).T, np.tile(solution.inputs, (3, 1)).T, np.array([abscissae])
+    )
+    assert_allclose(positions.full().T, solution.pose(abscissae).position, rtol=0, atol=1e-14)
+
+
+def test_the_package_says_its_version() -> None:
+    assert cosserat_casadi.__version__ == version("cosserat-casadi")

@@ -10,9 +10,9 @@ from rich.console import Console
 
 from cosserat_casadi.bench.grid import METHODS
 from cosserat_casadi.bench.plan import make_plan, run_plan
-from cosserat_casadi.cli.exit_codes import INTERRUPTED
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.scene import read_scene
 
 
@@ -37,4 +37,4 @@ def bench(
     with progress_bar() as bar:
         interrupted = run_plan(plan, Console(), count_reporter(bar, "Finding the reference"))
     if interrupted:
-        raise typer.Exit(INTERRUPTED)
+        raise StoppedError

@@ -34,4 +34,5 @@ def check(
 def _print_times(scene: Scene) -> None:
     with Console(stderr=True).status("Compiling the scene with and without each effect"):
         whole, parts = effect_times(scene, find_compiler())
-    print_effects(Console(), whole, parts)
+    rods = [rod.name for rod in scene.rods]
+    print_effects(Console(), rods, whole, parts)

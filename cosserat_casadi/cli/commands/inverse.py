@@ -12,8 +12,9 @@ from cosserat_casadi.cli.commands.solving import draw_solution
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
 from cosserat_casadi.cli.progress import solve_display
-from cosserat_casadi.cli.reports.solution import print_inverse
+from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.inverse_file import inverse_text
 from cosserat_casadi.scene import read_scene
@@ -24,12 +25,20 @@ def inverse(
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the result at the inputs found (JSON) here.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
-    stable: Annotated[bool, typer.Option("--stable", help="Accept a stable equilibrium only.")] = False,
+    stable: Annotated[
+        bool, typer.Option("--stable", help="Find a stable equilibrium: from an unstable one let the rod settle.")
+    ] = False,
+    unstable: Annotated[
+        bool, typer.Option("--unstable", help="Accept an unstable equilibrium: exit code 0 where the targets are met.")
+    ] = False,
 ) -> None:
     """Find inputs that bring rods and bodies to the targets of a scene.
 
-    Exit codes: 0 targets met, 2 refused, 3 not met, or no equilibrium found; the files show the closest pose then.
+    Where the scene has [[bounds]], only the inputs that it bounds change. Exit codes: 0 targets met, 2 refused, 3 not
+    met, unstable, or no equilibrium found; the files show the closest pose then.
     """
+    if stable and unstable:
+        raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
     check_outputs(output, plot)
     with solve_display("Finding inputs") as display:
         # Read inside: building the problem is part of what the bar shows, and may be interrupted.
@@ -40,6 +49,9 @@ def inverse(
     if plot is not None:
         draw_solution(solved.solution, plot)
     print_inverse(Console(), solved, given_files(output, plot))
+    if solved.unstable and not unstable and not stable:
+        print_unstable_inverse(Console(stderr=True))
     # The files hold the closest pose then.
-    if not solved.met:
+    refused = solved.unstable and not unstable
+    if refused or not solved.met:
         raise typer.Exit(NOT_FOUND)

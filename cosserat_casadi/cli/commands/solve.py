@@ -13,7 +13,7 @@ from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progr
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
-from cosserat_casadi.files import write_atomically
+from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
 from cosserat_casadi.scene import read_scene
 
@@ -37,7 +37,9 @@ def solve(
     if plot is not None:
         draw_solution(solution, plot)
     if as_json:
-        sys.stdout.write(result_text(solution))
+        # JSON is UTF-8, whatever the terminal knows.
+        text = result_text(solution)
+        write_whole(sys.stdout.buffer, text.encode())
     else:
         print_solution(Console(), solution, given_files(output, plot))
     # On standard error, so that --json stays pure; None is no verdict.

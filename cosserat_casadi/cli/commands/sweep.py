@@ -8,10 +8,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.sweep import print_stopped_sweep, print_sweep
+from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweep.outcome_table import Sweep
@@ -56,7 +57,7 @@ def sweep(
             swept = run_sweep(plan, scheduler=scheduler, cores=cores, progress=show_count)
     except KeyboardInterrupt:
         print_stopped_sweep(Console(stderr=True), plan)
-        raise typer.Exit(INTERRUPTED) from None
+        raise StoppedError from None
 
     if plot is not None:
         _draw(swept, plot, colour)

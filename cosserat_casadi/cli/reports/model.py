@@ -85,9 +85,12 @@ def _print_price(console: Console, model: Model) -> None:
     # Expanding the functions into scalar operations takes seconds for a large scene.
     with console.status("Counting operations"):
         cost = price(model)
+    igm = "IGM"
+    if len(model.igm) > 1:
+        igm = f"IGM of all {len(model.igm)} rods"
     print_plain(
         console,
-        f"Model of {model.size} unknowns in scalar operations: IGM {cost.igm:,}, residual {cost.residual:,}, "
+        f"Model of {model.size} unknowns in scalar operations: {igm} {cost.igm:,}, residual {cost.residual:,}, "
         f"residual and Jacobian {cost.jacobian:,}.",
     )
 

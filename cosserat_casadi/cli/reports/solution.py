@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -12,6 +13,7 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import (
     digits,
     discretisation_sentences,
+    plural,
     print_plain,
     print_written,
     table_of,
@@ -29,11 +31,18 @@ STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, 
 
 def print_solution(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     """Print the outcome, the rods, bodies and actuators, the figures of merit, and the files that were written."""
-    scene = solution.model.scene
-    print_plain(console, title_line(scene.title))
+    _print_outcome(console, solution)
+    _print_equilibrium(console, solution, written)
+
+
+def _print_outcome(console: Console, solution: Solution) -> None:
+    print_plain(console, title_line(solution.model.scene.title))
     print_plain(console, f"[bold {_outcome_colour(solution)}]{escape(solution.message)}[/]")
+
+
+def _print_equilibrium(console: Console, solution: Solution, written: Sequence[Path]) -> None:
     console.print(_rod_table(solution))
-    if scene.actuators:
+    if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
     print_plain(console, _merit_sentence(solution))
     print_written(console, written)
@@ -49,24 +58,45 @@ def print_unstable(console: Console) -> None:
     )
 
 
+def print_unstable_inverse(console: Console) -> None:
+    """Say what to do about inputs that lead to an unstable equilibrium."""
+    print_plain(
+        console,
+        "[bold yellow]Warning:[/] the equilibrium at these inputs is not stable: a real rod leaves it. "
+        "Add --stable to look for a stable one, or --unstable to accept this one.",
+        soft_wrap=True,
+    )
+
+
 def print_inverse(console: Console, inverse: Inverse, written: Sequence[Path]) -> None:
-    """Print the inputs found, how far the targets are missed, then the equilibrium like that of a solve."""
+    """Print the verdict, the inputs found, how far the targets are missed, then the equilibrium."""
+    _print_outcome(console, inverse.solution)
     inputs = table_of("input", "value found")
     for name, value in inverse.values.items():
-        inputs.add_row(escape(name), ", ".join(digits(value.ravel(order="F"))))
+        stacked = np.ravel(value, order="F")
+        inputs.add_row(escape(name), ", ".join(digits(stacked)))
     console.print(inputs)
 
     targets = table_of("target", "position missed by, m", "angle missed by, rad")
     for gap in inverse.gaps:
-        targets.add_row(escape(gap.what), f"{gap.position:.3g}", _angle(gap))
+        targets.add_row(escape(gap.what), _with_error(gap.position, gap.position_error), _angle(gap))
     console.print(targets)
-    print_solution(console, inverse.solution, written)
+    if any(gap.position_error is not None for gap in inverse.gaps):
+        print_plain(console, "± is the estimated error of the model that the gap was measured on.")
+    _print_equilibrium(console, inverse.solution, written)
 
 
 def _angle(gap: Gap) -> str:
     if gap.angle is None:
         return "free"
-    return f"{gap.angle:.3g}"
+    return _with_error(gap.angle, gap.angle_error)
+
+
+def _with_error(gap: float, error: float | None) -> str:
+    """A gap with the error of the model that it was measured on: it is not known more exactly."""
+    if error is None:
+        return f"{gap:.3g}"
+    return f"{gap:.3g} ± {error:.1g}"
 
 
 def _outcome_colour(solution: Solution) -> str:
@@ -110,7 +140,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 def _merit_sentence(solution: Solution) -> str:
     """How good the solution is, and what it was found on."""
-    parts = [f"residual {solution.residual_norm:.1e}", f"{solution.iterations} iterations"]
+    parts = [f"residual {solution.residual_norm:.1e}", plural(solution.iterations, "iteration")]
     if solution.error_estimate is not None:
         parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
     if solution.shape_error_estimate is not None:

@@ -1,0 +1,222 @@
+"""Every command where letters, room or time run out: a terminal without letters, a full disk, a folder that takes
+nothing, a signal. A sentence and an exit code are owed each time, and nothing half-written stays."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
+
+SCENE = """
+schema = 1
+title = "Draht, 3 µm² dünn"
+inputs = ["push.force"]
+accuracy = { modes = 3, nodes = 8, tolerance = 0.05 }
+[[rods]]
+name = "wire"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 60e9, poisson_ratio = 0.33, density = 6450.0 }
+section = { shape = "circle", radius = 0.5e-3 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "wire"
+force = [0.2, 0, 0]
+[[actuators]]
+name = "muscle"
+kind = "chamber"
+rod = "wire"
+area = 1e-6
+offset = [1e-3, 0]
+pressure = 1e3
+[[targets]]
+kind = "position"
+rod = "wire"
+position = [0.1, 0, 0.15]
+[[bounds]]
+input = "push.force"
+lower = [0, 0, 0]
+upper = [1, 0, 0]
+"""
+
+COMMANDS = {
+    "check": ["check", "wire.toml"],
+    "solve": ["solve", "wire.toml", "--output", "out.json", "--plot", "out.svg"],
+    "path": ["path", "wire.toml", "--input", "push.force", "--to", "[0.3,0,0]", "--output", "out.json"],
+    "inverse": ["inverse", "wire.toml", "--output", "out.json"],
+    "sweep": ["sweep", "wire.toml", "--over", "rows.csv", "--output", "out.csv", "--cores", "1"],
+    "tune": ["tune", "wire.toml", "--range", "push.force.x=0:0.1", "--samples", "2", "--output", "out.toml"],
+    "export": ["export", "wire.toml", "--output", "out"],
+    "bench": ["bench", "wire.toml", "--methods", "magnus4", "--points", "1", "--output", "out"],
+}
+"""One call of each command, with every file that it can write."""
+
+UNREADY = {**os.environ, "LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+"""An environment whose terminal knows ASCII alone: Python's own ways round it are closed."""
+
+SMALLEST_FILE = 150
+"""Bytes that fit on the full disk: less than any result."""
+
+PROGRAM = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "wire.toml").write_text(SCENE, encoding="utf-8")
+    (tmp_path / "rows.csv").write_text("push.force.x\n0.1\n0.2\n0.3\n")
+    return tmp_path
+
+
+def start(
+    arguments: list[str],
+    folder: Path,
+    environment: dict[str, str] | None = None,
+    limit: Callable[[], None] | None = None,
+) -> subprocess.Popen[bytes]:
+    """A command on its way."""
+    return subprocess.Popen(
+        [*PROGRAM, *arguments],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=limit,
+    )
+
+
+def ended(process: subprocess.Popen[bytes]) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error, neither with a traceback."""
+    output, errors = process.communicate(timeout=120)
+    shown = output.decode()
+    said = errors.decode()
+    for text in (shown, said):
+        assert "Traceback" not in text, text
+        # What the package for options draws in place of a traceback.
+        assert "Error │" not in text, text
+    return process.returncode, shown, said
+
+
+def new_files(folder: Path) -> list[str]:
+    """What a command has left, without what was there before."""
+    return sorted({path.name for path in folder.rglob("*")} - {"wire.toml", "rows.csv"})
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
+    code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
+    # The target lies beside the curve that the tip can move on.
+    assert code == (NOT_FOUND if command == "inverse" else 0), said
+    assert shown.isascii()
+    assert said.isascii()
+    if command != "bench":
+        assert "dunn" in shown or command == "tune"
+
+
+def test_units_are_written_in_plain_letters(folder: Path) -> None:
+    _, shown, _ = ended(start(["solve", "wire.toml"], folder, UNREADY))
+    assert "m^3" in shown
+    assert "3 um^2 dunn" in shown
+    _, shown, _ = ended(start(["solve", "wire.toml", "--json"], folder, UNREADY))
+    assert json.loads(shown)["title"] == "Draht, 3 µm² dünn"
+
+
+def fill_disk() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (SMALLEST_FILE, SMALLEST_FILE))
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "check"])
+def test_full_disk(folder: Path, command: str) -> None:
+    code, _, said = ended(start(COMMANDS[command], folder, limit=fill_disk))
+    assert code == NOT_WRITTEN, said
+    assert "could not be written:" in " ".join(said.split())
+    assert [name for name in new_files(folder) if name != "out"] == []
+
+
+def test_full_disk_behind_standard_output(folder: Path) -> None:
+    with (folder / "shown.json").open("wb") as shown:
+        command = [*PROGRAM, "solve", "wire.toml", "--json"]
+        done = subprocess.run(
+            command, cwd=folder, stdout=shown, stderr=subprocess.PIPE, preexec_fn=fill_disk, timeout=120, check=False
+        )
+    assert done.returncode == NOT_WRITTEN
+    assert b"Standard output" in done.stderr
+    assert b"Traceback" not in done.stderr
+
+
+def test_a_reader_that_has_seen_enough(folder: Path) -> None:
+    process = start(["solve", "wire.toml", "--json"], folder)
+    assert process.stdout is not None
+    process.stdout.close()
+    assert process.stderr is not None
+    said = process.stderr.read().decode()
+    process.stderr.close()
+    assert process.wait(timeout=120) != 0
+    assert "Traceback" not in said
+    assert "Exception ignored" not in said
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "check"])
+def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
+    """/proc takes no file, even from a user who may write anywhere."""
+    arguments = [f"/proc/{word}" if word.startswith("out") else word for word in COMMANDS[command]]
+    code, _, said = ended(start(arguments, folder))
+    assert code in (REFUSED, NOT_WRITTEN)
+    assert "/proc" in said
+    assert new_files(folder) == []
+
+
+def listens(process: subprocess.Popen[bytes]) -> bool:
+    """Whether the command has its handlers of signals: before, it is Python that is still being loaded."""
+    status = Path(f"/proc/{process.pid}/status").read_text()
+    caught = next(line for line in status.splitlines() if line.startswith("SigCgt"))
+    mask = int(caught.split()[1], 16)
+    return bool(mask >> (signal.SIGTERM - 1) & 1)
+
+
+def stopped(command: str, number: signal.Signals, delay: float, folder: Path) -> None:
+    """Send a signal so long after the command has begun; it ends with its code, or was done already."""
+    process = start(COMMANDS[command], folder)
+    while process.poll() is None and not listens(process):
+        time.sleep(0.01)
+    time.sleep(delay)
+    process.send_signal(number)
+    code, _, said = ended(process)
+    expected = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}[number]
+    # A signal that comes when all is written ends the process without a word.
+    assert code in (expected, 0, NOT_FOUND, -number), said
+    if code == expected:
+        assert "Stopped" in said
+    left = new_files(folder)
+    assert [name for name in left if name.endswith(".part") and name != "out.csv.part"] == []
+    if "out.json" in left:
+        json.loads((folder / "out.json").read_text())
+
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc what a process listens to")
+@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize(("command", "delay"), [("solve", 0.05), ("sweep", 0.3), ("export", 0.15)])
+def test_signals(folder: Path, command: str, number: signal.Signals, delay: float) -> None:
+    stopped(command, number, delay, folder)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc what a process listens to")
+@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("delay", [0.0, 0.02, 0.1, 0.25, 0.6])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_signals_at_every_moment(folder: Path, command: str, number: signal.Signals, delay: float) -> None:
+    stopped(command, number, delay, folder)
