@@ -25,6 +25,7 @@ from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_mat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import discrete_scene
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -53,6 +54,25 @@ def watched(model: Model, rod: str) -> FloatArray:
     if held:
         return np.array(BETWEEN)
     return np.array([1.0])
+
+
+def watched_cables(model: Model) -> dict[str, float]:
+    """Cables whose lengths must be right to the tolerance, with the lengths of their rods that it is relative to, m."""
+    cables = {}
+    for actuator in model.scene.actuators:
+        if EFFECTS[actuator.kind].drawn_as == "cable":
+            rod = model.discrete.rods[actuator.rod]
+            cables[actuator.name] = rod.length
+    return cables
+
+
+def relative_cable_lengths(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """Lengths of the cables over those of their rods, shape (cables,)."""
+    lengths = []
+    for name, rod_length in watched_cables(model).items():
+        _, cable_length, _ = model.actuator[name](x, inputs)
+        lengths.append(float(cable_length) / rod_length)
+    return np.array(lengths)
 
 
 @dataclass(frozen=True)
@@ -90,7 +110,7 @@ class Preview:
 
     @cached_property
     def tips(self) -> FloatArray:
-        """Watched poses of the reference: positions over length and rotation entries, 12 for each section."""
+        """What is watched of the reference: positions over length, rotation entries, lengths of cables over length."""
         return self._tips(self.reference.x)
 
     def kept(self, modes: Modes) -> Mask:
@@ -190,7 +210,7 @@ class Preview:
                 position = fields[0] @ interpolation
                 quaternion = fields[1] @ interpolation
             poses.append(_entries(position, quaternion, discrete_rod.properties.length))
-        return np.concatenate(poses)
+        return np.concatenate([*poses, relative_cable_lengths(self.model, x, self._inputs)])
 
     def _tips_of(self, system: System) -> FloatArray:
         """Watched poses of a system that has numbers for its arguments."""
@@ -212,7 +232,11 @@ class Preview:
             world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
             world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
             poses.append(_entries(world_position, world_quaternion, discrete_rod.properties.length))
-        return np.concatenate(poses)
+        lengths = []
+        for name, rod_length in watched_cables(self.model).items():
+            _, cable_length, _ = system.actuator(name)
+            lengths.append(_numbers(cable_length)[0] / rod_length)
+        return np.concatenate([*poses, *lengths])
 
 
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:

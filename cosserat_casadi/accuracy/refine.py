@@ -35,6 +35,7 @@ from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, prolong, wi
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.preview import SAMPLES
 from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -148,6 +149,11 @@ class _SceneSolver:
         turns = [_unloaded_turn(rod) for rod in self.scene.rods]
         return max(turns)
 
+    @cached_property
+    def signal_modes(self) -> int:
+        """Modes below which a level is blind to what the scene puts along its rods."""
+        return signal_modes(self.scene)
+
     def build(self, discretisation: dict[str, Discretisation]) -> Model:
         """The model on a discretisation, which is reported."""
         model = build(self.scene, discretisation)
@@ -192,7 +198,7 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     Levels are refined as the verdicts ask until one solution can serve as a reference. Without one, the last failure,
     or the finest solution as UNRESOLVED.
     """
-    level: Level | None = Level.first(solver.tolerance)
+    level: Level | None = Level.first(solver.tolerance, solver.signal_modes)
     coarser: Solution | None = None
     failures: list[Solution] = []
     while level is not None:
@@ -205,13 +211,17 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
                 return solution
         else:
             coarser = solution
-        if isinstance(verdict, Enough):
+        blind = solver.signal_modes > level.modes
+        if isinstance(verdict, Enough) and not blind:
             # Only now: with few modes a rod may seem unstable that is not.
             relaxed = solver.relax(solution)
             if relaxed is solution or not relaxed.stable:
                 return _coarsened(solver, verdict.resolution)
             coarser = relaxed
         level = _next_level(level, verdict)
+        if blind:
+            # Not even the finest level sees what the scene asks for: whatever is found is no reference.
+            level = None
     if coarser is None:
         return failures[-1]
     return _unresolved(coarser)
@@ -281,7 +291,7 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     if not solution.converged:
         return solution
     turn = largest_turn(solution)
-    visible_from = min_modes(solution, turn, solver.tolerance)
+    visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer_modes: int | tuple[int, ...]
     if isinstance(modes, int):
         finer_modes = max(modes + FINER_MODES, visible_from)
