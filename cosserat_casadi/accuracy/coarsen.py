@@ -80,10 +80,13 @@ class Coarsening:
     Attributes:
         preview: the reference, and what it foresees.
         bound: largest change of a tip pose: position over length, rotation entries.
+        wave_modes: modes that waves along a rod ask for, 0 where there are none: on fewer intervals a wave passes for
+            a longer one, and the residual there is too far off to be foreseen.
     """
 
     preview: Preview
     bound: float
+    wave_modes: int = 0
 
     def run(self) -> Coarsened:
         """The cheapest discretisation found."""
@@ -277,7 +280,8 @@ class _GridSearch:
         Returns:
             None if none do.
         """
-        likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
+        polynomials = max(*self.modes[self.name], self.coarsening.wave_modes)
+        likely = max(FEWEST, round(LIKELY * polynomials))
         sufficient = most + 1
         insufficient = min(most, self._fewest_resolving) - 1
         if first:
@@ -358,7 +362,7 @@ class _GridSearch:
         # The turn of an interval is inverse to their number.
         resolution_index = float(model.coarseness(reference.x, reference.inputs))
         resolving = resolution_index * nodes
-        return max(FEWEST, ceil(NODES_MARGIN * resolving))
+        return max(FEWEST, ceil(NODES_MARGIN * resolving), self.coarsening.wave_modes)
 
     @cached_property
     def _unknowns(self) -> FloatArray:

@@ -24,7 +24,7 @@ from cosserat_casadi.equilibrium.solution import Solution, rotations
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discrete_scene import discrete_scene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import SINGULAR
@@ -177,6 +177,37 @@ class Preview:
         tips = self._tips(x)
         return self._tips_of(regridded) - tips + self._tips(corrected) - tips
 
+    def finer_shift(self, grids: Mapping[str, Discretisation]) -> FloatArray:
+        """Change of what is watched by modes that the reference lacks, on a grid that resolves them.
+
+        Stiffness alone holds the short waves of the added modes, so that each gives way by what the balance lacks in
+        it; the reference's Jacobian tells how all others follow. A few sweeps of both are Newton's corrections with
+        the model of all these modes, but no such model is built.
+
+        Args:
+            grids: modes, nodes and transport of every rod; modes no fewer than the reference's.
+        """
+        model = self.model
+        discrete = discrete_scene(model.scene, model.inputs, dict(grids))
+        known = _known_unknowns(model.discrete, discrete)
+        stiffness = _stiffness(discrete)[np.ix_(~known, ~known)]
+        inverse = _inverse(self._regular_jacobian)
+
+        def system(x: FloatArray) -> System:
+            return System(discrete, Arguments(ca.DM(x), ca.DM(self._inputs)))
+
+        x = np.zeros(discrete.unknowns.size)
+        x[known] = self.reference.x
+        current = system(x)
+        tips = self._tips_of(current)
+        for _ in range(CORRECTIONS):
+            residual = _numbers(current.residual)[:, 0]
+            x[~known] -= np.linalg.solve(stiffness, residual[~known])
+            residual = _numbers(system(x).residual)[:, 0]
+            x[known] -= inverse @ residual[known]
+            current = system(x)
+        return self._tips_of(current) - tips
+
     @property
     def _inputs(self) -> FloatArray:
         return self.reference.inputs
@@ -237,6 +268,28 @@ class Preview:
             _, cable_length, _ = system.actuator(name)
             lengths.append(_numbers(cable_length)[0] / rod_length)
         return np.concatenate([*poses, *lengths])
+
+
+def _known_unknowns(coarse: DiscreteScene, fine: DiscreteScene) -> Mask:
+    """Which unknowns of a finer discretisation a coarser one has too: all but the strains of higher degree."""
+    known = np.ones(fine.unknowns.size, dtype=bool)
+    for name, fine_rod in fine.rods.items():
+        first = fine.unknowns.strain(name).start
+        counts = zip(fine_rod.columns.items(), coarse.rods[name].discretisation.modes, strict=True)
+        for (component, columns), modes in counts:
+            own = slice(first + columns.start, first + columns.stop)
+            known[own] = fine_rod.degrees(component) < modes
+    return known
+
+
+def _stiffness(discrete: DiscreteScene) -> FloatArray:
+    """Stiffness of all rods among all unknowns, zero for those that are no strains, shape (n, n)."""
+    size = discrete.unknowns.size
+    stiffness = np.zeros((size, size))
+    for name, discrete_rod in discrete.rods.items():
+        own = discrete.unknowns.strain(name)
+        stiffness[own, own] = discrete_rod.stiffness
+    return stiffness
 
 
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:

@@ -61,6 +61,9 @@ MARGIN = 1.02
 TIGHT = 1e-6
 """Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
 
+SLOW_MODES = 7
+"""Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
+
 MOST_FAILURES = 2
 """Levels without an equilibrium after which the next one ends the search."""
 
@@ -154,6 +157,13 @@ class _SceneSolver:
         """Modes below which a level is blind to what the scene puts along its rods."""
         return signal_modes(self.scene)
 
+    @property
+    def wave_modes(self) -> int:
+        """The same where they are waves, 0 where all that the scene puts along its rods varies slowly."""
+        if self.signal_modes > SLOW_MODES:
+            return self.signal_modes
+        return 0
+
     def build(self, discretisation: dict[str, Discretisation]) -> Model:
         """The model on a discretisation, which is reported."""
         model = build(self.scene, discretisation)
@@ -203,7 +213,7 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     failures: list[Solution] = []
     while level is not None:
         solution = _at_level(solver, level, coarser)
-        verdict = assess(solution, solver.tolerance)
+        verdict = assess(solution, solver.tolerance, solver.wave_modes > 0)
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
             # Too few modes may have no equilibrium where the rod has one: some more levels are tried.
@@ -260,7 +270,7 @@ def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
     reference_error = resolution.modes_error + resolution.grid_error
     for share in COARSENING_SHARES:
         bound = share * solver.tolerance - reference_error
-        coarsened = Coarsening(resolution.preview, bound).run()
+        coarsened = Coarsening(resolution.preview, bound, solver.wave_modes).run()
         model = solver.build(coarsened.discretisation)
         solution = _corrected(model, coarsened.start, reference.inputs)
         if solution is None or not solution.converged:

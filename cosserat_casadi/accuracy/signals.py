@@ -44,7 +44,8 @@ def signal_modes(scene: scenes.Scene) -> int:
         breaks = element_ends(scene, record.name)
         for actuator in scene.actuators:
             if EFFECTS[actuator.kind].acts_on(actuator, record.name):
-                degrees.append(_actuator_degree(actuator, rod, breaks))
+                degree = _actuator_degree(actuator, rod, breaks)
+                degrees.append(degree)
         degrees += [_series_degree(coefficients) for coefficients in rod.intrinsic]
     for load in scene.loads:
         if isinstance(load, scenes.DistributedWrench):

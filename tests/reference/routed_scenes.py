@@ -1,6 +1,6 @@
-"""Seeded rods with tendons of many turns, and an integrator that judges what is claimed of them.
+"""Seeded rods with waves along them, and an integrator that judges what is claimed of them.
 
-The wrench in a section, of rod and cables together, obeys the balance of the loads alone: n' = −f, m' = −r' × n, and
+The wrench in a section, of rod and cables together, obeys the balance of the loads alone: n' = −f, m' = −r' × n − l, and
 nothing jumps where a cable is anchored. The strain follows from it section by section,
 H (ξ − ξ⁰) + Σ τ [D × t; t] = [Rᵀ m; Rᵀ n] in the admitted strains, whose left side is the gradient of a convex
 function. DOP853 integrates pose, wrench and the lengths of the cables from the clamp: no polynomials, no nodes of ours.
@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import legendre
 from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Scene, Solution
@@ -62,6 +63,36 @@ def routed_scene(seed: int) -> Table:
     return tables
 
 
+def rich_scene(seed: int) -> Table:
+    """A rod without tendons, of wavy unloaded curvature or under a wavy spread load; the same seed, the same scene."""
+    rng = np.random.default_rng([seed, 6])
+    rod: Table = {
+        "name": "rod",
+        "length": 1.0,
+        "strain": "kirchhoff",
+        "stiffness": {"bending_x": 1.0, "bending_y": float(rng.uniform(1.0, 1.5)), "torsion": 0.8},
+    }
+    push = {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": _vector(rng, 3.0), "moment": _vector(rng, 1.0)}
+    loads = [push]
+    if seed % 2 == 0:
+        count = int(rng.integers(10, 41))
+        rod["intrinsic"] = {"curvature": [[float(v) for v in rng.normal(size=count)] for _ in range(3)]}
+    else:
+        order = int(rng.integers(4, 9))
+        wind = [[float(v) for v in 4.0 * rng.normal(size=order + 1)] for _ in range(3)]
+        couple = [[float(v) for v in rng.normal(size=order + 1)] for _ in range(3)]
+        frame = str(rng.choice(["world", "body"]))
+        spread = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "frame": frame}
+        loads.append({**spread, "force": wind, "moment": couple})
+    return {
+        "schema": 1,
+        "title": f"rich scene {seed}, {'curved' if seed % 2 == 0 else 'spread'}",
+        "accuracy": {"tolerance": _between(rng, 1e-8, 1e-3)},
+        "rods": [rod],
+        "loads": loads,
+    }
+
+
 def _helix(rng: np.random.Generator, share: float = 1.0) -> Table:
     """Two to twenty turns either way; the tension bends by some radians, or nearly buckles."""
     radius = _between(rng, 0.01, 0.3)
@@ -104,7 +135,7 @@ class Integrated:
 
 @dataclass(frozen=True)
 class Miss:
-    """True errors of a solution, relative to the length of the rod: of the tip, as the tolerance counts, and of cables."""
+    """True errors of a solution, relative to the length of the rod: of tip poses and of lengths of cables."""
 
     tip: float
     cable: float
@@ -123,43 +154,52 @@ def miss(scene: Scene, solution: Solution) -> Miss:
 
 
 class _Integrator:
-    """Clamped at the origin along z, one rod, dead wrench at the tip."""
+    """Clamped at the origin along z, one rod, dead wrench at the tip, spread loads.
+
+    States are columns: position, rotation, force and moment in world axes, lengths of the cables.
+    """
 
     def __init__(self, scene: Scene, tensions: dict[str, float]) -> None:
         self.rod = rod_properties(scene.rods[0])
-        self.tendons = list(scene.actuators)
+        self.tendons: list[Any] = list(scene.actuators)
         self.tensions = [tensions[t.name] for t in self.tendons]
-        self.force, self.moment = np.zeros(3), np.zeros(3)
+        self.tip_wrench = np.zeros(6)
+        self.spread: list[Any] = []
         for load in scene.loads:
-            self.force += np.asarray(load.force)
-            self.moment += np.asarray(load.moment)
+            if load.kind == "distributed_wrench":
+                self.spread.append(load)
+            else:
+                self.tip_wrench += np.concatenate([load.force, load.moment])
+        self.loaded = bool(scene.loads)
 
     def equilibrium(self, solution: Solution) -> Integrated:
-        """Newton on the clamp's moment, from what the solution claims; the force is that of the dead load."""
+        """Newton on the clamp's wrench, from what the solution claims."""
         base = solution.base_wrench()
-        moment = -np.asarray(base.moment, dtype=float)
+        wrench = -np.concatenate([base.force, base.moment])
+        if not self.loaded:
+            # Cables alone leave no wrench in any section.
+            wrench = np.zeros(6)
         for _ in range(8):
-            if not self.force.any():
-                # Cables alone leave no wrench in any section.
-                states = self._shoot(self.moment[:, None])
-                break
             step = 1e-5
-            states = self._shoot(moment[:, None] + step * np.column_stack([np.zeros(3), np.eye(3)]))
-            left = states[12:15] - self.moment[:, None]
+            nearby = step * np.eye(6) if self.loaded else np.zeros((6, 0))
+            states = self._shoot(wrench[:, None] + np.column_stack([np.zeros(6), nearby]))
+            if not self.loaded:
+                break
+            left = states[12:18] - self.tip_wrench[:, None]
             change = np.linalg.solve((left[:, 1:] - left[:, :1]) / step, -left[:, 0])
-            moment = moment + change
-            if np.abs(change).max() < 1e-11:
+            wrench = wrench + change
+            if np.abs(change).max() < 1e-10:
                 break
         state = states[:, 0]
-        lengths = {t.name: float(state[15 + i]) for i, t in enumerate(self.tendons)}
+        lengths = {t.name: float(state[18 + i]) for i, t in enumerate(self.tendons)}
         return Integrated(state[:3], state[3:12].reshape(3, 3), lengths)
 
-    def _shoot(self, moments: Array) -> Array:
-        """States at the tip for moments at the clamp, one a column."""
-        count, extra = moments.shape[1], len(self.tendons)
-        start = np.zeros((15 + extra, count))
+    def _shoot(self, wrenches: Array) -> Array:
+        """States at the tip for wrenches at the clamp, one a column."""
+        count, extra = wrenches.shape[1], len(self.tendons)
+        start = np.zeros((18 + extra, count))
         start[3:12] = np.eye(3).reshape(9, 1)
-        start[12:15] = moments
+        start[12:18] = wrenches
         cuts = sorted({0.0, 1.0, *[end for t in self.tendons for end in t.span]})
         y = start.ravel()
         for a, b in pairwise(cuts):
@@ -173,8 +213,8 @@ class _Integrator:
     def _rates(self, X: float, flat: Array, active: list[int], count: int) -> Array:
         y = flat.reshape(-1, count)
         R = y[3:12].T.reshape(count, 3, 3)
-        force = np.einsum("kji,j->ki", R, self.force)
-        couple = np.einsum("kji,jk->ki", R, y[12:15])
+        force = np.einsum("kji,jk->ki", R, y[12:15])
+        couple = np.einsum("kji,jk->ki", R, y[15:18])
         offset = [(i, *_offset(self.tendons[i], X)) for i in active]
         strain, tangents = self._strain(X, np.hstack([couple, force]), offset)
         self.strain = strain
@@ -182,9 +222,13 @@ class _Integrator:
         r_rate = np.einsum("kij,kj->ki", R, strain[:, 3:])
         rates[:3] = r_rate.T
         rates[3:12] = np.einsum("kij,kjl->kil", R, _hats(strain[:, :3])).reshape(count, 9).T
-        rates[12:15] = -np.cross(r_rate, self.force).T
+        rates[15:18] = -np.cross(r_rate, y[12:15].T).T
+        for load in self.spread:
+            turn = R if load.frame == "body" else np.eye(3)
+            for rows, vector in ((slice(12, 15), load.force), (slice(15, 18), load.moment)):
+                rates[rows] -= (turn @ [legendre.legval(2 * X - 1, np.atleast_1d(c)) for c in vector]).T.reshape(3, -1)
         for i, tangent in tangents:
-            rates[15 + i] = np.linalg.norm(tangent, axis=1)
+            rates[18 + i] = np.linalg.norm(tangent, axis=1)
         return np.asarray(self.rod.length * rates.ravel())
 
     def _strain(self, X: float, wrench: Array, offsets: list[Any]) -> tuple[Array, list[Any]]:
