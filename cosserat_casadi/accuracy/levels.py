@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 
@@ -33,6 +34,9 @@ MOST_GRID_FACTOR = 4.0
 VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
 """Modes per strain component and element where a level is verified by the next one."""
 
+VERIFIED_WAVES = (64, 85, 113, 150)
+"""Further ones for scenes that put waves along their rods."""
+
 SPARE_NODES = 2
 """Intervals of a verified level beyond those that the modes and the turn of a rod need."""
 
@@ -48,12 +52,22 @@ def nodes_for_turn(modes: int, turn: float) -> int:
     return nodes_for(modes) + ceil(turn / 2)
 
 
+def verified_modes(scene: scenes.Scene) -> tuple[int, ...]:
+    """Modes of the verified levels of a scene, two at least: none of them is blind to what is put along its rods."""
+    needed = signal_modes(scene)
+    if needed <= VERIFIED_MODES[0]:
+        return VERIFIED_MODES
+    levels = (*VERIFIED_MODES, *VERIFIED_WAVES)
+    seeing = tuple(modes for modes in levels if modes >= needed)
+    return max(seeing, levels[-2:], key=len)
+
+
 def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
     """The model of a level that is verified by the next one.
 
     Args:
         scene: the scene.
-        modes: per strain component and element, one of VERIFIED_MODES.
+        modes: per strain component and element, one of :func:`verified_modes`.
         turn: largest angle through which an element turned on the level before, rad; 0 on the first.
     """
     nodes = nodes_for_turn(modes, turn) + SPARE_NODES

@@ -30,7 +30,7 @@ from cosserat_casadi.accuracy.assess import (
     assess,
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
-from cosserat_casadi.accuracy.levels import MOST_LEVELS, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import MOST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.preview import SAMPLES
@@ -208,6 +208,9 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     Levels are refined as the verdicts ask until one solution can serve as a reference. Without one, the last failure,
     or the finest solution as UNRESOLVED.
     """
+    if solver.signal_modes > REFERENCE_MODES[-1]:
+        # Not even the finest level sees what the scene asks for: whatever is found is no reference.
+        return _blind(solver)
     level: Level | None = Level.first(solver.tolerance, solver.signal_modes)
     coarser: Solution | None = None
     failures: list[Solution] = []
@@ -221,20 +224,24 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
                 return solution
         else:
             coarser = solution
-        blind = solver.signal_modes > level.modes
-        if isinstance(verdict, Enough) and not blind:
+        if isinstance(verdict, Enough):
             # Only now: with few modes a rod may seem unstable that is not.
             relaxed = solver.relax(solution)
             if relaxed is solution or not relaxed.stable:
                 return _coarsened(solver, verdict.resolution)
             coarser = relaxed
         level = _next_level(level, verdict)
-        if blind:
-            # Not even the finest level sees what the scene asks for: whatever is found is no reference.
-            level = None
     if coarser is None:
         return failures[-1]
     return _unresolved(coarser)
+
+
+def _blind(solver: _SceneSolver) -> Solution:
+    """The solution on the first level, UNRESOLVED where it is an equilibrium."""
+    solution = _at_level(solver, Level.first(solver.tolerance), None)
+    if not solution.converged:
+        return solution
+    return _unresolved(solution)
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:

@@ -75,7 +75,7 @@ class Resolution:
 
     @cached_property
     def hidden_error(self) -> float:
-        """Error found by a look at twice the modes: a bent rod multiplies its waves, which puts some at twice the degree."""
+        """Error found by a look at twice the modes: products of waves have twice their frequency."""
         finer = {}
         for name, discretisation in self._discretisation.items():
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)

@@ -19,7 +19,7 @@ from cosserat_casadi.model.discretise import element_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
 
@@ -89,7 +89,9 @@ def _projection(
     counts = (modes,) * len(rod.admitted)
     discretisation = Discretisation(counts, 2 * modes, breaks, "magnus4")
     discrete_rod = DiscreteRod(rod, discretisation)
-    unloaded = shape(discrete_rod, ca.DM.zeros(discrete_rod.size))
+    # What an actuator works on follows from strains alone: the rotations of the sections are not integrated.
+    unturned = ca.repmat(ca.DM([1, 0, 0, 0]), 1, discrete_rod.grid.elements * discretisation.nodes + 1)
+    unloaded = Shape(discrete_rod, ca.DM.zeros(discrete_rod.size), unturned, None)
     quantity = EFFECTS[actuator.kind].quantity(actuator, discrete_rod.grid)
     gradient = ca.DM(ca.densify(quantity.on(unloaded).gradient)).full()[:, 0]
     # In coordinates of unit stiffness all strains count alike, whatever the slenderness.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import VERIFIED_MODES, verified_model
+from cosserat_casadi.accuracy.levels import verified_model, verified_modes
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.equilibrium.solution import Solution
@@ -36,9 +36,10 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         SceneError: as in :func:`inverse`.
     """
     accuracy = scene.accuracy
-    model = build(scene) if accuracy.fixed else verified_model(scene, VERIFIED_MODES[0], 0.0)
+    levels = verified_modes(scene)
+    model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)
     start: Solution | None = None
-    for modes in VERIFIED_MODES[1:]:
+    for modes in levels[1:]:
         _report(model, report)
         result = inverse(model, start=start, stable=stable)
         solution = result.solution

@@ -1,7 +1,7 @@
 """Seeded rods with waves along them, and an integrator that judges what is claimed of them.
 
-The wrench in a section, of rod and cables together, obeys the balance of the loads alone: n' = −f, m' = −r' × n − l, and
-nothing jumps where a cable is anchored. The strain follows from it section by section,
+The wrench in a section, of rod and cables together, obeys the balance of the loads alone: n' = −f, m' = −r' × n − l,
+and nothing jumps where a cable is anchored. The strain follows from it section by section,
 H (ξ − ξ⁰) + Σ τ [D × t; t] = [Rᵀ m; Rᵀ n] in the admitted strains, whose left side is the gradient of a convex
 function. DOP853 integrates pose, wrench and the lengths of the cables from the clamp: no polynomials, no nodes of ours.
 """
