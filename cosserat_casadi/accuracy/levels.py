@@ -34,7 +34,7 @@ MOST_GRID_FACTOR = 4.0
 VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
 """Modes per strain component and element where a level is verified by the next one."""
 
-VERIFIED_WAVES = (64, 85, 113, 150)
+VERIFIED_WAVES = (48, 64, 85, 113, 150)
 """Further ones for scenes that put waves along their rods."""
 
 SPARE_NODES = 2
@@ -52,12 +52,17 @@ def nodes_for_turn(modes: int, turn: float) -> int:
     return nodes_for(modes) + ceil(turn / 2)
 
 
-def verified_modes(scene: scenes.Scene) -> tuple[int, ...]:
-    """Modes of the verified levels of a scene, two at least: none of them is blind to what is put along its rods."""
+def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...] = VERIFIED_MODES) -> tuple[int, ...]:
+    """Modes of levels that are verified by the next one, two at least: none is blind to what is put along the rods.
+
+    Args:
+        scene: the scene.
+        usual: modes of the levels of a scene without waves.
+    """
     needed = signal_modes(scene)
-    if needed <= VERIFIED_MODES[0]:
-        return VERIFIED_MODES
-    levels = (*VERIFIED_MODES, *VERIFIED_WAVES)
+    if needed <= usual[0]:
+        return usual
+    levels = (*usual, *(modes for modes in VERIFIED_WAVES if modes > usual[-1]))
     seeing = tuple(modes for modes in levels if modes >= needed)
     return max(seeing, levels[-2:], key=len)
 
@@ -67,7 +72,7 @@ def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
 
     Args:
         scene: the scene.
-        modes: per strain component and element, one of :func:`verified_modes`.
+        modes: per strain component and element, one of :func:`seeing_modes`.
         turn: largest angle through which an element turned on the level before, rad; 0 on the first.
     """
     nodes = nodes_for_turn(modes, turn) + SPARE_NODES

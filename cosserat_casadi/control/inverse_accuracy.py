@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import verified_model, verified_modes
+from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.equilibrium.solution import Solution
@@ -36,7 +36,7 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         SceneError: as in :func:`inverse`.
     """
     accuracy = scene.accuracy
-    levels = verified_modes(scene)
+    levels = seeing_modes(scene)
     model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)
     start: Solution | None = None
     for modes in levels[1:]:
