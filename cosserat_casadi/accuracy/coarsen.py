@@ -26,6 +26,9 @@ MODES_SHARE = 0.6
 TRANSPORTS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magnus6", "magnus8")))
 """Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
+WAVE_STEPS = (8, 1)
+"""Modes dropped at once where waves ask for many of them, one number after the other; else one at a time."""
+
 MOST_TRIALS = 4
 """Most grids previewed for one rod and one integrator: each costs about a third of building a model."""
 
@@ -160,13 +163,27 @@ class Coarsening:
         return starts
 
     def _drop_modes(self, modes: Modes, grid_shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
-        """Modes dropped one by one, each time where most cost goes for the least change of the tips.
+        """Modes dropped step by step, each time where most cost goes for the least change of the tips.
 
         Args:
             modes: where to begin.
             grid_shift: change of the tips that the grids make.
             bound: on the change of the tips that modes alone make, and on that which both make together.
         """
+        current = dict(modes)
+        steps = WAVE_STEPS if self.wave_modes else (1,)
+        for step in steps:
+            current = self._drop_by(step, current, grid_shift, bound)
+        return current
+
+    def _drop_by(
+        self,
+        step: int,
+        modes: Modes,
+        grid_shift: FloatArray,
+        bound: float,
+    ) -> dict[str, tuple[int, ...]]:
+        """Modes dropped so many at a time."""
         current = dict(modes)
         droppable: set[tuple[tuple[str, ...], int]] = set()
         for names in self.alike:
@@ -179,7 +196,7 @@ class Coarsening:
                 if current[names[0]][component] == 1:
                     droppable.discard((names, component))
                     continue
-                trial = _one_less(current, names, component)
+                trial = _fewer(current, names, component, step)
                 shift = self._largest_shift(trial, grid_shift)
                 if not shift <= bound:
                     # What a component gives up grows with what others have: it stays closed.
@@ -383,11 +400,11 @@ class _GridSearch:
         return replace(current, nodes=nodes, transport=transport)
 
 
-def _one_less(modes: Modes, names: tuple[str, ...], component: int) -> dict[str, tuple[int, ...]]:
-    """The same modes but for one less of a component of some rods."""
+def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> dict[str, tuple[int, ...]]:
+    """The same modes but for so many less of a component of some rods, which keeps its last one."""
     # Rods that are discretised alike have the same modes.
     counts = list(modes[names[0]])
-    counts[component] -= 1
+    counts[component] = max(1, counts[component] - step)
     changed = dict.fromkeys(names, tuple(counts))
     return {**modes, **changed}
 
