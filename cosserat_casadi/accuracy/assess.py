@@ -87,12 +87,13 @@ class NoEquilibrium:
 Verdict = Enough | NeedsModes | NeedsNodes | NeedsFinerGrid | NoEquilibrium
 
 
-def assess(solution: Solution, tolerance: float) -> Verdict:
+def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict:
     """What a solution lacks to be a reference for a tolerance.
 
     Args:
         solution: on the same modes for every component, and the same intervals for every element.
         tolerance: wanted error of the tip poses.
+        waves: whether the scene puts waves along its rods.
     """
     modes, nodes = _uniform(solution)
     if solution.outcome is Outcome.UNRESOLVED and nodes < MOST_NODES:
@@ -103,7 +104,7 @@ def assess(solution: Solution, tolerance: float) -> Verdict:
     visible_from = min_modes(solution, largest_turn(solution), tolerance)
     if visible_from > modes:
         return NeedsModes(visible_from, extrapolated=False)
-    resolution = Resolution(Preview(solution))
+    resolution = Resolution(Preview(solution), waves)
     modes_bound = max(REFERENCE_SHARE * tolerance, FLOOR)
     missing = resolution.missing_modes(modes_bound)
     if missing > 0:

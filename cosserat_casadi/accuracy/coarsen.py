@@ -26,6 +26,9 @@ MODES_SHARE = 0.6
 TRANSPORTS = ((1e-4, ("magnus4",)), (1e-6, ("magnus6", "magnus4")), (0.0, ("magnus6", "magnus8")))
 """Rotation integrators that may be the cheapest for bounds down to one, the likely one first."""
 
+WAVE_STEPS = (8, 1)
+"""Modes dropped at once where waves ask for many of them, one number after the other; else one at a time."""
+
 MOST_TRIALS = 4
 """Most grids previewed for one rod and one integrator: each costs about a third of building a model."""
 
@@ -80,10 +83,13 @@ class Coarsening:
     Attributes:
         preview: the reference, and what it foresees.
         bound: largest change of a tip pose: position over length, rotation entries.
+        wave_modes: modes that waves along a rod ask for, 0 where there are none: on fewer intervals a wave passes for
+            a longer one, and the residual there is too far off to be foreseen.
     """
 
     preview: Preview
     bound: float
+    wave_modes: int = 0
 
     def run(self) -> Coarsened:
         """The cheapest discretisation found."""
@@ -157,13 +163,27 @@ class Coarsening:
         return starts
 
     def _drop_modes(self, modes: Modes, grid_shift: FloatArray, bound: float) -> dict[str, tuple[int, ...]]:
-        """Modes dropped one by one, each time where most cost goes for the least change of the tips.
+        """Modes dropped step by step, each time where most cost goes for the least change of the tips.
 
         Args:
             modes: where to begin.
             grid_shift: change of the tips that the grids make.
             bound: on the change of the tips that modes alone make, and on that which both make together.
         """
+        current = dict(modes)
+        steps = WAVE_STEPS if self.wave_modes else (1,)
+        for step in steps:
+            current = self._drop_by(step, current, grid_shift, bound)
+        return current
+
+    def _drop_by(
+        self,
+        step: int,
+        modes: Modes,
+        grid_shift: FloatArray,
+        bound: float,
+    ) -> dict[str, tuple[int, ...]]:
+        """Modes dropped so many at a time."""
         current = dict(modes)
         droppable: set[tuple[tuple[str, ...], int]] = set()
         for names in self.alike:
@@ -176,7 +196,7 @@ class Coarsening:
                 if current[names[0]][component] == 1:
                     droppable.discard((names, component))
                     continue
-                trial = _one_less(current, names, component)
+                trial = _fewer(current, names, component, step)
                 shift = self._largest_shift(trial, grid_shift)
                 if not shift <= bound:
                     # What a component gives up grows with what others have: it stays closed.
@@ -277,7 +297,8 @@ class _GridSearch:
         Returns:
             None if none do.
         """
-        likely = max(FEWEST, round(LIKELY * max(self.modes[self.name])))
+        polynomials = max(*self.modes[self.name], self.coarsening.wave_modes)
+        likely = max(FEWEST, round(LIKELY * polynomials))
         sufficient = most + 1
         insufficient = min(most, self._fewest_resolving) - 1
         if first:
@@ -358,7 +379,7 @@ class _GridSearch:
         # The turn of an interval is inverse to their number.
         resolution_index = float(model.resolution_index(reference.x, reference.inputs))
         resolving = resolution_index * nodes
-        return max(FEWEST, ceil(NODES_MARGIN * resolving))
+        return max(FEWEST, ceil(NODES_MARGIN * resolving), self.coarsening.wave_modes)
 
     @cached_property
     def _unknowns(self) -> FloatArray:
@@ -379,11 +400,11 @@ class _GridSearch:
         return replace(current, nodes=nodes, transport=transport)
 
 
-def _one_less(modes: Modes, names: tuple[str, ...], component: int) -> dict[str, tuple[int, ...]]:
-    """The same modes but for one less of a component of some rods."""
+def _fewer(modes: Modes, names: tuple[str, ...], component: int, step: int) -> dict[str, tuple[int, ...]]:
+    """The same modes but for so many less of a component of some rods, which keeps its last one."""
     # Rods that are discretised alike have the same modes.
     counts = list(modes[names[0]])
-    counts[component] -= 1
+    counts[component] = max(1, counts[component] - step)
     changed = dict.fromkeys(names, tuple(counts))
     return {**modes, **changed}
 

@@ -6,11 +6,18 @@ from dataclasses import dataclass, replace
 from math import ceil
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 
-REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64)
+REFERENCE_MODES = (3, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 64, 80, 100, 128)
 """Modes per strain component and element of a reference solution, level by level."""
+
+USUAL_MODES = 64
+"""Modes of the finest level of a scene whose signals do not ask for more."""
+
+SIGNAL_FACTOR = 2
+"""Factor on the modes that the signals of a scene ask for, up to which levels are tried."""
 
 FIRST_LEVELS = ((1e-4, 1), (0.0, 2))
 """First level for tolerances down to a bound; lower ones cannot tell how fast they converge."""
@@ -27,6 +34,9 @@ MOST_GRID_FACTOR = 4.0
 VERIFIED_MODES = (6, 9, 12, 16, 21, 28, 36, 48)
 """Modes per strain component and element where a level is verified by the next one."""
 
+VERIFIED_WAVES = (48, 64, 85, 113, 150)
+"""Further ones for scenes that put waves along their rods."""
+
 SPARE_NODES = 2
 """Intervals of a verified level beyond those that the modes and the turn of a rod need."""
 
@@ -42,12 +52,27 @@ def nodes_for_turn(modes: int, turn: float) -> int:
     return nodes_for(modes) + ceil(turn / 2)
 
 
+def seeing_modes(scene: scenes.Scene, usual: tuple[int, ...] = VERIFIED_MODES) -> tuple[int, ...]:
+    """Modes of levels that are verified by the next one, two at least: none is blind to what is put along the rods.
+
+    Args:
+        scene: the scene.
+        usual: modes of the levels of a scene without waves.
+    """
+    needed = signal_modes(scene)
+    if needed <= usual[0]:
+        return usual
+    levels = (*usual, *(modes for modes in VERIFIED_WAVES if modes > usual[-1]))
+    seeing = tuple(modes for modes in levels if modes >= needed)
+    return max(seeing, levels[-2:], key=len)
+
+
 def verified_model(scene: scenes.Scene, modes: int, turn: float) -> Model:
     """The model of a level that is verified by the next one.
 
     Args:
         scene: the scene.
-        modes: per strain component and element, one of VERIFIED_MODES.
+        modes: per strain component and element, one of :func:`seeing_modes`.
         turn: largest angle through which an element turned on the level before, rad; 0 on the first.
     """
     nodes = nodes_for_turn(modes, turn) + SPARE_NODES
@@ -64,18 +89,27 @@ class Level:
         index: into REFERENCE_MODES.
         grid_factor: factor on the intervals.
         min_nodes: intervals below which a grid was too coarse for so bent a rod.
+        finest: index of the last level that is tried.
     """
 
     index: int
     grid_factor: float = 1.0
     min_nodes: int = 0
+    finest: int = REFERENCE_MODES.index(USUAL_MODES)
 
     @classmethod
-    def first(cls, tolerance: float) -> Level:
-        """The level that a tolerance begins with."""
+    def first(cls, tolerance: float, signal_modes: int = 0) -> Level:
+        """The level that a scene begins with.
+
+        Args:
+            tolerance: wanted error.
+            signal_modes: modes below which a level is blind to what the scene puts along its rods; the last level
+                where none has so many.
+        """
         suitable = (index for bound, index in FIRST_LEVELS if tolerance >= bound)
-        last = len(REFERENCE_MODES) - 1
-        return cls(min(next(suitable), last))
+        visible = _lowest_with(signal_modes)
+        finest = _lowest_with(max(USUAL_MODES, SIGNAL_FACTOR * signal_modes))
+        return cls(max(next(suitable), visible), finest=finest)
 
     @property
     def modes(self) -> int:
@@ -98,13 +132,14 @@ class Level:
         Returns:
             None where no level has so many.
         """
-        count = len(REFERENCE_MODES)
-        sufficient = (i for i in range(count) if REFERENCE_MODES[i] >= modes)
-        lowest = next(sufficient, count)
+        if modes > REFERENCE_MODES[self.finest]:
+            lowest = self.finest + 1
+        else:
+            lowest = _lowest_with(modes)
         # Always one up: a level that was just found too coarse is not solved again.
         above = max(lowest, self.index + 1)
         index = min(above, self.index + most_levels)
-        if index >= count:
+        if index > self.finest:
             return None
         return replace(self, index=index)
 
@@ -117,3 +152,10 @@ class Level:
         if self.grid_factor >= MOST_GRID_FACTOR:
             return None
         return replace(self, grid_factor=self.grid_factor * GRID_FACTOR)
+
+
+def _lowest_with(modes: int) -> int:
+    """Index of the lowest level with so many modes; of the last one where none has."""
+    last = len(REFERENCE_MODES) - 1
+    sufficient = (i for i in range(last) if REFERENCE_MODES[i] >= modes)
+    return next(sufficient, last)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cosserat_casadi.accuracy.preview import SAMPLES, watched
+from cosserat_casadi.accuracy.preview import SAMPLES, relative_cable_lengths, watched
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -31,10 +31,11 @@ def with_estimate(
     Args:
         coarse: the solution.
         fine: the finer one.
-        factor: on the distance of their poses.
+        factor: on the distance of their poses and cables.
         fine_error: error of the finer one, added.
     """
-    watched_distance = pose_distance(coarse, fine)
+    tip_distance = pose_distance(coarse, fine)
+    watched_distance = max(tip_distance, cable_distance(coarse, fine))
     sampled_distance = pose_distance(coarse, fine, SAMPLES)
     shape_distance = max(watched_distance, sampled_distance)
     return replace(
@@ -60,6 +61,14 @@ def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None
         length = discrete_rod.properties.length
         distances.append(_distance(first_pose, second_pose, length))
     return max(distances)
+
+
+def cable_distance(first: Solution, second: Solution) -> float:
+    """Largest difference of the lengths of cables, relative to those of their rods."""
+    first_lengths = relative_cable_lengths(first.model, first.x, first.inputs)
+    second_lengths = relative_cable_lengths(second.model, second.x, second.inputs)
+    changes = np.abs(first_lengths - second_lengths)
+    return float(changes.max(initial=0.0))
 
 
 def largest_turn(solution: Solution) -> float:

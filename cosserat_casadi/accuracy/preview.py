@@ -24,8 +24,9 @@ from cosserat_casadi.equilibrium.solution import Solution, rotations
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.discrete_scene import discrete_scene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.broyden import SINGULAR
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -54,6 +55,25 @@ def watched(model: Model, rod: str) -> FloatArray:
     if held:
         return np.array(BETWEEN)
     return np.array([1.0])
+
+
+def watched_cables(model: Model) -> dict[str, float]:
+    """Cables whose lengths must be right to the tolerance, with the lengths of their rods that it is relative to, m."""
+    cables = {}
+    for actuator in model.scene.actuators:
+        if EFFECTS[actuator.kind].drawn_as == "cable":
+            rod = model.discrete.rods[actuator.rod]
+            cables[actuator.name] = rod.length
+    return cables
+
+
+def relative_cable_lengths(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """Lengths of the cables over those of their rods, shape (cables,)."""
+    lengths = []
+    for name, rod_length in watched_cables(model).items():
+        _, cable_length, _ = model.actuator[name](x, inputs)
+        lengths.append(float(cable_length) / rod_length)
+    return np.array(lengths)
 
 
 @dataclass(frozen=True)
@@ -91,7 +111,7 @@ class Preview:
 
     @cached_property
     def tips(self) -> FloatArray:
-        """Watched poses of the reference: positions over length and rotation entries, 12 for each section."""
+        """What is watched of the reference: positions over length, rotation entries, lengths of cables over length."""
         return self._tips(self.reference.x)
 
     def kept(self, modes: Modes) -> Mask:
@@ -158,6 +178,37 @@ class Preview:
         tips = self._tips(x)
         return self._tips_of(regridded) - tips + self._tips(corrected) - tips
 
+    def finer_shift(self, grids: Mapping[str, Discretisation]) -> FloatArray:
+        """Change of what is watched by modes that the reference lacks, on a grid that resolves them.
+
+        Stiffness alone holds the short waves of the added modes, so that each gives way by what the balance lacks in
+        it; the reference's Jacobian tells how all others follow. A few sweeps of both are Newton's corrections with
+        the model of all these modes, but no such model is built.
+
+        Args:
+            grids: modes, nodes and transport of every rod; modes no fewer than the reference's.
+        """
+        model = self.model
+        discrete = discrete_scene(model.scene, model.inputs, dict(grids))
+        known = _known_unknowns(model.discrete, discrete)
+        stiffness = _stiffness(discrete)[np.ix_(~known, ~known)]
+        inverse = _inverse(self._regular_jacobian)
+
+        def system(x: FloatArray) -> System:
+            return System(discrete, Arguments(ca.DM(x), ca.DM(self._inputs)))
+
+        x = np.zeros(discrete.unknowns.size)
+        x[known] = self.reference.x
+        current = system(x)
+        tips = self._tips_of(current)
+        for _ in range(CORRECTIONS):
+            residual = _numbers(Equations(current).residual)[:, 0]
+            x[~known] -= np.linalg.solve(stiffness, residual[~known])
+            residual = _numbers(Equations(system(x)).residual)[:, 0]
+            x[known] -= inverse @ residual[known]
+            current = system(x)
+        return self._tips_of(current) - tips
+
     @property
     def _inputs(self) -> FloatArray:
         return self.reference.inputs
@@ -191,7 +242,7 @@ class Preview:
                 position = fields[0] @ interpolation
                 quaternion = fields[1] @ interpolation
             poses.append(_entries(position, quaternion, discrete_rod.properties.length))
-        return np.concatenate(poses)
+        return np.concatenate([*poses, relative_cable_lengths(self.model, x, self._inputs)])
 
     def _tips_of(self, system: System) -> FloatArray:
         """Watched poses of a system that has numbers for its arguments."""
@@ -213,7 +264,33 @@ class Preview:
             world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
             world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
             poses.append(_entries(world_position, world_quaternion, discrete_rod.properties.length))
-        return np.concatenate(poses)
+        lengths = []
+        for name, rod_length in watched_cables(self.model).items():
+            _, cable_length, _ = system.actuator(name)
+            lengths.append(_numbers(cable_length)[0] / rod_length)
+        return np.concatenate([*poses, *lengths])
+
+
+def _known_unknowns(coarse: DiscreteScene, fine: DiscreteScene) -> Mask:
+    """Which unknowns of a finer discretisation a coarser one has too: all but the strains of higher degree."""
+    known = np.ones(fine.unknowns.size, dtype=bool)
+    for name, fine_rod in fine.rods.items():
+        first = fine.unknowns.strain(name).start
+        counts = zip(fine_rod.columns.items(), coarse.rods[name].discretisation.modes, strict=True)
+        for (component, columns), modes in counts:
+            own = slice(first + columns.start, first + columns.stop)
+            known[own] = fine_rod.degrees(component) < modes
+    return known
+
+
+def _stiffness(discrete: DiscreteScene) -> FloatArray:
+    """Stiffness of all rods among all unknowns, zero for those that are no strains, shape (n, n)."""
+    size = discrete.unknowns.size
+    stiffness = np.zeros((size, size))
+    for name, discrete_rod in discrete.rods.items():
+        own = discrete.unknowns.strain(name)
+        stiffness[own, own] = discrete_rod.stiffness
+    return stiffness
 
 
 def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:

@@ -30,11 +30,12 @@ from cosserat_casadi.accuracy.assess import (
     assess,
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
-from cosserat_casadi.accuracy.levels import MOST_LEVELS, Level, nodes_for_turn
+from cosserat_casadi.accuracy.levels import MOST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
 from cosserat_casadi.accuracy.preview import SAMPLES
 from cosserat_casadi.accuracy.resolution import Resolution
+from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -59,6 +60,9 @@ MARGIN = 1.02
 
 TIGHT = 1e-6
 """Tolerance below which a reference solution takes the rotation integrator of eighth order, else that of sixth."""
+
+SLOW_MODES = 7
+"""Modes that see any signal that varies slowly, so that it asks for no more of the grid than the modes do."""
 
 MOST_FAILURES = 2
 """Levels without an equilibrium after which the next one ends the search."""
@@ -152,6 +156,18 @@ class _SceneSolver:
         turns = [_unloaded_turn(rod) for rod in self.scene.rods]
         return max(turns)
 
+    @cached_property
+    def signal_modes(self) -> int:
+        """Modes below which a level is blind to what the scene puts along its rods."""
+        return signal_modes(self.scene)
+
+    @property
+    def wave_modes(self) -> int:
+        """The same where they are waves, 0 where all that the scene puts along its rods varies slowly."""
+        if self.signal_modes > SLOW_MODES:
+            return self.signal_modes
+        return 0
+
     def build(self, discretisation: dict[str, Discretisation]) -> Model:
         """The model on a discretisation, which is reported."""
         model = build(self.scene, discretisation)
@@ -199,12 +215,15 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     Levels are refined as the verdicts ask until one solution can serve as a reference. Without one, the last failure,
     or the finest solution as UNRESOLVED.
     """
-    level: Level | None = Level.first(solver.tolerance)
+    if solver.signal_modes > REFERENCE_MODES[-1]:
+        # Not even the finest level sees what the scene asks for: whatever is found is no reference.
+        return _blind(solver)
+    level: Level | None = Level.first(solver.tolerance, solver.signal_modes)
     coarser: Solution | None = None
     failures: list[Solution] = []
     while level is not None:
         solution = _at_level(solver, level, coarser)
-        verdict = assess(solution, solver.tolerance)
+        verdict = assess(solution, solver.tolerance, solver.wave_modes > 0)
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
             # Too few modes may have no equilibrium where the rod has one: some more levels are tried.
@@ -222,6 +241,14 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     if coarser is None:
         return failures[-1]
     return _unresolved(coarser)
+
+
+def _blind(solver: _SceneSolver) -> Solution:
+    """The solution on the first level, UNRESOLVED where it is an equilibrium."""
+    solution = _at_level(solver, Level.first(solver.tolerance), None)
+    if not solution.converged:
+        return solution
+    return _unresolved(solution)
 
 
 def _next_level(level: Level, verdict: Verdict) -> Level | None:
@@ -257,7 +284,7 @@ def _coarsened(solver: _SceneSolver, resolution: Resolution) -> Solution:
     reference_error = resolution.modes_error + resolution.grid_error
     for share in COARSENING_SHARES:
         bound = share * solver.tolerance - reference_error
-        coarsened = Coarsening(resolution.preview, bound).run()
+        coarsened = Coarsening(resolution.preview, bound, solver.wave_modes).run()
         model = solver.build(coarsened.discretisation)
         solution = _corrected(model, coarsened.start, reference.inputs)
         if solution is not None:
@@ -290,7 +317,7 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     if not solution.converged:
         return solution
     turn = largest_turn(solution)
-    visible_from = min_modes(solution, turn, solver.tolerance)
+    visible_from = max(solver.signal_modes, min_modes(solution, turn, solver.tolerance))
     finer_modes: int | tuple[int, ...]
     if isinstance(modes, int):
         finer_modes = max(modes + FINER_MODES, visible_from)

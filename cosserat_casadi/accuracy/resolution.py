@@ -29,6 +29,12 @@ FASTEST = 0.02
 SLOWEST = 0.7
 """Largest ratio of the errors with and without two more modes that is believed."""
 
+WAVES_FACTOR = 2
+"""Factor on modes and intervals at which a look is taken for waves that the last coefficients do not show."""
+
+HIDDEN_SAFETY = 1.5
+"""Factor on what that look finds."""
+
 UNKNOWN = 4
 """Further modes where the error is beyond all bounds and tells nothing."""
 
@@ -42,9 +48,11 @@ class Resolution:
 
     Attributes:
         preview: the solution.
+        waves: whether the scene puts waves along its rods, so that the last coefficients may not show what follows.
     """
 
     preview: Preview
+    waves: bool = False
 
     @cached_property
     def ratio(self) -> float:
@@ -60,7 +68,23 @@ class Resolution:
 
     @cached_property
     def modes_error(self) -> float:
-        """Error that the number of modes leaves: the rest of a geometric series after the last two modes."""
+        """Error that the number of modes leaves."""
+        if self.waves:
+            return max(self.extrapolated_error, self.hidden_error)
+        return self.extrapolated_error
+
+    @cached_property
+    def hidden_error(self) -> float:
+        """Error found by a look at twice the modes: products of waves have twice their frequency."""
+        finer = {}
+        for name, discretisation in self._discretisation.items():
+            modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
+            finer[name] = replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
+        return HIDDEN_SAFETY * _size(self.preview.finer_shift(finer))
+
+    @cached_property
+    def extrapolated_error(self) -> float:
+        """The rest of a geometric series after the last two modes."""
         two_less = self._shift_without(2)
         # The last two modes carry e; all that would follow r e + r² e + … = e r / (1 − r).
         return MODES_SAFETY * two_less * self.ratio / (1 - self.ratio)
@@ -79,7 +103,10 @@ class Resolution:
 
     def missing_modes(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
-        error = self.modes_error
+        error = self.extrapolated_error
+        if error <= bound:
+            # Only now: twice the modes cost more to look at.
+            error = self.modes_error
         if not np.isfinite(error):
             return UNKNOWN
         if error <= bound:

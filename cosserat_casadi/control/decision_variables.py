@@ -12,9 +12,6 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
-SHORTEST = 1e-3
-"""Least length of a rod or a cable that is tried, relative to the scene's."""
-
 UNFELT = 1e-9
 """Derivative of the residual with an input, relative to the largest, below which it says nothing of its scale."""
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.accuracy.levels import VERIFIED_MODES, verified_model
+from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import STARTS, Inverse, search, with_verdict
@@ -39,10 +39,11 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
         SceneError: as in :func:`inverse`.
     """
     accuracy = scene.accuracy
-    model = build(scene) if accuracy.fixed else verified_model(scene, VERIFIED_MODES[0], 0.0)
+    levels = seeing_modes(scene)
+    model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)
     start: Solution | None = None
     tried = 1
-    for modes in VERIFIED_MODES[1:]:
+    for modes in levels[1:]:
         _report(model, report)
         # Scattered on the first discretisation alone: the next ones start from its end.
         scattered_starts = STARTS if start is None else 0

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.levels import seeing_modes
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
@@ -86,7 +87,7 @@ def follow_scene_path(
         # There is nothing to refine, and so nothing to estimate an error by.
         return follow(build(scene))
     coarse: EquilibriumPath | None = None
-    for modes in MODES:
+    for modes in seeing_modes(scene, MODES):
         turn = 0.0
         if coarse is not None:
             turn = _largest_turn(coarse)

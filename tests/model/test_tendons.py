@@ -97,13 +97,7 @@ def test_tendons_vs_shooting_from_the_unloaded_rod() -> None:
     assert_allclose(solution.tip().rotation[0], rotation, rtol=0, atol=2e-9)
 
 
-MANY_TURNS = pytest.mark.xfail(strict=True, reason="the error of a helical tendon of many turns is under-estimated")
-
-TENDON_ROBOTS = [
-    pytest.param(path, marks=MANY_TURNS if path.stem == "tendon_helix_many_turns" else ())
-    for path in case_files("robots")
-    if path.stem.startswith("tendon")
-]
+TENDON_ROBOTS = [path for path in case_files("robots") if path.stem.startswith("tendon")]
 
 
 @pytest.mark.parametrize("path", TENDON_ROBOTS, ids=lambda path: path.stem)
