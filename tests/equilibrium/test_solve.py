@@ -379,7 +379,9 @@ def test_shapes_of_tip_and_shape_are_those_documented() -> None:
     assert [shape.size_out(i) for i in range(shape.n_out())] == [(3, 1), (4, 1)]
     solution = solve(model)
     abscissae = [0.2, 0.7, 1.0]
-    positions, _ = shape.map(3)(np.tile(solution.x, (3, 1)).T, np.tile(solution.inputs, (3, 1)).T, np.array([abscissae]))
+    states = np.tile(solution.x, (3, 1)).T
+    inputs = np.tile(solution.inputs, (3, 1)).T
+    positions, _ = shape.map(3)(states, inputs, np.array([abscissae]))
     assert_allclose(positions.full().T, solution.pose(abscissae).position, rtol=0, atol=1e-14)
 
 
