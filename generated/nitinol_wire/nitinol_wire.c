@@ -126,7 +126,7 @@ const char *nitinol_wire_status_text(nitinol_wire_status status) {
     case NITINOL_WIRE_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case NITINOL_WIRE_LOAD_STALLED:
-      return "No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
     case NITINOL_WIRE_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
     case NITINOL_WIRE_NOT_IN_EQUILIBRIUM:

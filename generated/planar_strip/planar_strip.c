@@ -125,7 +125,7 @@ const char *planar_strip_status_text(planar_strip_status status) {
     case PLANAR_STRIP_SINGULAR:
       return "No equilibrium found: the Jacobian is singular and no step reduces the residual.";
     case PLANAR_STRIP_LOAD_STALLED:
-      return "No equilibrium found: growing the load from zero, the path could not be followed further; there may be a limit point or a buckling load.";
+      return "No equilibrium found: the path from the unloaded scene, or from the solution started at, could not be followed further; there may be a limit point or a buckling load.";
     case PLANAR_STRIP_UNRESOLVED:
       return "An equilibrium of the discrete model was found, but the rod is not resolved by its modes and nodes: allow more of them, or a larger tolerance.";
     case PLANAR_STRIP_NOT_IN_EQUILIBRIUM:
