@@ -132,7 +132,9 @@ def test_robots_vs_solver_in_python(library: Library, name: str) -> None:
     found, wanted = made.compiled.solve(), solve(made.model)
     assert found.converged
     assert wanted.converged
-    assert_allclose(found.x, wanted.x, rtol=0, atol=1e-9)
+    # Both stop where the residual is small beside 1 + |x|, which tensions make large.
+    size = 1 + float(np.linalg.norm(wanted.x))
+    assert_allclose(found.x, wanted.x, rtol=0, atol=1e-10 * size)
 
 
 def test_sensitivities_of_poses_vs_differences(library: Library) -> None:
