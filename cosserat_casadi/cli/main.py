@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable
 
@@ -49,10 +50,19 @@ def main() -> None:
     """Entry point: errors become sentences and exit codes."""
     prepare_streams()
     install_handlers()
-    exit_code = run(app)
-    remove_handlers()
+    try:
+        exit_code = run(app)
+        remove_handlers()
+    except KeyboardInterrupt:
+        # A signal that comes while the command ends finds it outside of what catches the others.
+        remove_handlers()
+        exit_code = _stopped(Console(stderr=True))
     if exit_code == INTERRUPTED and was_terminated():
         exit_code = TERMINATED
+    if was_interrupted():
+        # What CasADi was stopped in may not outlive the interpreter: the process ends without its last rites.
+        flush_streams()
+        os._exit(exit_code)
     sys.exit(exit_code)
 
 
@@ -63,31 +73,6 @@ def run(command: Callable[..., object]) -> int:
     try:
         exit_code = command(standalone_mode=False)
         flush_streams()
-    except (SceneError, ExportError) as error:
-        print_refusal(console, error)
-        return REFUSED
-    # A NoReferenceError is a CosseratError, but the input is in order: it comes first.
-    except NoReferenceError as error:
-        _print_error(console, str(error))
-        return NOT_FOUND
-    # Likewise: the disk is full.
-    except WriteError as error:
-        _print_error(console, str(error))
-        return NOT_WRITTEN
-    except CosseratError as error:
-        _print_error(console, str(error))
-        return REFUSED
-    except BrokenPipeError:
-        # The reader has seen enough, as head does.
-        silence_output()
-        return NOT_WRITTEN
-    except OSError as error:
-        # Without a number it is not the system's word on a file.
-        if error.errno is None:
-            raise
-        silence_output()
-        _print_error(console, _system_sentence(error))
-        return NOT_WRITTEN
     except StoppedError:
         return INTERRUPTED
     except (KeyboardInterrupt, typer.Abort):
@@ -96,20 +81,47 @@ def run(command: Callable[..., object]) -> int:
     except typer.Exit as stop:
         return stop.exit_code
     except Exception as error:
-        # An interrupt inside CasADi comes out as some other error.
+        # An interrupt inside CasADi or in an import comes out as some other error.
         if was_interrupted():
             return _stopped(console)
-        # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
-        if hasattr(error, "format_message") and hasattr(error, "exit_code"):
-            _print_error(console, error.format_message())
-            return int(error.exit_code)
-        raise
+        return _failed(console, error)
     # Typer makes this code of an interrupt that a command lets through.
     if exit_code == INTERRUPTED:
         return _stopped(console)
     if isinstance(exit_code, int):
         return exit_code
     return 0
+
+
+def _failed(console: Console, error: Exception) -> int:
+    """Print why a command could not do what it was asked for; return its exit code.
+
+    Raises:
+        Exception: the error itself, where it is none that a user can do something about.
+    """
+    if isinstance(error, SceneError | ExportError):
+        print_refusal(console, error)
+        return REFUSED
+    if isinstance(error, CosseratError):
+        _print_error(console, str(error))
+        # Of these two the input is in order: the disk is full, or there is no reference.
+        if isinstance(error, NoReferenceError):
+            return NOT_FOUND
+        return NOT_WRITTEN if isinstance(error, WriteError) else REFUSED
+    if isinstance(error, BrokenPipeError):
+        # The reader has seen enough, as head does.
+        silence_output()
+        return NOT_WRITTEN
+    # Without a number it is not the system's word on a file.
+    if isinstance(error, OSError) and error.errno is not None:
+        silence_output()
+        _print_error(console, _system_sentence(error))
+        return NOT_WRITTEN
+    # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
+    if hasattr(error, "format_message") and hasattr(error, "exit_code"):
+        _print_error(console, error.format_message())
+        return int(error.exit_code)
+    raise error
 
 
 def _stopped(console: Console) -> int:

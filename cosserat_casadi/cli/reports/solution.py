@@ -22,9 +22,7 @@ from cosserat_casadi.cli.reports.format import (
 from cosserat_casadi.control.inverse import Inverse
 from cosserat_casadi.control.target_errors import Gap
 from cosserat_casadi.equilibrium.solution import Solution
-
-ACTUATOR_UNITS = {"tension": "N", "length": "m", "pressure": "Pa", "volume": "m³"}
-"""Units of what a solution holds of an actuator; an unknown quantity is shown without one."""
+from cosserat_casadi.model.registry import EFFECTS
 
 STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
 
@@ -129,11 +127,10 @@ def _rod_table(solution: Solution) -> Table:
 def _actuator_table(solution: Solution) -> Table:
     table = table_of("actuator", "effort", "works on")
     for actuator in solution.model.scene.actuators:
+        member = EFFECTS[actuator.kind]
+        units = {member.effort: member.effort_unit, member.conjugate: member.conjugate_unit}
         state = solution.actuator(actuator.name)
-        cells = []
-        for quantity, value in state.items():
-            unit = ACTUATOR_UNITS.get(quantity, "")
-            cells.append(f"{quantity} {value:.6g} {unit}".rstrip())
+        cells = [f"{quantity} {value:.6g} {units[quantity]}" for quantity, value in state.items()]
         table.add_row(escape(actuator.name), *cells)
     return table
 
