@@ -26,13 +26,14 @@ from cosserat_casadi.cli.main import REFUSED, app, run
 from cosserat_casadi.loads.load import Load, Section
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.registry import forget, register
+from cosserat_casadi.model.registry import register
 from cosserat_casadi.plots.scene_plot import plot_solution
 from cosserat_casadi.rod.actuation import StrainSum
 from cosserat_casadi.scene.actuators import ActuatorRecord
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
 from tests.initial_value import integrate
+from tests.registration import forget
 
 STIFFNESS = 3.0
 ANCHOR = np.array([0.15, 0.05, 0.25])

@@ -39,13 +39,6 @@ def register(member: Member) -> Member:
     return member
 
 
-def forget(member: type[Load[Any]] | type[Actuator[Any]]) -> None:
-    """Undo :func:`register`, for tests."""
-    EFFECTS.pop(member.kind, None)
-    for family in (LOADS, ACTUATORS):
-        family.records.pop(member.kind, None)
-
-
 for shipped in (
     GravityLoad,
     TipWrenchLoad,

@@ -15,10 +15,11 @@ from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.typing import Matrix
-from cosserat_casadi.model.registry import forget, register
+from cosserat_casadi.model.registry import register
 from cosserat_casadi.rod.strain_density import StrainDensity
 from cosserat_casadi.scene.actuators import ActuatorRecord
 from cosserat_casadi.scene.inputs import InputField
+from tests.registration import forget
 from tests.scenes import STIFFNESS, push
 
 LENGTH = 0.8

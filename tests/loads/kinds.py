@@ -12,9 +12,10 @@ import numpy as np
 from cosserat_casadi import Scene, scene_from_dict
 from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.registry import forget, register
+from cosserat_casadi.model.registry import register
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
+from tests.registration import forget
 
 Vector = tuple[float, float, float]
 
