@@ -1,8 +1,8 @@
 """Joints that hold too much or too little, refused before anything is solved.
 
-Those that over-constrain show in the rank of the linearised gaps.
+Those that over-constrain show in the rank of the linearised constraint residuals: docs/theory.md, section 8.
 
-Rods hold a body as far as their strains allow. Where the gaps' equations depend on each other for every shape of the
+Rods hold a body as far as their strains allow. Where their constraint residuals depend on each other for every shape of the
 rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch, clamped in one
 body, or planar rods of different planes. A few modes and a random shape show it.
 """
@@ -38,10 +38,10 @@ RANK = 1e-8
 
 @lru_cache(maxsize=64)
 def check_constraints(scene: scenes.Scene) -> None:
-    """Refuse a scene whose ties over-constrain, or leave a body free to turn.
+    """Refuse a scene whose constraints hold too much, or leave a body free to turn.
 
     Raises:
-        SceneError: with the first tie that has nothing of its own to hold, or every body that turns freely.
+        SceneError: with the first constraint that has nothing of its own to hold, or every body that turns freely.
     """
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:
@@ -51,12 +51,12 @@ def check_constraints(scene: scenes.Scene) -> None:
     spins = list(free_spins(system))
     if spins:
         raise SceneError(*spins)
-    gaps = _gap_rows(system)
-    if _rank(gaps) == len(gaps):
+    rows = _constraint_rows(system)
+    if _rank(rows) == len(rows):
         return
     remedy = "admit more strains of the rods, hold the tip by a spherical joint, or lay planar rods into one plane"
     for placed in probe.constraints:
-        upper = gaps[: probe.multipliers(placed).stop - probe.unknowns.count(BlockKind.STRAIN)]
+        upper = rows[: probe.multipliers(placed).stop - probe.unknowns.count(BlockKind.STRAIN)]
         if _rank(upper) < len(upper):
             problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
             raise SceneError(Problem(placed.where, problem, remedy))
@@ -70,8 +70,8 @@ def _at_a_random_shape(probe: DiscreteScene) -> System:
     return System(probe, Arguments(ca.MX(ca.DM(x)), ca.MX(ca.DM(probe.layout.pack()))))
 
 
-def _gap_rows(system: System) -> FloatArray:
-    """Linearised gaps of supports and ties against strains and moving frames."""
+def _constraint_rows(system: System) -> FloatArray:
+    """Derivatives of all constraint residuals with strains and floating frames, one row each."""
     unknowns = system.discrete.unknowns
     jacobian = ca.evalf(Equations(system).jacobian).full()
     first = unknowns.count(BlockKind.STRAIN)
