@@ -3,8 +3,8 @@
 Those that over-constrain show in the rank of the linearised constraint residuals: docs/theory.md, section 8.
 
 Rods hold a body as far as their strains allow. Where the constraint residuals depend on each other for every
-shape of the rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch, clamped in one
-body, or planar rods of different planes. A few modes and a random shape show it.
+shape of the rods, not only for some, the wrenches of the joints cannot be told apart: two rods that only stretch,
+clamped in one body, or planar rods of different planes. A few modes and a random shape show it.
 """
 
 from __future__ import annotations
