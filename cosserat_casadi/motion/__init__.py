@@ -1,0 +1,1 @@
+"""Motion of rods: inputs over time, trajectories, small motions about equilibria."""
