@@ -1,1 +1,1 @@
-"""Motion: inputs over time, simulation, what a motion is, modes and linearisation."""
+"""Motion of rods: inputs over time, trajectories, small motions about equilibria."""
