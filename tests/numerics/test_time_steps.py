@@ -139,7 +139,7 @@ def test_direction_without_mass_follows_its_balance() -> None:
     errors = []
     for size in (0.2, 0.1, 0.05):
         end = fixed(equations, start.instant, 2.0, radau(3), size).end
-        assert_allclose(end.x[1], end.x[0] ** 2, rtol=0, atol=1e-13)
+        assert_allclose(end.x[1], end.x[0] ** 2, rtol=0, atol=1e-12)
         errors.append(abs(end.x[0] - exact[0, 0]))
     assert_allclose(rates(errors)[-1], 5.0, rtol=0, atol=0.3)
 
@@ -228,6 +228,21 @@ def test_free_top_in_quaternions(stages: int) -> None:
         norms = [step.end.x @ step.end.x for step in integration.steps]
         assert_allclose(norms, 1.0, rtol=0, atol=1e-12)
     assert_allclose(rates(errors)[-1], 2 * stages - 1, rtol=0, atol=0.15)
+
+
+def test_massless_and_turning_ones_are_controlled_too() -> None:
+    spring = stiff_spring(50.0, 0.0)
+    spring_start = start_at(spring, np.array([1.0, 1.0]), np.array([0.3, 0.6]))
+    angle = reference(pendulum_force, np.array([1.0]), np.array([0.3]), 0.0, 2.0)[0, 0]
+    top = Top(np.array([1.0, 2.0, 2.7]))
+    q = np.array([1.0, 0.0, 0.0, 0.0])
+    v = top.left(q).T @ np.array([0.2, 1.5, 0.1]) / 4
+    turned = top.reference(q, v, 4.0)
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        spring_end = controlled(spring, spring_start, 2.0, tolerance).end
+        assert abs(spring_end.x[0] - angle) < tolerance
+        top_end = controlled(top.equations, start_at(top.equations, q, v), 4.0, tolerance).end
+        assert np.abs(top_end.x - turned).max() < tolerance
 
 
 # Symmetry and energy of Gauss
@@ -353,6 +368,32 @@ def test_given_size_is_divided_evenly() -> None:
     assert_allclose([step.size for step in integration.steps], 0.25, rtol=0, atol=0)
     assert integration.end.time == 1.0
     assert len(fixed(DUFFING, start, 1.0, radau(2), 0.1).steps) == 10
+
+
+def test_no_tiny_step_is_left_at_the_end() -> None:
+    start = start_at(DUFFING, np.array([1.0]), np.array([0.3]))
+    settings = StepSettings(np.full(1, 1e-2), first=0.099, longest=0.099)
+    integration = integrate(DUFFING, start, 1.0, radau(3), settings)
+    sizes = [step.size for step in integration.steps]
+    assert len(sizes) == 11
+    assert_allclose(sizes[-2:], (1.0 - 9 * 0.099) / 2, rtol=1e-12, atol=0)
+    assert_allclose(integration.next_size, 0.099, rtol=1e-15, atol=0)
+
+
+def test_jacobian_that_grew_too_old_is_replaced() -> None:
+    # A spring that stiffens a thousandfold at t = 1, within 0.1: the Jacobian from before does not contract.
+    def stiffness(t: float) -> float:
+        return 1.0 + 1000.0 / (1.0 + np.exp(-(t - 1.0) / 0.01))
+
+    spring = explicit(
+        lambda t, x, v: 1.0 - stiffness(t) * x,
+        lambda t, x, v: np.array([[-stiffness(t)]]),
+        lambda *_: np.zeros((1, 1)),
+    )
+    start = start_at(spring, np.ones(1), np.zeros(1))
+    integration = fixed(spring, start, 2.0, radau(3), 0.1, error=1e-10)
+    assert integration.statistics.jacobians > 1
+    assert integration.statistics.iterations > sum(step.iterations for step in integration.steps)
 
 
 def test_all_stages_may_be_evaluated_at_once() -> None:
