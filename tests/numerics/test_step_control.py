@@ -35,8 +35,8 @@ def test_error_that_grows_is_foreseen() -> None:
     # From one step to the next the error has grown by 100: the next step would be too long by that trend alone.
     steady = StepControl(stages=3, longest=1.0, wanted=0.1, last_size=0.1, last_error=0.5)
     growing = StepControl(stages=3, longest=1.0, wanted=0.1, last_size=0.1, last_error=0.01)
-    steady.accept(0.1, 0.5, iterations=0)
-    growing.accept(0.1, 0.5, iterations=0)
+    steady.accept(0.1, 0.5, iterations=1)
+    growing.accept(0.1, 0.5, iterations=1)
     assert steady.wanted == 0.1
     assert_allclose(growing.wanted, 0.1 * 0.9 * (0.01 / 0.5**2) ** 0.25, rtol=1e-14, atol=0)
 
@@ -51,15 +51,15 @@ def test_growth_is_bounded() -> None:
 
 def test_refused_step_is_not_followed_by_a_longer_one() -> None:
     control = StepControl(stages=3, longest=1.0, wanted=0.1, last_size=0.1, last_error=0.5)
-    control.refuse_error(0.1, 16.0, iterations=0)
+    control.refuse_error(0.1, 16.0, iterations=1)
     assert_allclose(control.wanted, 0.045, rtol=1e-14, atol=0)
-    control.accept(0.045, 1e-6, iterations=0)
+    control.accept(0.045, 1e-6, iterations=1)
     assert_allclose(control.wanted, 0.045, rtol=1e-14, atol=0)
-    control.refuse_error(0.045, float("nan"), iterations=0)
+    control.refuse_error(0.045, float("nan"), iterations=1)
     assert control.wanted < 0.01
 
 
 def test_step_cut_at_the_end_of_a_piece_leaves_the_wanted_one() -> None:
     control = StepControl(stages=3, longest=1.0, wanted=0.1, last_size=0.1, last_error=0.5)
-    control.accept(0.03, 0.5, iterations=0)
+    control.accept(0.03, 0.5, iterations=1)
     assert control.wanted == 0.1
