@@ -93,6 +93,12 @@ def test_lagrange_polynomials_and_their_integrals(
             assert_allclose(interpolated, exact(power, share), rtol=0, atol=5e-14)
 
 
+@METHODS
+def test_no_row_sums_above_one(method: Collocation) -> None:
+    # Newton's method measures velocities alone for that reason.
+    assert np.abs(method.matrix).sum(axis=1).max() <= 1.0 + 1e-15
+
+
 def test_last_stage_of_radau_is_the_end() -> None:
     for stages in (1, 2, 3):
         method = radau(stages)

@@ -380,6 +380,13 @@ def test_no_tiny_step_is_left_at_the_end() -> None:
     assert_allclose(integration.next_size, 0.099, rtol=1e-15, atol=0)
 
 
+def test_tolerance_below_rounding_is_met_to_rounding() -> None:
+    x, v = pendulum_state(1.2, 0.4)
+    to_rounding = fixed(PENDULUM, start_at(PENDULUM, x, v), 2.0, radau(3), 0.1, error=1e-25).end
+    closely = fixed(PENDULUM, start_at(PENDULUM, x, v), 2.0, radau(3), 0.1, error=1e-13).end
+    assert_allclose(to_rounding.x[:2], closely.x[:2], rtol=0, atol=1e-12)
+
+
 def test_jacobian_that_grew_too_old_is_replaced() -> None:
     # A spring that is a thousand times stiffer after t = 1, where a step ends: the Jacobian from before is no use.
     def stiffness(t: float, jump: float) -> float:
