@@ -179,7 +179,7 @@ def _with_fixed(search: _Search) -> Motion:
     witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
     space_error = float("inf")
     if witness.start.found:
-        history = _like(witness, timed)
+        history = _like(witness, timed.history, timed.tolerance)
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         if history.completed:
@@ -217,34 +217,37 @@ def _with_tolerance(search: _Search) -> Motion:
             break
         if _hopeless(search, len(ladder) - 1 - number):
             break
-    return _judged(search, search.last, search.space_error + _time_error(search))
+    timed = _timed(search)
+    if timed.history.outcome is StepOutcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    finest = replace(search.last, history=timed.history)
+    return _judged(search, finest, search.space_error + timed.error)
 
 
 def _on_level(search: _Search, simulator: Simulator) -> History:
     """The motion on one level: the first one settles how exact the steps have to be."""
     if not search.levels:
         timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
-        search.step_tolerance = timed.tolerance
+        search.step_tolerance = timed.sufficient
         search.time_error = timed.error
         return timed.history
-    previous = TimedHistory(search.last.history, search.time_error, search.step_tolerance)
-    return _like(simulator, previous)
+    return _like(simulator, search.last.history, search.step_tolerance)
 
 
-def _like(simulator: Simulator, timed: TimedHistory) -> History:
-    """The motion with steps as exact as those of another, or of their size."""
-    if np.isfinite(timed.tolerance):
-        return simulator.controlled(timed.tolerance)
-    # The first of the pieces may end with a shorter step than it was divided into.
-    return simulator.stepped(timed.history.statistics.largest_step)
+def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
+    """The motion with steps of a tolerance; where it is no number, with steps of the size of another motion."""
+    if np.isfinite(step_tolerance):
+        return simulator.controlled(step_tolerance)
+    # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
+    return simulator.stepped(history.statistics.largest_step)
 
 
-def _time_error(search: _Search) -> float:
-    """Error of the steps on the last level."""
-    if not np.isfinite(search.step_tolerance) or len(search.levels) == 1:
-        return search.time_error
-    checked = search.last.simulator.checked(search.last.history, search.step_tolerance)
-    return checked.error
+def _timed(search: _Search) -> TimedHistory:
+    """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
+    level = search.last
+    if not np.isfinite(search.step_tolerance):
+        return TimedHistory(level.history, search.time_error)
+    return level.simulator.tightened(level.history, search.step_tolerance, TIME_SHARE * search.tolerance)
 
 
 def _hopeless(search: _Search, left: int) -> bool:

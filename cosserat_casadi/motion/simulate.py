@@ -45,6 +45,9 @@ TIGHTER = 10.0
 LEFT_BY_TIGHTER = 0.5
 """Error of the more exact of the two over their distance: a tenth of the tolerance leaves a third of the error."""
 
+SLOPE = 0.8
+"""Power of a step's tolerance that the error of the paths goes with, at least."""
+
 HALVED = 4.0 / 3.0
 """Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
 
@@ -81,11 +84,13 @@ class TimedHistory:
         history: the motion.
         error: estimated error of the paths that the steps leave, over the length; nan where none was made.
         tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
+        sufficient: tolerance of a step that would do for motions on other modes; nan for steps of given size.
     """
 
     history: History
     error: float
-    tolerance: float
+    tolerance: float = float("nan")
+    sufficient: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -135,26 +140,27 @@ class Simulator:
             return self._with_given_step(self.simulation.step)
         if self.simulation.integrator == "gauss":
             return self._with_halved_steps(tolerance)
-        return self._with_tightened_steps(tolerance, first)
+        return self.tightened(self.controlled(first), first, tolerance)
 
-    def checked(self, history: History, tolerance: float) -> TimedHistory:
-        """A motion computed with a tolerance of its steps, with an error from one that is computed less exactly."""
-        coarse = self.controlled(TIGHTER * tolerance)
-        distance = path_distance(self.paths(coarse), self.paths(history))
-        return TimedHistory(history, LEFT_BY_TIGHTER * distance, tolerance)
+    def tightened(self, coarse: History, first: float, tolerance: float) -> TimedHistory:
+        """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
 
-    def _with_tightened_steps(self, tolerance: float, first: float) -> TimedHistory:
-        coarse = self.controlled(first)
+        Args:
+            coarse: the motion to begin with.
+            first: tolerance of a step, over the length, that it was computed with.
+            tolerance: of the paths, over the length.
+        """
         coarse_paths = self.paths(coarse)
-        timed = TimedHistory(coarse, float("nan"), first)
+        timed = TimedHistory(coarse, float("nan"), first, first)
         for _ in range(MOST_TIGHTENINGS):
             if not timed.history.completed:
                 break
             tighter = timed.tolerance / TIGHTER
             fine = self.controlled(tighter)
             fine_paths = self.paths(fine)
-            error = LEFT_BY_TIGHTER * path_distance(coarse_paths, fine_paths)
-            timed = TimedHistory(fine, error, tighter)
+            distance = path_distance(coarse_paths, fine_paths)
+            error = LEFT_BY_TIGHTER * distance
+            timed = TimedHistory(fine, error, tighter, _sufficient(timed.tolerance, distance, tolerance))
             coarse_paths = fine_paths
             if error <= tolerance:
                 break
@@ -163,11 +169,11 @@ class Simulator:
     def _with_given_step(self, size: float) -> TimedHistory:
         history = self.stepped(size)
         if not history.completed:
-            return TimedHistory(history, float("nan"), float("nan"))
+            return TimedHistory(history, float("nan"))
         shorter = self.stepped(size / 2.0)
         distance = path_distance(self.paths(history), self.paths(shorter))
         error = HALVED * distance if shorter.completed else float("nan")
-        return TimedHistory(history, error, float("nan"))
+        return TimedHistory(history, error)
 
     def _with_halved_steps(self, tolerance: float) -> TimedHistory:
         size = self.simulation.duration / FIRST_GAUSS_STEPS
@@ -179,7 +185,7 @@ class Simulator:
             shorter = self.stepped(size)
             # Steps too long for their equations to be solved say nothing of shorter ones.
             if shorter.outcome is StepOutcome.INTERRUPTED:
-                return TimedHistory(shorter, float("nan"), float("nan"))
+                return TimedHistory(shorter, float("nan"))
             shorter_paths = self.paths(shorter)
             if history.completed and shorter.completed:
                 error = LEFT_BY_HALF * path_distance(history_paths, shorter_paths)
@@ -187,7 +193,7 @@ class Simulator:
             history_paths = shorter_paths
             if error <= tolerance:
                 break
-        return TimedHistory(history, error, float("nan"))
+        return TimedHistory(history, error)
 
     def _integrated(self, settings: StepSettings) -> History:
         method = radau(STAGES)
@@ -202,6 +208,21 @@ class Simulator:
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
             self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
+
+
+def _sufficient(coarse: float, distance: float, wanted: float) -> float:
+    """Tolerance of a step that leaves a wanted error of the paths.
+
+    Args:
+        coarse: a tolerance of a step.
+        distance: error of the paths that it leaves.
+        wanted: error of the paths.
+    """
+    if distance <= wanted:
+        return coarse
+    # Not below the tenth of it that was tried: that one leaves what it leaves.
+    share = float((wanted / distance) ** (1.0 / SLOPE))
+    return coarse * max(share, 1.0 / TIGHTER)
 
 
 def simulate(
@@ -339,7 +360,7 @@ def warnings(simulator: Simulator) -> list[str]:
     """Sentences on what limits the accuracy of a motion: loads that come suddenly."""
     jumps = simulator.moving.jumps(simulator.simulation.duration)
     return [
-        f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, and modes resolve them slowly."
+        f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, which modes resolve slowly."
         for jump in jumps
     ]
 
