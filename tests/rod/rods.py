@@ -228,7 +228,7 @@ def reference_motion(basis, q, rates, base, ratio=1.0):
         def rate(x, y, still=still, moved=moved):
             unloaded = still(x)
             strains = [f * unloaded + m(x) - unloaded for f, m in zip(factors, moved, strict=True)]
-            xi, xi_rate, xi_acceleration = (_little_adjoint(s) for s in strains)
+            xi, xi_rate = (_little_adjoint(s) for s in strains[:2])
             R, eta, eta_rate = y[:9].reshape(3, 3), y[9:15], y[15:21]
             first = strains[1] - xi @ eta
             second = strains[2] - xi @ eta_rate - xi_rate @ eta

@@ -1,6 +1,7 @@
 """Viscous stress against quadrature along the rod, and its powers and derivatives against AD."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import casadi as ca
 import numpy as np
@@ -32,8 +33,8 @@ def viscosity(basis, q, v, ratio):
 def strain_rate_along(basis, q, v, ratio):
     """Gauss points of all elements, their weights, and ξ̇ there by AD of the strain, 6×k."""
     points, weights = legendre.leggauss(12)
-    X = np.concatenate([a + (b - a) * (points + 1) / 2 for a, b in zip(BREAKS, BREAKS[1:], strict=False)])
-    dX = np.concatenate([(b - a) * weights / 2 for a, b in zip(BREAKS, BREAKS[1:], strict=False)])
+    X = np.concatenate([a + (b - a) * (points + 1) / 2 for a, b in pairwise(BREAKS)])
+    dX = np.concatenate([(b - a) * weights / 2 for a, b in pairwise(BREAKS)])
     t = ca.MX.sym("t")
     length_ratio = 1.0 if ratio is None else ratio + t * RATIO_RATE
     strain = basis.at(ca.DM(q) + t * ca.DM(v), X, length_ratio)
