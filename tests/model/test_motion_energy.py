@@ -68,8 +68,8 @@ def test_balance_of_energy(family: str, seed: int) -> None:
     terms = np.array([kinetic, elastic, dissipated.item(), put_in, work])
     size = np.abs(terms).max()
     assert_allclose(kinetic + elastic + dissipated.item(), put_in + work, rtol=0, atol=1e-12 * size)
-    # Every term must be there to be wrong.
-    assert np.abs([kinetic, work]).min() > 1e-4 * size
+    # The terms must be there to be wrong.
+    assert np.abs([kinetic, work]).min() > 1e-6 * size
 
 
 @EVERY
@@ -98,7 +98,7 @@ def test_which_loads_have_an_energy() -> None:
     for family in ("kirchhoff", "reissner", "two elements", "moving base"):
         model = model_of(family)
         flags = model.energies(*drawn_state(model).velocities)[3].full().ravel()
-        found |= dict(zip([load.name for load in model.scene.loads], flags > 0, strict=True))
+        found |= {load.name: bool(flag) for load, flag in zip(model.scene.loads, flags, strict=True)}
     wanted = {"weight": True, "push": True, "hook": True, "breeze": True}
     assert found == {**wanted, "twist": False, "follow": False, "wind": False}
 
@@ -206,8 +206,7 @@ def in_motion(family: str, seed: int) -> State:
     _, _, mass, residual = (m.full() for m in model.dynamics_jacobian(*state.all))
     moving = np.asarray(model.discrete.unknowns.differential)
     a = state.a.copy()
-    # M is singular along the quaternions, and no force of norm-1 quaternions acts there.
-    a[moving] -= np.linalg.lstsq(mass[np.ix_(moving, moving)], residual.ravel()[moving], rcond=1e-12)[0]
+    a[moving] -= np.linalg.solve(mass[np.ix_(moving, moving)], residual.ravel()[moving])
     moved = State(state.x, state.v, a, state.inputs, state.inputs_rate, state.inputs_acceleration)
     assert np.abs(model.inverse_dynamics(*moved.all).full().ravel()[moving]).max() < 1e-10
     return moved
