@@ -137,7 +137,7 @@ def test_sweeps_vs_dop853_of_the_report(name, ratio, breaks):
     motion = RodMotion(shape(basis, ca.DM(q), None if ratio is None else ca.DM(ratio)), rates, base)
     expected, _ = reference_motion(basis, q, rates, base, ratio or 1.0)
     for found, wanted in zip(fields(motion), expected, strict=True):
-        assert_allclose(found, wanted, rtol=0, atol=1e-11)
+        assert_allclose(found, wanted, rtol=0, atol=2e-12)
 
 
 @pytest.mark.parametrize(("transport", "order"), [("magnus4", 4), ("magnus6", 6)])
