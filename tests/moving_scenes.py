@@ -36,6 +36,15 @@ FOLLOW = {
 HOOK = {"name": "hook", "kind": "point_wrench", "rod": "a", "at": 0.4, "force": [0.3, -0.6, 0.2]}
 WIND = {"name": "wind", "kind": "distributed_wrench", "rod": "a", "force": [[0.4, 0.3], 0.2, 0.0], "frame": "body"}
 BREEZE = {"name": "breeze", "kind": "distributed_wrench", "rod": "a", "force": [[0.4, 0.3], 0.2, 0.1]}
+PULL = {
+    "name": "pull",
+    "kind": "body_wrench",
+    "body": "plate",
+    "position": [0.02, 0.0, 0.07],
+    "force": [0.3, 0.1, 0.5],
+    "moment": [0.1, 0.05, 0.2],
+}
+JET = {**PULL, "name": "jet", "frame": "body"}
 IN_PLANE = {"name": "push", "kind": "tip_wrench", "rod": "a", "force": [0.4, 0.0, -0.4]}
 
 # Products of inertia, and a centre of mass off the origin.
@@ -70,7 +79,7 @@ def _jointed(kind: str) -> Tables:
     axis = {"axis": [0.3, -0.5, 0.8]} if kind in ("revolute", "prismatic") else {}
     second = rod("b", base={"position": [0.4, 0.1, 0.05]}, length=0.7)
     joints = [joint("a", position=[-0.2, 0, 0]), joint("b", kind, **axis)]
-    return scene(rod(strain="reissner"), second, loads=[WEIGHT, FOLLOW], bodies=[PLATE], joints=joints)
+    return scene(rod(strain="reissner"), second, loads=[WEIGHT, FOLLOW, PULL, JET], bodies=[PLATE], joints=joints)
 
 
 def _carried() -> Tables:
@@ -96,7 +105,7 @@ def _supported(kind: str) -> Tables:
 
 
 def _tendons(**cable: Any) -> Tables:
-    base = {"name": "cable", "kind": "tendon", "rod": "a", "offset": [[0.06, -0.03], 0.01], **cable}
+    tendon = {"name": "cable", "kind": "tendon", "rod": "a", "offset": [[0.06, -0.03], 0.01], **cable}
     cell = {
         "name": "cell",
         "kind": "chamber",
@@ -105,7 +114,7 @@ def _tendons(**cable: Any) -> Tables:
         "area": 2e-5,
         "offset": [0.01, [0.03, 0.01]],
     }
-    return scene(rod(strain="reissner"), loads=[WEIGHT], actuators=[base, cell])
+    return scene(rod(strain="reissner"), loads=[WEIGHT], actuators=[tendon, cell])
 
 
 def _driven(*fields: str, **more: Any) -> Tables:
@@ -149,7 +158,7 @@ FAMILIES: dict[str, Callable[[], Tables]] = {
 
 @cache
 def model_of(family: str) -> Model:
-    return build(scene_from_dict(FAMILIES[family]()))
+    return build(scene_from_dict(FAMILIES[family]()), moving=True)
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ def test_powers_of_loads_vs_forces_times_velocities() -> None:
     assert_allclose(twist, np.array([0.1, 0.05, 0.2]) @ omega, rtol=1e-12, atol=0)
 
 
-def test_power_of_a_chamber_is_pressure_times_the_rate_of_the_volume() -> None:
+def test_powers_of_actuators_are_efforts_times_rates_of_conjugates() -> None:
     model = model_of("tendons")
     state = drawn_state(model, 5)
     x = ca.MX.sym("x", model.size)
