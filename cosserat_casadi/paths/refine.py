@@ -1,6 +1,6 @@
 """A path on a discretisation that is fine enough: refined until the events and the end stay where they are.
 
-See docs/theory.md, section 11, "Modes".
+See docs/theory.md, section 12, "Modes".
 """
 
 from __future__ import annotations
