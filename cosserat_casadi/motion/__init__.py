@@ -1,0 +1,1 @@
+"""Motion of a scene: over time, and small about an equilibrium."""
