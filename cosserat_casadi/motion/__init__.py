@@ -1,1 +1,1 @@
-"""Motion of a scene: over time, and small about an equilibrium."""
+"""Motion of rods: inputs over time, trajectories, small motions about equilibria."""
