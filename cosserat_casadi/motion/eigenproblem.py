@@ -28,6 +28,9 @@ ZERO = 1e-8
 INFINITE = 1e-14
 """An inverse square below this share of the largest belongs to a direction without mass."""
 
+NOTHING = 1e-12
+"""Stiffness and mass, relative to those of the rods, below which a direction has none."""
+
 REAL = 1e-9
 """A real part below this share of an eigenvalue without damping is rounding."""
 
@@ -100,7 +103,7 @@ def undamped_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[FloatArray,
     """
     shift = natural_shift(mass)
     root = _root(mass)
-    response = np.linalg.solve(stiffness + shift * mass, root)
+    response = _inverse(stiffness + shift * mass) @ root
     inverse = root.T @ response
     inverse_squares, vectors = np.linalg.eigh((inverse + inverse.T) / 2)
     finite = _finite(inverse_squares)
@@ -134,12 +137,13 @@ def _asymmetric_modes(stiffness: FloatArray, mass: FloatArray) -> tuple[ComplexA
     """λ² and vectors where K is not symmetric."""
     shift = natural_shift(mass)
     root = _root(mass)
-    response = np.linalg.solve(stiffness + shift * mass, root)
+    response = _inverse(stiffness + shift * mass) @ root
     inverse_squares, vectors = np.linalg.eig(root.T @ response)
     finite = _finite(inverse_squares)
-    chosen = inverse_squares[finite].astype(complex)
-    modes = response @ vectors[:, finite].astype(complex) / chosen
-    return shift - 1.0 / chosen, modes
+    chosen = np.asarray(inverse_squares[finite], dtype=complex)
+    modes = np.asarray(response @ vectors[:, finite] / chosen, dtype=complex)
+    squares = np.asarray(shift - 1.0 / chosen, dtype=complex)
+    return squares, modes
 
 
 def _roots_of(square: complex, shift: float) -> list[complex]:
@@ -167,8 +171,9 @@ def _damped(stiffness: FloatArray, damping: FloatArray, mass: FloatArray) -> Eig
     shifted_damping = rate * damping + 2.0 * shift * mass
     scaled_mass = shift * mass
     moved = _row_space(shifted_damping, scaled_mass)
-    by_damping = np.linalg.solve(shifted_stiffness, shifted_damping @ moved)
-    by_mass = np.linalg.solve(shifted_stiffness, scaled_mass @ moved)
+    flexibility = _inverse(shifted_stiffness)
+    by_damping = flexibility @ shifted_damping @ moved
+    by_mass = flexibility @ scaled_mass @ moved
     count = moved.shape[1]
     companion = np.zeros((2 * count, 2 * count))
     companion[:count, :count] = -moved.T @ by_damping
@@ -218,6 +223,16 @@ def _collected(values: list[complex], columns: list[ComplexArray], size: int) ->
     if not values:
         return Eigenpairs(np.zeros(0, dtype=complex), np.zeros((size, 0), dtype=complex))
     return Eigenpairs.sorted(np.array(values), np.array(columns).T)
+
+
+def _inverse(shifted: FloatArray) -> FloatArray:
+    """Inverse of K + s M, of order one, on all directions that have stiffness or mass.
+
+    A line without rotary inertia that turns about itself has neither: no equation tells how it moves.
+    """
+    left, singular, right = np.linalg.svd(shifted)
+    known = singular > NOTHING
+    return np.asarray((right[known].T / singular[known]) @ left[:, known].T)
 
 
 def _root(mass: FloatArray) -> FloatArray:
