@@ -16,13 +16,14 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import loads_have_potential
+from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
 
 
 @dataclass(frozen=True)
-class Model(functions.ModelFunctions):
+class Model(functions.ModelFunctions, MotionFunctions):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
