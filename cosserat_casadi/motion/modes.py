@@ -176,17 +176,27 @@ class Modes:
         return rod_shape(self.model, name, self.solution.x, self.solution.inputs, vectors, np.asarray(X, dtype=float))
 
 
-def small_motions(model: Model, x: FloatArray, inputs: FloatArray) -> SmallMotions:
-    """The linear equations of small motions about a state at rest, inputs held.
+def small_motions(
+    model: Model,
+    x: FloatArray,
+    inputs: FloatArray,
+    inputs_rate: FloatArray | None = None,
+    inputs_acceleration: FloatArray | None = None,
+) -> SmallMotions:
+    """The linear equations of small motions about unknowns that do not change.
 
     Args:
         model: the scene.
-        x: unknowns of the state, shape (model.size,).
+        x: the unknowns, shape (model.size,).
         inputs: stacked inputs.
+        inputs_rate: their rate, as of a base that spins steadily; zero where it is left out.
+        inputs_acceleration: their acceleration, likewise.
     """
     rest = np.zeros(model.size)
     held = np.zeros(model.inputs.size)
-    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, held, held)
+    rate = held if inputs_rate is None else inputs_rate
+    acceleration = held if inputs_acceleration is None else inputs_acceleration
+    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, rate, acceleration)
     unknowns = model.discrete.unknowns
     return SmallMotions(stiffness.full(), damping.full(), mass.full(), unknowns.units, unknowns.differential)
 
