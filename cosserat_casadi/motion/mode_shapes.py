@@ -109,7 +109,11 @@ def normalised(
             in_phase = in_phase @ _directions(np.real(shapes))
         aligned[:, cluster] = in_phase
     entries = _entries(model, x, inputs, aligned)
-    return np.asarray(aligned * _in_phase(entries))
+    scaled = aligned * _in_phase(entries)
+    # What is in phase but for rounding is real.
+    small = REAL * np.abs(scaled).max(axis=0)
+    in_phase = np.abs(scaled.imag).max(axis=0) <= small
+    return np.where(in_phase, scaled.real, scaled)
 
 
 def _entries(model: Model, x: FloatArray, inputs: FloatArray, motions: NumberArray) -> NumberArray:
