@@ -38,6 +38,18 @@ def _along(matrix: ca.SX, state: ca.SX, direction: ca.SX) -> ca.SX:
 TURN_JET = _turn_jet()
 
 
+def _norm_rows() -> ca.Function:
+    """(Q, Q̇, Q̈) ↦ ½ Q d²(Q·Q)/dt², 4×1, and its derivatives with Q, Q̇ and Q̈."""
+    symbols = [ca.SX.sym(name, 4) for name in ("quaternion", "rate", "acceleration")]
+    quaternion, rate, acceleration = symbols
+    rows = quaternion * (ca.dot(quaternion, acceleration) + ca.sumsqr(rate))
+    derivatives = [ca.jacobian(rows, symbol) for symbol in symbols]
+    return ca.Function("norm_rows", symbols, ca.cse([rows, *derivatives]))
+
+
+NORM_ROWS = _norm_rows()
+
+
 @dataclass(frozen=True)
 class QuaternionMotion:
     """A quaternion of any norm with its rates.
@@ -78,12 +90,14 @@ class FloatingFrameMotion:
         quaternion: its quaternion with its rates.
         deviation_rate: rates of its unknowns, 7×1, 1/s.
         deviation_acceleration: 7×1, 1/s².
+        norm_time: time in which the norm of the quaternion returns to one, squared, s².
     """
 
     frame: FloatingFrame
     quaternion: QuaternionMotion
     deviation_rate: Matrix
     deviation_acceleration: Matrix
+    norm_time: float
 
     @cached_property
     def motion(self) -> FrameMotion:
@@ -110,6 +124,27 @@ class FloatingFrameMotion:
             orders.append(ca.vertcat(rotation_rows, position_rows))
         value, rate, acceleration = orders
         return Jet(value, rate, acceleration)
+
+    @cached_property
+    def norm_rows(self) -> Matrix:
+        """Inertia of the norm of the quaternion, τ² Q (Q·Q̈ + Q̇·Q̇), 7×1.
+
+        No mechanics sees the norm. With the (Q·Q − 1) Q of the balance these rows make it return to one like a spring
+        with a mass, so that it is a coordinate like all others and not a constraint.
+        """
+        rows: Matrix = self.norm_time * NORM_ROWS(*self._quaternion)[0]
+        return ca.vertcat(ca.DM(3, 1), rows)
+
+    @cached_property
+    def norm_matrices(self) -> MotionMatrices:
+        """Derivatives of :attr:`norm_rows` with the unknowns of the frame and their rates, 7×7 each."""
+        _, *derivatives = NORM_ROWS(*self._quaternion)
+        blocks = [ca.diagcat(ca.DM(3, 3), self.norm_time * block) for block in derivatives]
+        return MotionMatrices(*blocks)
+
+    @property
+    def _quaternion(self) -> tuple[Matrix, Matrix, Matrix]:
+        return self.quaternion.quaternion, self.quaternion.rate, self.quaternion.acceleration
 
 
 @dataclass(frozen=True)

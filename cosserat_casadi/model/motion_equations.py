@@ -16,6 +16,7 @@ from cosserat_casadi.model.assembly import Blocks
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
 
 
@@ -32,14 +33,17 @@ class MotionEquations:
     @cached_property
     def residual(self) -> Matrix:
         """Residuals of rods, constraints, floating frames and cables in motion, without unit, size×1."""
-        at_rest = Equations(self.system).residual
-        viscous: list[Matrix] = []
-        for rod in self.system.discrete.rods:
-            viscosity = self.system.viscosities.get(rod)
-            none = ca.DM(self.system.discrete.rods[rod].size, 1)
-            viscous.append(none if viscosity is None else viscosity.force)
-        others = ca.DM(self.system.discrete.size - sum(part.shape[0] for part in viscous), 1)
-        return at_rest + ca.vertcat(*viscous, others)
+        unknowns = self.system.discrete.unknowns
+        added: list[Matrix] = []
+        for block in unknowns.blocks:
+            rows: Matrix = ca.DM(block.size, 1)
+            if block.kind is BlockKind.STRAIN and block.owner in self.system.viscosities:
+                rows = self.system.viscosities[block.owner].force
+            added.append(rows)
+        for name, frame_motion in self.system.frame_motions.items():
+            number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
+            added[number] = frame_motion.norm_rows
+        return Equations(self.system).residual + ca.vertcat(*added)
 
     @cached_property
     def matrices(self) -> MotionMatrices:
@@ -60,6 +64,11 @@ class MotionEquations:
             stiffness.add(entries, entries, part.stiffness / frame.unit)
             damping.add(entries, entries, part.damping / frame.unit)
             mass.add(entries, entries, part.mass / frame.unit)
+        for name, frame_motion in self.system.frame_motions.items():
+            entries = self.system.discrete.deviation(name)
+            stiffness.add(entries, entries, frame_motion.norm_matrices.stiffness)
+            damping.add(entries, entries, frame_motion.norm_matrices.damping)
+            mass.add(entries, entries, frame_motion.norm_matrices.mass)
         for rod, viscosity in self.system.viscosities.items():
             entries = self.system.discrete.unknowns.strain(rod)
             stiffness.add(entries, entries, viscosity.stiffness)

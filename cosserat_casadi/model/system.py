@@ -156,8 +156,20 @@ class System:
             rate = motion.v[entries]
             acceleration = motion.a[entries]
             quaternion = QuaternionMotion(self.frame_poses[name].quaternion, rate[3:], acceleration[3:])
-            motions[name] = FloatingFrameMotion(frame, quaternion, rate, acceleration)
+            norm_time = self._mass_of(name) * frame.length**2 / frame.unit
+            motions[name] = FloatingFrameMotion(frame, quaternion, rate, acceleration, norm_time)
         return motions
+
+    def _mass_of(self, name: FrameName) -> float:
+        """Mass of the body, or of the rod, that a floating frame belongs to, kg."""
+        body = self.discrete.frames[name].body
+        if body is not None:
+            return body.mass
+        rod = self.discrete.rods[name.name]
+        masses = section_masses(rod)
+        if masses is None:
+            return 0.0
+        return float(rod.node_lengths @ masses.mass)
 
     @cached_property
     def body_inertias(self) -> dict[FrameName, BodyInertia]:

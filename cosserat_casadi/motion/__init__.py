@@ -1,1 +1,1 @@
-"""Motion of rods: inputs over time, trajectories, small motions about equilibria."""
+"""Motion: inputs over time, simulation, what a motion is, modes and linearisation."""

@@ -10,7 +10,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
 from cosserat_casadi.motion.modes import Mode, Modes
 from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
-from cosserat_casadi.results.solution_file import abscissae, result
+from cosserat_casadi.results.solution_file import listed_abscissae, result
 
 
 def modes_result(modes: Modes) -> dict[str, Any]:
@@ -38,7 +38,7 @@ def _mode_entries(modes: Modes) -> list[dict[str, Any]]:
         return []
     shapes: dict[str, RodShape] = {}
     for name, discretisation in modes.model.discretisation.items():
-        shapes[name] = modes.shape(abscissae(discretisation.breaks), name)
+        shapes[name] = modes.shape(listed_abscissae(discretisation.breaks), name)
     return [_mode_entry(mode, index, shapes) for index, mode in enumerate(modes.modes)]
 
 
