@@ -198,7 +198,25 @@ def small_motions(
     acceleration = held if inputs_acceleration is None else inputs_acceleration
     stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, rate, acceleration)
     unknowns = model.discrete.unknowns
-    return SmallMotions(stiffness.full(), damping.full(), mass.full(), unknowns.units, unknowns.differential)
+    return SmallMotions(
+        stiffness.full(),
+        damping.full(),
+        mass.full(),
+        unknowns.units,
+        unknowns.differential,
+        _quaternion_growth(model, x),
+    )
+
+
+def _quaternion_growth(model: Model, x: FloatArray) -> FloatArray:
+    """Gradients of the norms of the floating frames' quaternions, shape (frames, size)."""
+    discrete = model.discrete
+    gradients = np.zeros((len(discrete.frames), model.size))
+    for row, (name, frame) in zip(gradients, discrete.frames.items(), strict=True):
+        entries = discrete.deviation(name)
+        # Of the seven unknowns of a frame the last four are what its quaternion differs by from that at the start.
+        row[entries][3:] = frame.start.quaternion + x[entries][3:]
+    return gradients
 
 
 def modes_of(solution: Solution, count: int | None = None) -> Modes:

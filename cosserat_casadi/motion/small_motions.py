@@ -38,6 +38,7 @@ class SmallMotions:
         mass: M = ∂ residual/∂a, shape (size, size), s².
         units: energy that each row is divided by, shape (size,), J.
         differential: whether an unknown is a coordinate that moves, shape (size,).
+        unseen: directions of the unknowns that move nothing, such as the norms of quaternions, shape (j, size).
     """
 
     stiffness: FloatArray
@@ -45,6 +46,7 @@ class SmallMotions:
     mass: FloatArray
     units: FloatArray
     differential: npt.NDArray[np.bool_]
+    unseen: FloatArray
 
     @cached_property
     def moving(self) -> npt.NDArray[np.int64]:
@@ -100,13 +102,18 @@ class SmallMotions:
 
     @cached_property
     def constraints(self) -> FloatArray:
-        """Gradients G of the constraints with the scaled coordinates, one a row, shape (m, n)."""
-        return np.asarray(self.stiffness[np.ix_(self.holding, self.moving)] / self.roots)
+        """Gradients G of the constraints with the scaled coordinates, one a row, shape (m, n).
+
+        What moves nothing is held too: it has equations of its own, which are none of mechanics.
+        """
+        held = self.stiffness[np.ix_(self.holding, self.moving)]
+        gradients = np.vstack([held, self.unseen[:, self.moving]])
+        return np.asarray(gradients / self.roots)
 
     @cached_property
     def basis(self) -> FloatArray:
         """Z: orthonormal basis of the motions that the constraints admit, scaled coordinates, shape (n, k)."""
-        if not self.holding.size:
+        if not len(self.constraints):
             return np.eye(self.moving.size)
         _, singular, rows = np.linalg.svd(self.constraints)
         independent = singular > DEPENDENT * singular.max(initial=0.0)

@@ -1,5 +1,7 @@
 """Eigenvalues of M z̈ + C ż + K z = 0 against closed forms and scipy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -166,8 +168,9 @@ def constrained(gradients, own):
     mass = np.zeros_like(full)
     mass[:5, :5] = np.eye(5) / units[:, None]
     differential = np.arange(5 + held) < 5
+    unseen = np.zeros((0, 5 + held))
     all_units = np.concatenate([units, np.ones(held)])
-    return stiffness, SmallMotions(full, np.zeros_like(full), mass, all_units, differential)
+    return stiffness, SmallMotions(full, np.zeros_like(full), mass, all_units, differential, unseen)
 
 
 def frequencies_of(motions):
@@ -203,3 +206,11 @@ def test_displacements_obey_the_constraints():
     assert unknowns.shape == (6, 4)
     assert_allclose(gradients @ unknowns[:5], np.zeros((1, 4)), rtol=0, atol=1e-12)
     assert_allclose(unknowns[5], np.zeros(4), rtol=0, atol=0)
+
+
+def test_what_moves_nothing_is_left_out():
+    stiffness, motions = constrained(np.zeros((0, 5)), np.zeros(0))
+    direction = np.array([[1.0, 2.0, 0.0, -1.0, 0.5]])
+    basis = scipy.linalg.null_space(direction)
+    expected = scipy.linalg.eigvalsh(basis.T @ stiffness @ basis)
+    assert_allclose(frequencies_of(replace(motions, unseen=direction)), np.sqrt(expected), rtol=1e-12, atol=0)
