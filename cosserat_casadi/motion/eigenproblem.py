@@ -34,6 +34,9 @@ NOTHING = 1e-12
 REAL = 1e-9
 """A real part below this share of an eigenvalue without damping is rounding."""
 
+NO_DAMPING = 1e-13
+"""A real part below this share of an eigenvalue with damping is rounding: the motion meets none of the damping."""
+
 SAME = 1e-4
 """Singular value below which a shape of a rigid motion repeats others."""
 
@@ -196,8 +199,11 @@ def _without_conjugates(values: ComplexArray, shapes: ComplexArray, shift: float
     kept_values: list[complex] = []
     kept_shapes: list[ComplexArray] = []
     for index in np.flatnonzero(~zero):
-        if values[index].imag >= 0.0:
-            kept_values.append(complex(values[index]))
+        value = complex(values[index])
+        if abs(value.real) <= NO_DAMPING * abs(value):
+            value = complex(0.0, value.imag)
+        if value.imag >= 0.0:
+            kept_values.append(value)
             kept_shapes.append(shapes[:, index])
     # A rigid motion has the eigenvalue 0 twice and one shape: rounding splits the pair.
     for shape in _independent(shapes[:, zero]).T:

@@ -116,6 +116,17 @@ def normalised(
     return np.where(in_phase, scaled.real, scaled)
 
 
+def end_of_cluster(values: NumberArray, count: int | None) -> int:
+    """Number of eigenvalues, at least the count, that does not part those that are equal; all for None."""
+    if count is None or count >= len(values):
+        return len(values)
+    for cluster in _clusters(values):
+        end = cluster[-1] + 1
+        if end >= count:
+            return end
+    return len(values)
+
+
 def _entries(model: Model, x: FloatArray, inputs: FloatArray, motions: NumberArray) -> NumberArray:
     """Displacements over length and rotations of all rods at their nodes, one motion a column.
 
@@ -157,9 +168,9 @@ def _is_real(entries: NumberArray) -> bool:
 
 def _directions(shapes: FloatArray) -> FloatArray:
     """Combinations of p shapes that sort them by direction, shape (p, p): along x, then y, then the rest."""
-    third = len(shapes) // 6
-    # Of motions in several directions the first axis counts most: it is settled before the others.
-    weights = np.repeat([4.0, 2.0, 1.0, 0.5, 0.25, 0.125], third)
+    part = len(shapes) // 6
+    # The first axis counts most, so that it is settled before the others; what bends towards x turns about y.
+    weights = np.repeat([4.0, 2.0, 1.0, 0.25, 0.5, 0.125], part)
     orthonormal, triangle = np.linalg.qr(shapes)
     _, _, rows = np.linalg.svd(weights[:, None] * orthonormal)
     return np.asarray(np.linalg.solve(triangle, rows.T))

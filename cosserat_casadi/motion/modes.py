@@ -27,7 +27,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.motion.eigenproblem import REAL, Eigenpairs, eigenpairs
-from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, normalised, rod_shape
+from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -99,7 +99,8 @@ class Mode:
     @property
     def damping_ratio(self) -> float:
         """−Re λ / |λ|; zero for a rigid motion."""
-        if self.eigenvalue == 0.0:
+        # A zero without a sign: neither a rigid motion nor one without damping decays.
+        if self.eigenvalue.real == 0.0:
             return 0.0
         return -self.eigenvalue.real / abs(self.eigenvalue)
 
@@ -240,12 +241,14 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
         motions.free_mass,
         conservative=model.has_potential(solution.inputs),
     )
-    values = pairs.values[:count]
-    vectors = motions.displacement(pairs.vectors[:, :count])
+    # Shapes of one eigenvalue are told apart together, also where the last of them is not asked for.
+    end = end_of_cluster(pairs.values, count)
+    values = pairs.values[:end]
+    vectors = motions.displacement(pairs.vectors[:, :end])
     shapes = normalised(model, solution.x, solution.inputs, values, vectors)
     modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
     stability = _stability(pairs, solution)
-    return Modes(solution, ModesOutcome.NOT_ESTIMATED, stability, tuple(modes))
+    return Modes(solution, ModesOutcome.NOT_ESTIMATED, stability, tuple(modes[:count]))
 
 
 def modes_of_scene(
