@@ -111,8 +111,8 @@ wave = "one_minus_cosine"
         """Times at which the value itself jumps, s."""
         if not self.is_table or self.interpolation != "step":
             return ()
-        changes = np.diff(self.knot_values, axis=0)
-        changing = np.any(changes != 0.0, axis=1)
+        values = self.knot_values
+        changing = np.any(values[1:] != values[:-1], axis=1)
         times = self.knots[1:][changing]
         return tuple(times.tolist())
 
