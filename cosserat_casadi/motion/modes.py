@@ -234,7 +234,7 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
         return _no_equilibrium(solution)
     model = solution.model
     motions = small_motions(model, solution.x, solution.inputs)
-    _check_mass(motions)
+    check_mass(motions)
     pairs = eigenpairs(
         motions.free_stiffness,
         motions.free_damping,
@@ -371,7 +371,7 @@ def _distances(values: npt.NDArray[np.complex128], others: npt.NDArray[np.comple
     return np.asarray(distances + ROUNDING)
 
 
-def _check_mass(motions: SmallMotions) -> None:
+def check_mass(motions: SmallMotions) -> None:
     """Refuse a scene that has nothing to swing.
 
     Raises:

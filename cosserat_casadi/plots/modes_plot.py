@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
 from cosserat_casadi.plots.canvas import FLAT, SPACE, Canvas, Plane
@@ -104,7 +105,8 @@ def mode_words(mode: Mode, index: int) -> str:
     if not mode.oscillates:
         return f"{index + 1}: {mode.words}, {abs(mode.eigenvalue.real):.4g} 1/s"
     words = f"{index + 1}: {mode.frequency:.4g} Hz"
-    if mode.eigenvalue.real != 0.0:
+    # What is left of rounding is no damping.
+    if abs(mode.damping_ratio) > REAL:
         words += f", ζ = {mode.damping_ratio:.3g}"
     return words
 
