@@ -41,6 +41,7 @@ class MotionOutcome(Enum):
     NOT_FINITE = "The motion ended early: the equations gave a value that is not a finite number."
     INTERRUPTED = "The motion ended early: it was interrupted."
     NO_START = "No motion was computed: no state to start from was found."
+    NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
 
     @property
     def label(self) -> str:

@@ -4,7 +4,7 @@ Rows of F that depend on neither v, a nor an algebraic entry are constraints g(t
 the motion they are linear in a: G a + (what the motion with a = 0 makes of d²g/dt²) = 0. With the other rows, linear
 in a and in the algebraic entries, they are one linear system (E. Hairer, G. Wanner, *Solving Ordinary Differential
 Equations II*, 2nd ed., Springer 1996, section VII.1). Where a mass matrix is singular in elastic directions their
-balance says nothing of a: along them the smallest a is taken, and what is left of their balance is told.
+balance says nothing of a: along them some small a is taken, and what is left of their balance is told.
 """
 
 from __future__ import annotations

@@ -91,10 +91,8 @@ def solve_stages(
         residuals = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = float(np.max(np.abs(residuals), initial=0.0))
         corrections = matrices.corrections(residuals)
-        # Both have the units of positions: A² h²a is the change of x, A h²a is h times that of v.
-        positions = bounds.length(method.matrix_squared @ corrections)
-        velocities = bounds.length(method.matrix @ corrections)
-        length = max(positions, velocities)
+        # A h²a is h times the change of v; that of x, A² h²a, is never larger, as no row of |A| has a sum above one.
+        length = bounds.length(method.matrix @ corrections)
         if not np.isfinite(length + largest):
             return StageSolution(unknowns, StageOutcome.NOT_FINITE, iteration, contraction, largest)
         unknowns = unknowns + to_unknowns * corrections

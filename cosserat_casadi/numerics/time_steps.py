@@ -21,7 +21,7 @@ from cosserat_casadi.numerics.step import Step, end_of, extrapolated
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, StepControl, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
-KEEP_CONTRACTION = 0.03
+KEEP_CONTRACTION = 0.1
 """Contraction of Newton's method up to which its Jacobian serves the next step too."""
 
 ITERATIONS_OF_GIVEN_STEP = 40
@@ -76,7 +76,7 @@ class StepSettings:
     size: float | None = None
     first: float | None = None
     longest: float = np.inf
-    shortest: float = 1e-12
+    shortest: float = 1e-9
     newton: float = 1e-3
 
 
@@ -263,8 +263,17 @@ class _Run:
         self.linearisation = None
         self.matrices = None
 
-    def attempt(self) -> StageSolution | StepOutcome:
+    def solve(self) -> StageSolution | StepOutcome:
         """Solve the equations of a step of the present size; else say how the motion ends if no other is tried."""
+        solution = self._solve_with_jacobian()
+        if isinstance(solution, StepOutcome) and not self.fresh:
+            # The Jacobian may be too old: the same step gets one of its own.
+            self.renew_jacobian()
+            solution = self._solve_with_jacobian()
+        return solution
+
+    def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
+        """Solve with the Jacobian in use, or a new one where there is none."""
         linearisation = self.linearisation
         if linearisation is None:
             linearisation = self.equations.linearised(self.now)
@@ -332,10 +341,7 @@ def _equal_steps(run: _Run, size: float, after_step: AfterStep | None) -> StepOu
         end = begin + number * run.size
         if number == count:
             end = run.stop
-        solution = run.attempt()
-        if isinstance(solution, StepOutcome) and not run.fresh:
-            run.renew_jacobian()
-            solution = run.attempt()
+        solution = run.solve()
         if isinstance(solution, StepOutcome):
             return solution
         run.accept(solution, end, float("nan"))
@@ -385,16 +391,12 @@ def _end_of_next(now: float, wanted: float, stop: float) -> float:
 
 def _try_step(run: _Run, control: StepControl, end: float) -> StepOutcome | None:
     """Try a step of the run's size and choose the next one; None where it is taken, else why the motion may end."""
-    solution = run.attempt()
+    solution = run.solve()
     if isinstance(solution, StepOutcome):
-        if not run.fresh:
-            # The Jacobian may be too old: the same step gets one of its own.
-            run.renew_jacobian()
-            control.refuse(run.size, 1.0)
-        elif solution is StepOutcome.SINGULAR:
-            control.refuse(run.size, SINGULAR_SHRINKAGE)
-        else:
-            control.refuse(run.size, FAILED_SHRINKAGE)
+        shrinkage = FAILED_SHRINKAGE
+        if solution is StepOutcome.SINGULAR:
+            shrinkage = SINGULAR_SHRINKAGE
+        control.refuse(run.size, shrinkage)
         if solution is StepOutcome.NOT_SOLVED:
             return StepOutcome.STEP_TOO_SMALL
         return solution

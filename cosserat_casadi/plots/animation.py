@@ -6,6 +6,7 @@ matplotlib is an extra and is imported inside functions only.
 from __future__ import annotations
 
 import tempfile
+import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from cosserat_casadi.motion.poses import section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour
-from cosserat_casadi.plots.figure import add_title, figure_class
+from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
@@ -47,6 +48,9 @@ TURNING = np.linspace(0.0, 1.0, 11)
 
 AXIS_LENGTH = 0.25
 """Length of such an axis relative to the extent of the motion."""
+
+TITLE_LETTERS = 70
+"""Letters of a title in one line."""
 
 TICKS = 5
 """Most intervals between the ticks of an axis."""
@@ -276,7 +280,8 @@ class _Film:
             projection = "3d"
 
         self.figure = figure_class()(figsize=(6.4, 4.8), layout="constrained")
-        add_title(self.figure, frames.model.scene.title)
+        title = textwrap.fill(frames.model.scene.title or "Untitled scene", TITLE_LETTERS)
+        self.figure.suptitle(title, fontsize=11, fontweight="bold")
         axes = self.figure.add_subplot(projection=projection)
         self._frames = frames
         self._canvas = Canvas(axes, plane, shapes.size)
@@ -288,7 +293,7 @@ class _Film:
         handles, labels = axes.get_legend_handles_labels()
         # One rod needs no name.
         if len(shapes.rods) > 1:
-            self.figure.legend(handles, labels, loc="outside right upper", fontsize=9)
+            self.figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
         self.show(0)
         # Laid out once: a layout for every frame would let the axes jump about.
         self.figure.draw_without_rendering()

@@ -49,7 +49,16 @@ def carriers():
     return scene_from_dict(tables)
 
 
+def stub():
+    """A rod on one without mass, with damping of its own: what relaxes and what swings meet in the damping."""
+    root = rod(name="root", damping={"retardation_time": 0.5})
+    del root["linear_density"]
+    branch = rod(damping={"retardation_time": 0.01}, base={"rod": "root"}, rotary_inertia=[1e-3, 1e-3, 2e-3])
+    return scene(push(force=[0.2, 0.1, 0.0]), rods=[root, branch])
+
+
 SCENES = {
+    "stub": stub,
     "cantilever": lambda: scene(push(), WEIGHT),
     "follower": lambda: scene(push(frame="body")),
     # Torsion without rotary inertia is a coordinate without mass about a straight rod; damping makes it relax.
