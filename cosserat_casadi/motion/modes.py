@@ -26,7 +26,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
-from cosserat_casadi.motion.eigenproblem import REAL, Eigenpairs, eigenpairs
+from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -133,12 +133,14 @@ class Modes:
         outcome: how the search ended.
         stability: sentences on what becomes of small motions; where there is no equilibrium, why.
         modes: ordered by |λ|, multiplicities repeated, conjugate pairs once.
+        spectrum: all eigenvalues of the model, in the same order; the larger ones are not those of the rods, 1/s.
     """
 
     solution: Solution
     outcome: ModesOutcome
     stability: str
     modes: tuple[Mode, ...]
+    spectrum: ComplexArray
 
     @property
     def message(self) -> str:
@@ -161,7 +163,7 @@ class Modes:
         return np.array([mode.angular_frequency for mode in self.modes])
 
     @property
-    def eigenvalues(self) -> npt.NDArray[np.complex128]:
+    def eigenvalues(self) -> ComplexArray:
         """λ of all modes, shape (p,), 1/s."""
         return np.array([mode.eigenvalue for mode in self.modes], dtype=complex)
 
@@ -247,8 +249,15 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
     vectors = motions.displacement(pairs.vectors[:, :end])
     shapes = normalised(model, solution.x, solution.inputs, values, vectors)
     modes = [Mode(complex(value), shape) for value, shape in zip(values, shapes.T, strict=True)]
-    stability = _stability(pairs, solution)
-    return Modes(solution, ModesOutcome.NOT_ESTIMATED, stability, tuple(modes[:count]))
+    # The larger half of a discretisation's eigenvalues are not those of the rods, whose oscillations they judge.
+    believed = np.arange(len(pairs.values)) < ceil(len(pairs.values) / 2)
+    return Modes(
+        solution,
+        ModesOutcome.NOT_ESTIMATED,
+        _stability(pairs.values, believed, solution),
+        tuple(modes[:count]),
+        pairs.values,
+    )
 
 
 def modes_of_scene(
@@ -352,10 +361,17 @@ def _judged(modes: Modes, witness: Modes) -> Modes:
     # Written so that an estimate which is not a number counts as too large.
     if np.all(errors <= tolerance):
         outcome = ModesOutcome.RESOLVED
-    return replace(modes, outcome=outcome, modes=estimated)
+    stability = _stability(modes.spectrum, _confirmed(modes.spectrum, witness.spectrum), modes.solution)
+    return replace(modes, outcome=outcome, stability=stability, modes=estimated)
 
 
-def _distances(values: npt.NDArray[np.complex128], others: npt.NDArray[np.complex128]) -> FloatArray:
+def _confirmed(values: ComplexArray, others: ComplexArray) -> npt.NDArray[np.bool_]:
+    """Which eigenvalues another discretisation has too, to half of their growth at least."""
+    gaps = np.abs(values[:, None] - others).min(axis=1, initial=np.inf)
+    return np.asarray(gaps <= np.abs(values.real) / 2)
+
+
+def _distances(values: ComplexArray, others: ComplexArray) -> FloatArray:
     """Distance of each eigenvalue to its counterpart among others, relative to its size; inf where it has none."""
     distances = np.full(len(values), np.inf)
     left = list(others)
@@ -385,23 +401,27 @@ def check_mass(motions: SmallMotions) -> None:
 
 def _no_equilibrium(solution: Solution) -> Modes:
     outcome = ModesOutcome.NO_EQUILIBRIUM
-    return Modes(solution, outcome, solution.message, ())
+    return Modes(solution, outcome, solution.message, (), np.zeros(0, dtype=complex))
 
 
-def _stability(pairs: Eigenpairs, solution: Solution) -> str:
-    """What becomes of small motions, as sentences."""
-    growing = pairs.values.real > REAL * np.abs(pairs.values)
-    swinging = pairs.values.imag > 0.0
-    # The upper half of a discretisation's oscillations are not those of the rods.
-    resolved = np.arange(len(pairs.values)) < ceil(len(pairs.values) / 2)
+def _stability(values: ComplexArray, believed: npt.NDArray[np.bool_], solution: Solution) -> str:
+    """What becomes of small motions, as sentences.
+
+    Args:
+        values: all eigenvalues of the model.
+        believed: which of those that swing are taken for motions of the rods.
+        solution: the equilibrium.
+    """
+    growing = values.real > REAL * np.abs(values)
+    swinging = values.imag > 0.0
     sentences = []
-    unsettled = pairs.values[growing & ~swinging]
+    unsettled = values[growing & ~swinging]
     if unsettled.size:
         count = _motions(unsettled.size, "grows", "grow")
         sentences.append(f"Statically unstable: {count} without swinging, at up to {unsettled.real.max():.6g} 1/s.")
-    elif solution.stable is False and not np.any(pairs.values == 0.0):
+    elif solution.stable is False and not np.any(values == 0.0):
         sentences.append("Statically unstable: what has no mass leaves the equilibrium at once.")
-    fluttering = pairs.values[growing & swinging & resolved]
+    fluttering = values[growing & swinging & believed]
     if fluttering.size:
         fastest = fluttering[np.argmax(fluttering.real)]
         count = _motions(fluttering.size, "grows", "grow")
@@ -409,17 +429,17 @@ def _stability(pairs: Eigenpairs, solution: Solution) -> str:
         sentences.append(
             f"Dynamically unstable (flutter): {count} while swinging, at {frequency:.6g} Hz by {fastest.real:.6g} 1/s."
         )
-    neutral = int(np.sum(pairs.values == 0.0))
+    neutral = int(np.sum(values == 0.0))
     if neutral:
         count = _motions(neutral, "meets", "meet")
         sentences.append(f"{count} no resistance: rigid, or neutral.".capitalize())
     if not sentences:
-        sentences.append(_settled(pairs))
+        sentences.append(_settled(values))
     return " ".join(sentences)
 
 
-def _settled(pairs: Eigenpairs) -> str:
-    if np.all(pairs.values.real < 0.0):
+def _settled(values: ComplexArray) -> str:
+    if np.all(values.real < 0.0):
         return "Stable: small motions die away."
     return "Stable: small motions stay small."
 
