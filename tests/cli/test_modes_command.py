@@ -102,3 +102,21 @@ def test_a_scene_without_mass_is_refused(blade: Path) -> None:
     done = cosserat("blade.toml", cwd=blade)
     assert done.returncode == 2
     assert "has mass" in done.stderr
+
+
+def test_a_mode_that_the_scene_does_not_have_is_refused(blade: Path) -> None:
+    text = (blade / "blade.toml").read_text().replace("linear_density = 1.0\n", "")
+    body = """
+[[bodies]]
+name = "ball"
+mass = 1.0
+[[joints]]
+body = "ball"
+rod = "blade"
+kind = "fixed"
+"""
+    (blade / "blade.toml").write_text(text + body)
+    done = cosserat("blade.toml", "--mode", "5", "--animation", "m.gif", "--output", "m.json", cwd=blade)
+    assert done.returncode == 2
+    assert "the scene has no more modes" in done.stderr
+    assert not (blade / "m.json").exists()

@@ -264,10 +264,32 @@ def test_frequencies_converge_with_the_modes():
 
 
 def test_what_has_no_mass_is_refused():
-    weightless = rod()
-    del weightless["linear_density"]
     with pytest.raises(SceneError, match="mass"):
-        modes_of_scene(scene(weightless))
+        modes_of_scene(scene(weightless()))
+
+
+def weightless(name="rod"):
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.0}
+    described = rod("kirchhoff", stiffness, name=name)
+    del described["linear_density"]
+    return described
+
+
+def test_a_mass_on_a_weightless_rod_has_two_modes():
+    """ω² = 3 EI / (m L³), in both planes; the body has no inertia, and nothing else moves."""
+    body = {"name": "ball", "mass": 0.75}
+    joint = {"body": "ball", "rod": "rod", "kind": "fixed"}
+    assert_allclose(frequencies(scene(weightless(), bodies=[body], joints=[joint]), 8), [2.0, 2.0], rtol=1e-10, atol=0)
+
+
+def test_what_has_no_mass_and_no_stability_is_told():
+    column = weightless("column")
+    stable = rod(base={"position": [1.0, 0.0, 0.0]})
+    push = {**thrust(3.0), "rod": "column"}
+    tables = {"schema": 1, "rods": [stable, column], "loads": [push], "accuracy": {"tolerance": 1e-6}}
+    modes = modes_of_scene(scene_from_dict(tables), count=2)
+    assert_allclose(modes.angular_frequencies, CANTILEVER[:2], rtol=1e-6, atol=0)
+    assert "what has no mass leaves the equilibrium at once" in modes.message
 
 
 def test_no_equilibrium_no_modes():

@@ -43,6 +43,7 @@ def modes(
 
     with solve_display("Finding modes") as display:
         found = modes_of_scene(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
+    _check_mode_is_there(found, animation, mode)
     if output is not None:
         write_atomically(output, modes_text(found).encode())
     drawn = _draw(found, plot, animation, mode)
@@ -56,6 +57,17 @@ def _check_numbers(count: int, mode: int, problems: list[Problem]) -> None:
         problems.append(Problem("--count", f"must be 1 or more, got {count}"))
     elif not 1 <= mode <= count:
         problems.append(Problem("--mode", f"must be from 1 to {count}, got {mode}", "ask for more modes with --count"))
+
+
+def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> None:
+    """Refuse to draw a mode that the scene does not have: with little mass it has fewer than were asked for.
+
+    Raises:
+        SceneError: there are modes, but not this one.
+    """
+    count = len(found.modes)
+    if animation is not None and 0 < count < number:
+        raise SceneError(Problem("--mode", f"must be from 1 to {count}: the scene has no more modes; got {number}"))
 
 
 def _check_files(output: Path | None, plot: Path | None, animation: Path | None, problems: list[Problem]) -> None:
@@ -83,8 +95,8 @@ def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) 
     if plot is not None:
         save_modes_plot(found, plot)
         written.append(plot)
-    # A scene may have fewer modes than were asked for.
-    if animation is not None and number <= len(found.modes):
+    # Where there is no equilibrium nothing swings.
+    if animation is not None and found.modes:
         save_mode_animation(found, number - 1, animation)
         written.append(animation)
     return written
