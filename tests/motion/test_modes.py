@@ -268,6 +268,23 @@ def test_what_has_no_mass_is_refused():
         modes_of_scene(scene(weightless()))
 
 
+def roped(length, **changes):
+    """A rod with a cable beside its axis, whose length is given."""
+    stiffness = {"bending_x": 1.0, "bending_y": 1.2, "torsion": 0.8, "extension": 900.0}
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "length": length, "offset": [0.05, 0.0], **changes}
+    return scene(rod(list(stiffness), stiffness, rotary_inertia=[1e-3, 1e-3, 2e-3]), actuators=[cable])
+
+
+def test_a_taut_cable_holds_and_a_slack_one_does_not():
+    held = frequencies(roped(0.98), 5)
+    assert_allclose(frequencies(roped(0.98, slack=True), 5), held, rtol=1e-9, atol=0)
+    stiffness = {"bending_x": 1.0, "bending_y": 1.2, "torsion": 0.8, "extension": 900.0}
+    alone = frequencies(scene(rod(list(stiffness), stiffness, rotary_inertia=[1e-3, 1e-3, 2e-3])), 5)
+    assert_allclose(frequencies(roped(1.02, slack=True), 5), alone, rtol=1e-9, atol=0)
+    # In the plane of the cable the rod is held, across it is not.
+    assert np.abs(held - alone).max() > 0.1
+
+
 def weightless(name="rod"):
     stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.0}
     described = rod("kirchhoff", stiffness, name=name)
