@@ -8,9 +8,10 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.rotation import quaternion_product
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 
 
@@ -158,8 +159,8 @@ def _gap(solution: Solution, target: scenes.Target) -> Gap:
     distance = float(np.linalg.norm(difference))
     if isinstance(target, scenes.PositionTarget):
         return Gap(what, distance, None)
-    angle = _angle(np.array(target.quaternion), pose.quaternion[0])
-    return Gap(what, distance, angle)
+    angles = rotation_angles(np.array([target.quaternion]), pose.quaternion)
+    return Gap(what, distance, float(angles[0]))
 
 
 def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
@@ -168,15 +169,3 @@ def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
     distances = np.linalg.norm(differences, axis=1)
     what = f"{len(target.at)} points along {target.rod}"
     return Gap(what, float(distances.max()), None)
-
-
-def _angle(first: FloatArray, second: FloatArray) -> float:
-    """Angle of the rotation between two unit quaternions, rad, in [0, π]."""
-    scalar = first @ second
-    # The conjugate of the first times the second.
-    vector = first[0] * second[1:] - second[0] * first[1:]
-    vector = vector - np.cross(first[1:], second[1:])
-    # The arc tangent is exact near 0 and near π, where arc cosine and arc sine are not; q and −q are one rotation.
-    sine = np.linalg.norm(vector)
-    half_angle = np.arctan2(sine, abs(scalar))
-    return float(2 * half_angle)
