@@ -1,4 +1,4 @@
-"""The command line: solve, follow a path, find inputs, sweep, check, export, tune, bench."""
+"""The command line: solve, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from cosserat_casadi.cli.commands.check import check
 from cosserat_casadi.cli.commands.export import export
 from cosserat_casadi.cli.commands.inverse import inverse
 from cosserat_casadi.cli.commands.path import path
+from cosserat_casadi.cli.commands.simulate import simulate
 from cosserat_casadi.cli.commands.solve import solve
 from cosserat_casadi.cli.commands.sweep import sweep
 from cosserat_casadi.cli.commands.tune import tune
@@ -42,7 +43,7 @@ app = typer.Typer(
 )
 
 # In the order in which --help lists them.
-for command in (solve, path, inverse, sweep, check, export, tune, bench):
+for command in (solve, path, simulate, inverse, sweep, check, export, tune, bench):
     app.command()(command)
 
 

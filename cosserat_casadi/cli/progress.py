@@ -20,6 +20,7 @@ from rich.progress import (
 from rich.text import Text
 
 from cosserat_casadi.cli.signals import StoppedError, remembered_interrupt
+from cosserat_casadi.motion.trajectory import MotionProgress
 
 CountCallback = Callable[[str, int, int], None]
 """Takes a stage, how much of it is done, and how much there is; 0 of 0 where that is not known."""
@@ -80,12 +81,49 @@ def solve_display(command: str) -> Iterator[SolveDisplay]:
             raise_interrupt()
             bar.update(task, description=f"{command}: {stage}", completed=0.0)
 
-        try:
+        with _stopped_without_files(bar):
             yield SolveDisplay(show_share, show_stage)
-        except KeyboardInterrupt:
-            # Whoever waits is told that no file has changed.
-            bar.console.print("Stopped. Nothing was written.")
-            raise StoppedError from None
+
+
+@contextmanager
+def motion_display() -> Iterator[Callable[[MotionProgress], None]]:
+    """A bar for a simulation, with the time that is reached and the present step.
+
+    An interrupt that finds no motion yet ends the command; of a motion on its way the simulation hears at its next
+    report.
+    """
+    with progress_bar() as bar, remembered_interrupt() as raise_interrupt:
+        task = bar.add_task("Building the model", total=1.0)
+
+        def show_motion(progress: MotionProgress) -> None:
+            raise_interrupt()
+            times = f"t = {progress.time:.4g} of {progress.duration:.4g} s, step {progress.step:.2g} s"
+            bar.update(task, description=f"{progress.stage}: {times}", completed=progress.share)
+
+        with _stopped_without_files(bar):
+            yield show_motion
+
+
+@contextmanager
+def share_display(description: str) -> Iterator[Callable[[float], None]]:
+    """A bar for what tells the share of it that is done."""
+    with progress_bar() as bar:
+        task = bar.add_task(description, total=1.0)
+
+        def show_share(share: float) -> None:
+            bar.update(task, completed=share)
+
+        yield show_share
+
+
+@contextmanager
+def _stopped_without_files(bar: Progress) -> Iterator[None]:
+    """End the command with a sentence where it is interrupted inside: whoever waits is told that no file changed."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        bar.console.print("Stopped. Nothing was written.")
+        raise StoppedError from None
 
 
 @contextmanager

@@ -10,7 +10,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import read_numbers
+from cosserat_casadi.scene.number_table import read_numbers
 from cosserat_casadi.scene.values import NORM_SLACK
 
 POSITION = ("x", "y", "z")

@@ -184,8 +184,8 @@ class Assembly:
         for placed in self.constraints:
             self._add_constraint(blocks, placed)
             self._add_constraint_wrench(blocks, placed)
-        for carried in self.discrete.unloaded.carried:
-            self._add_turned_loads(blocks, carried.name)
+        for floating in self.discrete.unloaded.floating_rods:
+            self._add_turned_loads(blocks, floating.name)
         for name in self.frames:
             self._add_balance(blocks, name)
         for cable in self.discrete.cables:
@@ -276,7 +276,7 @@ class Assembly:
         return wrenches
 
     def _rod_reaction(self, name: FrameName) -> Matrix:
-        """Wrench of a carried rod on its own base, world axes."""
+        """Wrench of a rod on its own floating base, world axes."""
         statics = self.system.rods[name.name].statics
         world_R_base = self.frame_poses[name].pose.rotation
         moment = world_R_base @ statics.base_moment
@@ -285,9 +285,9 @@ class Assembly:
 
     @cached_property
     def _reactions(self) -> dict[str, Reaction]:
-        """Variations of the base wrenches of carried rods."""
+        """Variations of the base wrenches of rods whose bases float."""
         reactions = {}
-        for rod in self.discrete.unloaded.carried:
+        for rod in self.discrete.unloaded.floating_rods:
             tangent = self.system.tangents[rod.name]
             reactions[rod.name] = Reaction(tangent, self.system.dead_wrenches(rod.name))
         return reactions
@@ -347,7 +347,7 @@ class Assembly:
     def _rod_reaction_variations(
         self, name: FrameName, by_motion: dict[FrameName, Matrix]
     ) -> list[tuple[slice, Matrix]]:
-        """Variation of the wrench of a carried rod on its base with strains and multipliers; frames into by_motion."""
+        """Variation of the wrench of a rod on its floating base with strains and multipliers; frames into by_motion."""
         rod = name.name
         reaction = self._reactions[rod]
         rotation = self.frame_poses[name].pose.rotation
@@ -403,6 +403,16 @@ class Assembly:
         loads = BodyLoads(self.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
         for load in loads.all():
             yield load.scaled(self.load_factor)
+        inertia = self.system.body_inertias.get(name)
+        if inertia is not None:
+            yield BodyLoad(
+                position=body.centre_of_mass,
+                arm=inertia.arm,
+                force=inertia.force,
+                moment=inertia.moment,
+                follower=False,
+                aligns=False,
+            )
 
     # Cables of given length
 

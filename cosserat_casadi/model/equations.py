@@ -49,7 +49,7 @@ class Equations:
         # The literal linear system of the report has no variations of its own (theory, 4): it is differentiated.
         if any(rod.discretisation.transport == "permuted" for rod in discrete.rods.values()):
             return ca.jacobian(self.residual, self.system.arguments.x)
-        if discrete.constraints or discrete.cables:
+        if discrete.constraints or discrete.cables or discrete.frames:
             return self.assembly.jacobian
         # Rods that nothing couples do not meet in any row.
         tangents = self.system.tangents.values()

@@ -1,4 +1,4 @@
-"""Floating frames: rigid bodies, and the bases of rods that other rods carry. Their poses are unknown.
+"""Floating frames: rigid bodies, and the bases of rods that other rods carry or nothing holds. Their poses are unknown.
 
 This module settles what does not depend on the unknowns: the pose of each frame in the unloaded scene, and its units.
 Docs/theory.md, section 8.
@@ -82,16 +82,21 @@ class UnloadedScene:
 
     def floating_base(self, rod: str) -> FrameName | None:
         """The floating frame that a rod's base is; None where it rests in the world."""
-        carrier = self.records[rod].base.rod
-        if carrier is None:
+        base = self.records[rod].base
+        if base.rod is None and not base.free:
             return None
         return FrameName("rod", rod)
 
     @cached_property
+    def floating_rods(self) -> list[scenes.Rod]:
+        """Rods whose bases float: carried ones, and those that nothing holds."""
+        return [rod for rod in self.scene.rods if self.floating_base(rod.name) is not None]
+
+    @cached_property
     def frames(self) -> dict[FrameName, FloatingFrame]:
-        """Floating frames: bases of carried rods in the order of the scene, then bodies."""
+        """Floating frames: bases of rods in the order of the scene, then bodies."""
         frames = {}
-        for rod in self.carried:
+        for rod in self.floating_rods:
             name = FrameName("rod", rod.name)
             unit = self.rods[rod.name].energy_unit
             start = self.base(rod.name)
@@ -127,10 +132,12 @@ class UnloadedScene:
 
     def plane(self, rod: str) -> NumericPose | None:
         """Base of a rod that never leaves its x–z plane; None where the rod or what carries it may."""
-        if not stays_in_plane(self.rods[rod].properties):
+        record = self.records[rod]
+        # What nothing holds may be pushed out of its plane.
+        if record.base.free or not stays_in_plane(self.rods[rod].properties):
             return None
         own = self.base(rod)
-        carrier = self.records[rod].base.rod
+        carrier = record.base.rod
         if carrier is None:
             return own
         plane_of_carrier = self.plane(carrier)

@@ -17,11 +17,18 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.model.system import Arguments, MotionArguments, System
 
 Result = TypeVar("Result")
 
-ARGUMENT_UNITS: dict[str, str] = {"inputs": "inputs", "base_position": "m", "inputs_rate": "inputs"}
+ARGUMENT_UNITS: dict[str, str] = {
+    "inputs": "inputs",
+    "base_position": "m",
+    "inputs_rate": "inputs",
+    "inputs_acceleration": "inputs",
+    "v": "1/s",
+    "a": "1/s²",
+}
 """Units of the arguments that have one; "inputs" stands for those of the stacked inputs."""
 
 SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
@@ -74,7 +81,30 @@ class Expressions:
     @cached_property
     def arguments(self) -> Arguments:
         """Unknowns, inputs and load factor, as far as they are arguments."""
-        return Arguments(self.symbols["x"], self.symbols["inputs"], self.symbols.get("load_factor"))
+        motion = None
+        if "v" in self.symbols:
+            motion = self._motion
+        return Arguments(self.symbols["x"], self.symbols["inputs"], self.symbols.get("load_factor"), motion)
+
+    @cached_property
+    def at_rest(self) -> System:
+        """The equations of motion in these arguments where nothing moves."""
+        unknowns = ca.DM(self.discrete.size, 1)
+        inputs = ca.DM(self.discrete.layout.size, 1)
+        still = MotionArguments(v=unknowns, a=unknowns, inputs_rate=inputs, inputs_acceleration=inputs)
+        return System(self.discrete, Arguments(self.symbols["x"], self.symbols["inputs"], None, still))
+
+    @property
+    def _motion(self) -> MotionArguments:
+        """Rates of unknowns and inputs; what is no argument is zero for good."""
+        unknowns = ca.DM(self.discrete.size, 1)
+        inputs = ca.DM(self.discrete.layout.size, 1)
+        return MotionArguments(
+            v=self.symbols["v"],
+            a=self.symbols.get("a", unknowns),
+            inputs_rate=self.symbols.get("inputs_rate", inputs),
+            inputs_acceleration=self.symbols.get("inputs_acceleration", inputs),
+        )
 
     @cached_property
     def system(self) -> System:
@@ -170,7 +200,10 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
     sizes = {
         "x": discrete.size,
         "inputs": discrete.layout.size,
+        "v": discrete.size,
+        "a": discrete.size,
         "inputs_rate": discrete.layout.size,
+        "inputs_acceleration": discrete.layout.size,
         "base_position": 3,
         "base_quaternion": 4,
     }

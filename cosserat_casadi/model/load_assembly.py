@@ -65,13 +65,14 @@ class RodLoads:
         """What all loads do to the rod, in the axes of its base."""
         rod_loads: list[RodLoad] = []
         for load in self.discrete.scene.loads:
-            if EFFECTS[load.kind].acts_on(load, self.rod):
-                rod_loads += self._of(load)
+            rod_loads += self.of(load)
         return rod_loads
 
-    def _of(self, load: scenes.Load) -> list[RodLoad]:
-        """What one load does to the rod."""
+    def of(self, load: scenes.Load) -> list[RodLoad]:
+        """What one load does to the rod: nothing where it does not act there."""
         member = EFFECTS[load.kind]
+        if not member.acts_on(load, self.rod):
+            return []
         values = input_values(self.discrete.layout, load, self.inputs)
         site = _site(self.discrete, self.rod, load)
         data_size = len(member.data(load, site))
@@ -308,16 +309,16 @@ class BodyLoads:
         """What all loads do to the body."""
         body_loads = []
         for load in self.discrete.scene.loads:
-            point = EFFECTS[load.kind].on_body(load, self.body)
-            if point is None:
-                continue
-            body_load = self._of(load, point)
+            body_load = self.of(load)
             if body_load is not None:
                 body_loads.append(body_load)
         return body_loads
 
-    def _of(self, load: scenes.Load, point: BodyPoint) -> BodyLoad | None:
-        """What one load does at a point of the body; None where it is zero for good."""
+    def of(self, load: scenes.Load) -> BodyLoad | None:
+        """What one load does to the body; None where it does not act there, or is zero for good."""
+        point = EFFECTS[load.kind].on_body(load, self.body)
+        if point is None:
+            return None
         values = input_values(self.discrete.layout, load, self.inputs)
         kernel = traced(EFFECTS[load.kind], load, values)
         if not kernel.pose_free:
@@ -402,6 +403,20 @@ def _turns_about_one_axis(discrete: DiscreteScene, rod: str) -> bool:
     if discrete.unloaded.floating_base(rod) is not None and discrete.unloaded.plane(rod) is None:
         return False
     return len(discrete.rods[rod].properties.turning_axes) < 2
+
+
+def is_dead_force(discrete: DiscreteScene, load: scenes.Load) -> bool:
+    """Whether a load is a force of fixed direction and no moment, whatever its inputs: it has the energy −Σ f·r."""
+    # Ones, since an input that is zero in the scene may be given another value.
+    values = {field: ca.DM.ones(*scene_value(load, field).shape) for field in load.inputs}
+    return all(_is_dead_force(kernel, values) for kernel in _kernels(discrete, load, values))
+
+
+def _is_dead_force(kernel: TracedLoad, values: Mapping[str, Matrix]) -> bool:
+    if kernel.follower or not kernel.pose_free:
+        return False
+    _, moment = kernel.coefficients(values)
+    return moment is None
 
 
 # Actuators

@@ -6,9 +6,6 @@ constant one, or ``actuator.field`` for a number. Inputs without a column keep t
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,25 +14,17 @@ import numpy as np
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout
-
-AXES = {1: ("",), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
-"""Names of the entries of a number, a vector and a quaternion."""
+from cosserat_casadi.scene.inputs import column_suffixes
+from cosserat_casadi.scene.number_table import finite_number, read_numbers
 
 
 def column_indices(layout: InputLayout) -> dict[str, int]:
     """Index of each column in the stacked inputs."""
     indices = {}
     for name, entries, default in zip(layout.names, layout.slices.values(), layout.defaults, strict=True):
-        for k, suffix in enumerate(_column_suffixes(*default.shape)):
+        for k, suffix in enumerate(column_suffixes(*default.shape)):
             indices[name + suffix] = entries.start + k
     return indices
-
-
-def _column_suffixes(components: int, degrees: int) -> list[str]:
-    """What the columns of an input end in, column after column: ".x", then ".x.1" for the first Legendre degree."""
-    axes = [f".{axis}" if axis else "" for axis in AXES[components]]
-    higher = [f".{degree}" for degree in range(1, degrees)]
-    return [axis + degree for degree in ("", *higher) for axis in axes]
 
 
 def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
@@ -53,29 +42,6 @@ def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
     cases = np.tile(layout.pack(), (len(numbers), 1))
     cases[:, [indices[column] for column in header]] = numbers
     return cases
-
-
-def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Problem]]:
-    """Header of a CSV file, its numbers, shape (count, columns), the line of each row, and every fault of its cells.
-
-    Raises:
-        SceneError: the file cannot be read, or holds no row.
-    """
-    try:
-        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
-    filled = [(number, row) for number, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
-    if len(filled) < 2:
-        raise SceneError(Problem(str(path), "holds no load case", "give a header and one row for each case"))
-    header = [cell.strip() for cell in filled[0][1]]
-    repeated = sorted({column for column in header if header.count(column) > 1})
-    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated]
-    numbers = np.full((len(filled) - 1, len(header)), np.nan)
-    lines = [number for number, _ in filled[1:]]
-    for values, (number, row) in zip(numbers, filled[1:], strict=True):
-        problems += _fill(values, f"{path}, line {number}", header, row)
-    return header, numbers, lines, problems
 
 
 def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray:
@@ -108,8 +74,8 @@ def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[f
         name, _, ends = text.partition("=")
         column = name.strip()
         first, _, last = ends.partition(":")
-        low = _number(first)
-        high = _number(last)
+        low = finite_number(first)
+        high = finite_number(last)
         if column not in indices:
             problems.append(_no_column("--range", column, indices))
         elif low is None or high is None:
@@ -135,25 +101,3 @@ def _additive_recurrence(count: int, dimension: int) -> FloatArray:
 def _no_column(where: str, column: str, indices: dict[str, int]) -> Problem:
     names = ", ".join(indices) or "none"
     return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {names}")
-
-
-def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
-    """Put the numbers of a row into an array, and say what is wrong with the others."""
-    if len(row) != len(header):
-        return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
-    problems = []
-    for k, (column, cell) in enumerate(zip(header, row, strict=True)):
-        number = _number(cell)
-        if number is None:
-            problems.append(Problem(where, f"{column} must be a finite number, got {cell!r}"))
-        else:
-            values[k] = number
-    return problems
-
-
-def _number(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None

@@ -23,19 +23,22 @@ LARGEST_FORCE = 1e150
 
 
 def rod_properties(rod: scenes.Rod) -> RodProperties:
-    """Stiffness, density and unloaded strain of a rod of the scene.
+    """Stiffness, damping, inertia and unloaded strain of a rod of the scene.
 
     Raises:
         SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
     """
+    hooke = _hooke(rod)
     properties = RodProperties(
         name=rod.name,
         length=rod.length,
         admitted=rod.admitted,
         basis=rod.basis,
-        hooke=_hooke(rod),
+        hooke=hooke,
         intrinsic=tuple(map(_coefficients, (*rod.intrinsic.curvature, *rod.intrinsic.tangent))),
         linear_density=_linear_density(rod),
+        rotary_inertia=_rotary_inertia(rod),
+        damping=_damping(rod, hooke),
     )
     _refuse_out_of_range(properties)
     return properties
@@ -78,7 +81,8 @@ def _linear(value: float | Sequence[float]) -> Field:
 
 def _hooke(rod: scenes.Rod) -> Field:
     if rod.stiffness is not None:
-        return _direct(rod.stiffness)
+        # One that is not given is not admitted, and not read.
+        return _direct(rod.stiffness, np.nan)
     assert rod.material is not None
     assert rod.section is not None
     youngs_modulus = rod.material.youngs_modulus
@@ -96,10 +100,15 @@ def _shear_modulus(material: scenes.Material) -> float:
     return material.youngs_modulus / (2 * (1 + material.poisson_ratio))
 
 
-def _direct(stiffness: scenes.Stiffness) -> Field:
-    """Stiffnesses as given; one that is not admitted, and so not given, is not a number."""
-    fields = [getattr(stiffness, name) for name in STRAINS]
-    linear = [_linear(np.nan if field is None else field) for field in fields]
+def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
+    """Coefficients of the six strains as given, each constant or linear from base to tip, shape (k, 6).
+
+    Args:
+        given: coefficients by strain.
+        left_out: value of those that are not given.
+    """
+    fields = [getattr(given, name) for name in STRAINS]
+    linear = [_linear(left_out if field is None else field) for field in fields]
     return lambda X: np.stack([np.broadcast_to(f(X), X.shape) for f in linear], axis=-1)
 
 
@@ -131,3 +140,25 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
     density = rod.material.density
     shape = _section_shape(rod.section)
     return lambda X: density * shape(X).area
+
+
+def _rotary_inertia(rod: scenes.Rod) -> Field | None:
+    """Moments of inertia per length (k, 3): as given, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
+    if rod.rotary_inertia is not None:
+        given = np.asarray(rod.rotary_inertia, dtype=float)
+        return lambda X: np.tile(given, (len(X), 1))
+    if rod.material is None or rod.section is None or rod.material.density is None:
+        return None
+    density = rod.material.density
+    shape = _section_shape(rod.section)
+    return lambda X: density * shape(X).second_moments
+
+
+def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
+    """Diagonal of the Kelvin–Voigt tensor (k, 6): τ H, or coefficients as given."""
+    if rod.damping is None:
+        return None
+    time = rod.damping.retardation_time
+    if time is not None:
+        return lambda X: time * hooke(X)
+    return _direct(rod.damping, 0.0)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength
@@ -20,6 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, rod_actuation
@@ -27,10 +29,13 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.inertia import RodInertia, section_masses
+from cosserat_casadi.rod.kinematics import Shape, shape
+from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
 from cosserat_casadi.rod.tangent import Tangent
+from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
 
 CORNER = 0.01
@@ -41,6 +46,23 @@ ROUNDING = 1e-16
 
 
 @dataclass(frozen=True)
+class MotionArguments:
+    """Rates of the unknowns and of the inputs of a scene in motion.
+
+    Attributes:
+        v: rates of the unknowns, 1/s; those of multipliers and tensions are not read.
+        a: their second derivatives, 1/s².
+        inputs_rate: rates of the stacked inputs, of which those of bases and lengths are read.
+        inputs_acceleration: their second derivatives.
+    """
+
+    v: Matrix
+    a: Matrix
+    inputs_rate: Matrix
+    inputs_acceleration: Matrix
+
+
+@dataclass(frozen=True)
 class Arguments:
     """Symbols, or numbers, that a system is written in.
 
@@ -48,11 +70,13 @@ class Arguments:
         x: unknowns.
         inputs: stacked inputs.
         load_factor: λ from 0, the unloaded scene, to 1; None for the scene itself.
+        motion: rates of both; None at rest, where inertia adds nothing.
     """
 
     x: Matrix
     inputs: Matrix
     load_factor: LoadFactor = None
+    motion: MotionArguments | None = None
 
 
 @dataclass(frozen=True)
@@ -81,6 +105,94 @@ class System:
     def frame_poses(self) -> dict[FrameName, FramePose]:
         """World poses of the floating frames."""
         return {name: FramePose(frame, self.deviation(name)) for name, frame in self.discrete.frames.items()}
+
+    @cached_property
+    def shapes(self) -> dict[str, Shape]:
+        """Shape of every rod, in its base frame."""
+        shapes = {}
+        for name, rod in self.discrete.rods.items():
+            q = self.arguments.x[self.discrete.unknowns.strain(name)]
+            shapes[name] = shape(rod, q, ratio_of(self.discrete, name, self.arguments))
+        return shapes
+
+    @cached_property
+    def motions(self) -> dict[str, RodMotion]:
+        """Motion of every rod, in its base frame; none at rest."""
+        if self.arguments.motion is None:
+            return {}
+        motions = {}
+        for name, rod_shape in self.shapes.items():
+            motions[name] = RodMotion(rod_shape, self.strain_rates(name), self.base_motion(name))
+        return motions
+
+    @cached_property
+    def inertias(self) -> dict[str, RodInertia]:
+        """Inertia of every rod in motion that has a mass, in its base frame."""
+        inertias = {}
+        for name, motion in self.motions.items():
+            masses = section_masses(motion.rod)
+            if masses is not None:
+                inertias[name] = RodInertia(motion, masses)
+        return inertias
+
+    @cached_property
+    def viscosities(self) -> dict[str, Viscosity]:
+        """Viscous stress of the rods in motion that have any."""
+        viscosities = {}
+        for name, motion in self.motions.items():
+            if motion.rod.properties.damping is not None:
+                viscosities[name] = Viscosity(motion.shape, motion.rates)
+        return viscosities
+
+    @cached_property
+    def frame_motions(self) -> dict[FrameName, FloatingFrameMotion]:
+        """Motions of the floating frames; none at rest."""
+        motion = self.arguments.motion
+        if motion is None:
+            return {}
+        motions = {}
+        for name, frame in self.discrete.frames.items():
+            entries = self.discrete.deviation(name)
+            rate = motion.v[entries]
+            acceleration = motion.a[entries]
+            quaternion = QuaternionMotion(self.frame_poses[name].quaternion, rate[3:], acceleration[3:])
+            norm_time = self._mass_of(name) * frame.length**2 / frame.unit
+            motions[name] = FloatingFrameMotion(frame, quaternion, rate, acceleration, norm_time)
+        return motions
+
+    def _mass_of(self, name: FrameName) -> float:
+        """Mass of the body, or of the rod, that a floating frame belongs to, kg."""
+        body = self.discrete.frames[name].body
+        if body is not None:
+            return body.mass
+        rod = self.discrete.rods[name.name]
+        masses = section_masses(rod)
+        if masses is None:
+            return 0.0
+        return float(rod.node_lengths @ masses.mass)
+
+    @cached_property
+    def body_inertias(self) -> dict[FrameName, BodyInertia]:
+        """Inertia of every body that moves and has any, world axes."""
+        inertias = {}
+        for name, frame_motion in self.frame_motions.items():
+            body = frame_motion.frame.body
+            if body is None or body.mass == 0.0:
+                continue
+            inertias[name] = BodyInertia(
+                mass=body.mass,
+                centre_of_mass=np.asarray(body.centre_of_mass, dtype=float),
+                inertia=body.inertia_matrix,
+                rotation=self.frame(name).rotation,
+                motion=frame_motion.motion,
+            )
+        return inertias
+
+    def base_motion(self, rod: str) -> FrameMotion:
+        """Motion of a rod's base in the world, in the axes of the base."""
+        frame = self.discrete.unloaded.floating_base(rod)
+        world_motion = self._still_base_motion(rod) if frame is None else self.frame_motions[frame].motion
+        return world_motion.in_axes(self._base_R_world(rod))
 
     def section(self, rod: str, node: int) -> Pose:
         """Pose of a node's section in the base of its rod."""
@@ -164,6 +276,44 @@ class System:
             quaternion = free_quaternion / norm
         return Pose(position, quaternion)
 
+    def _still_base_motion(self, rod: str) -> FrameMotion:
+        """Motion of a base that no frame carries, world axes: at rest, or what the inputs make of it."""
+        motion = self.arguments.motion
+        layout = self.discrete.layout
+        velocity: Matrix = ca.DM(3, 1)
+        acceleration: Matrix = ca.DM(3, 1)
+        angular_velocity: Matrix = ca.DM(3, 1)
+        angular_acceleration: Matrix = ca.DM(3, 1)
+        position = layout.of_rod(rod, "base.position")
+        if motion is not None and position is not None:
+            velocity = motion.inputs_rate[position]
+            acceleration = motion.inputs_acceleration[position]
+        quaternion = layout.of_rod(rod, "base.quaternion")
+        if motion is not None and quaternion is not None:
+            turning = QuaternionMotion(
+                self.arguments.inputs[quaternion],
+                motion.inputs_rate[quaternion],
+                motion.inputs_acceleration[quaternion],
+            )
+            angular_velocity = turning.angular_velocity
+            angular_acceleration = turning.angular_acceleration
+        return FrameMotion(velocity, angular_velocity, acceleration, angular_acceleration)
+
+    def strain_rates(self, rod: str) -> StrainRates:
+        """Rates of the strain coordinates of a rod in motion, and of its length where that is an input."""
+        motion = self.arguments.motion
+        assert motion is not None, "asked for in motion"
+        strains = self.discrete.unknowns.strain(rod)
+        length = self.discrete.layout.of_rod(rod, "length")
+        velocity = motion.v[strains]
+        acceleration = motion.a[strains]
+        if length is None:
+            return StrainRates(velocity, acceleration)
+        reference = self.discrete.rods[rod].properties.length
+        ratio_rate = motion.inputs_rate[length] / reference
+        ratio_acceleration = motion.inputs_acceleration[length] / reference
+        return StrainRates(velocity, acceleration, ratio_rate, ratio_acceleration)
+
     def _rod_input(self, rod: str, field: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
         entries = self.discrete.layout.of_rod(rod, field)
@@ -187,14 +337,29 @@ class System:
     def dead_wrenches(self, rod: str) -> list[Wrench]:
         """Wrenches of the scene's loads on a rod that keep their direction in the world, base frame."""
         wrenches = [load for load in self._loads(rod) if not isinstance(load, PoseWrench)]
-        return [wrench for wrench in wrenches if not wrench.follower]
+        dead = [wrench for wrench in wrenches if not wrench.follower]
+        # What inertia is at this instant keeps its direction in the world as well.
+        return [*dead, *self._inertia_wrenches(rod)]
+
+    def _inertia_wrenches(self, rod: str) -> list[Wrench]:
+        """Inertia of a rod as a wrench on its sections; none at rest."""
+        if rod not in self.inertias:
+            return []
+        return [self.inertias[rod].wrench]
 
     def _loads(self, rod: str) -> list[RodLoad]:
         """The scene's loads on a rod at the load factor, base frame."""
+        loads = self._rod_loads(rod).all()
+        return [scaled(load, self.arguments.load_factor) for load in loads]
+
+    def loads_of(self, load: scenes.Load, rod: str) -> list[RodLoad]:
+        """What one load of the scene does to a rod, base frame."""
+        return self._rod_loads(rod).of(load)
+
+    def _rod_loads(self, rod: str) -> RodLoads:
         base = RodBase(self.base(rod).position, self._base_R_world(rod))
         ratio = ratio_of(self.discrete, rod, self.arguments)
-        loads = RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio).all()
-        return [scaled(load, self.arguments.load_factor) for load in loads]
+        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio)
 
     @cached_property
     def cable_lengths(self) -> dict[str, CableLength]:
@@ -227,15 +392,10 @@ class System:
 
     def _rod(self, name: str) -> InverseGeometricModel:
         """Balance of a rod under its loads, the wrenches of its constraints, its actuators and its cables."""
-        rod = self.discrete.rods[name]
-        strains = self.discrete.unknowns.strain(name)
-        q = self.arguments.x[strains]
         constraints = self.discrete.constraints_on(name)
         wrenches = [self._constraint_wrench(placed) for placed in constraints]
-        loads = [*self._loads(name), *wrenches]
-        ratio = ratio_of(self.discrete, name, self.arguments)
-        rod_shape = shape(rod, q, ratio)
-        return InverseGeometricModel(Statics(rod_shape, loads), self._actuation(name))
+        loads = [*self._loads(name), *wrenches, *self._inertia_wrenches(name)]
+        return InverseGeometricModel(Statics(self.shapes[name], loads), self._actuation(name))
 
     def _actuation(self, rod: str) -> tuple[Actuation, ...]:
         """Actuators on a rod: the efforts that are given, at the load factor, then the unknown tensions."""

@@ -1,1 +1,1 @@
-"""Nonlinear equations and their numbers, knowing nothing of rods: Newton, Broyden, continuation, arclength, descent."""
+"""Equations and their numbers, knowing nothing of rods: Newton, Broyden, continuation, arclength, descent, motion."""

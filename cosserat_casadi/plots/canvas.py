@@ -38,14 +38,42 @@ class Canvas:
         """World axes that are shown."""
         return self.plane or SPACE
 
-    def line(self, points: FloatArray, **style: Any) -> None:
-        """Draw a line through points, shape (k, 3)."""
+    def line(self, points: FloatArray, **style: Any) -> Any:
+        """Draw a line through points, shape (k, 3); it is returned, and may be moved."""
         coordinates = points[:, self.columns]
-        self.axes.plot(*coordinates.T, **style)
+        (drawn,) = self.axes.plot(*coordinates.T, **style)
+        return drawn
 
-    def markers(self, points: FloatArray, **style: Any) -> None:
-        """Mark points, shape (k, 3)."""
-        self.line(points, linestyle="none", **style)
+    def move(self, line: Any, points: FloatArray) -> None:
+        """Lead a line that was drawn through other points, shape (k, 3)."""
+        coordinates = points[:, self.columns].T
+        if self.plane is None:
+            line.set_data_3d(*coordinates)
+        else:
+            line.set_data(*coordinates)
+
+    def shaded_line(self, points: FloatArray, values: FloatArray, **style: Any) -> Any:
+        """Draw a line whose colour follows values; it is returned, for a colour bar.
+
+        Args:
+            points: shape (k, 3).
+            values: at the points, shape (k,).
+            style: colour map, limits of the values and the like.
+        """
+        coordinates = points[:, self.columns]
+        pieces = np.stack([coordinates[:-1], coordinates[1:]], axis=1)
+        middles = (values[:-1] + values[1:]) / 2
+        if self.plane is None:
+            from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+            return self.axes.add_collection3d(Line3DCollection(pieces, array=middles, **style))
+        from matplotlib.collections import LineCollection
+
+        return self.axes.add_collection(LineCollection(pieces, array=middles, **style))
+
+    def markers(self, points: FloatArray, **style: Any) -> Any:
+        """Mark points, shape (k, 3); the marks are returned as one line."""
+        return self.line(points, linestyle="none", **style)
 
     def legend_entry(self, label: str | None, **style: Any) -> None:
         """Name something in the legend that no line of its own stands for."""

@@ -82,7 +82,7 @@ def _plane(shapes: RodShapes, arrows: Sequence[Arrow]) -> Plane | None:
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:
     draw_rods(canvas, solution, shapes)
-    draw_supports(canvas, solution)
+    draw_supports(canvas, solution.model.scene)
     draw_actuators(canvas, solution)
     draw_bodies(canvas, solution)
     draw_arrows(canvas, arrows)

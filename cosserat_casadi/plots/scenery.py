@@ -14,7 +14,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_colour
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
-from cosserat_casadi.scene import CurveTarget
+from cosserat_casadi.scene import CurveTarget, Scene
 
 SLACK = 1e-6
 """Tension below which a cable that may sag is called slack, in units of EI/ℓ²."""
@@ -80,9 +80,9 @@ def _draw_section_axes(canvas: Canvas, solution: Solution, name: str) -> None:
             canvas.line(ends, color=colour, linewidth=1.1)
 
 
-def draw_supports(canvas: Canvas, solution: Solution) -> None:
+def draw_supports(canvas: Canvas, scene: Scene) -> None:
     """Mark the points at which tips are held."""
-    for support in solution.model.scene.supports:
+    for support in scene.supports:
         marker = SUPPORT_MARKERS.get(support.kind, UNKNOWN_SUPPORT_MARKER)
         position = np.array([support.position])
         label = f"{support.kind} tip"
@@ -152,18 +152,23 @@ def _draw_body(canvas: Canvas, solution: Solution, body: Any) -> None:
     pose = solution.body(body.name)
     scene = solution.model.scene
     joints = [joint for joint in scene.joints if joint.body == body.name]
-    points_in_body = np.array([joint.position for joint in joints])
-    points = in_world(pose, points_in_body)
-    corners = points[_order_around_mean(points)]
-    # A body on one joint has no extent but that between the joint and its centre of mass.
-    if len(corners) < 2:
-        centre_of_mass = in_world(pose, np.array([body.centre_of_mass]))
-        corners = np.concatenate([corners, centre_of_mass])
+    points = in_world(pose, np.array([joint.position for joint in joints]))
+    corners = in_world(pose, body_corners(scene, body))
     canvas.polygon(corners, BODIES)
     outline = np.concatenate([corners, corners[:1]])
     canvas.line(outline, color=BODIES, linewidth=2.0, label=body.name)
     for joint, point in zip(joints, points, strict=True):
         canvas.markers(point[None], **JOINTS.get(joint.kind, UNKNOWN_JOINT))
+
+
+def body_corners(scene: Scene, body: Any) -> FloatArray:
+    """Corners of the polygon that stands for a body, in its own axes, shape (k, 3), m."""
+    points = np.array([joint.position for joint in scene.joints if joint.body == body.name])
+    corners = points[_order_around_mean(points)]
+    # A body on one joint has no extent but that between the joint and its centre of mass.
+    if len(corners) < 2:
+        corners = np.concatenate([corners, np.array([body.centre_of_mass])])
+    return corners
 
 
 def _order_around_mean(points: FloatArray) -> Indices:

@@ -61,7 +61,7 @@ def write_result(solution: Solution, path: str | Path) -> None:
 def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
     """Fields of a rod at its abscissae, its tip, and what its clamp exerts."""
     breaks = solution.model.discretisation[name].breaks
-    X = _abscissae(breaks)
+    X = listed_abscissae(breaks)
     pose = solution.pose(X, name)
     tip = solution.tip(name)
     base_wrench = solution.base_wrench(name)
@@ -81,7 +81,8 @@ def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
     return {"position": pose.position[0], "rotation": pose.rotation[0], "quaternion": pose.quaternion[0]}
 
 
-def _abscissae(breaks: tuple[float, ...]) -> FloatArray:
+def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:
+    """Abscissae at which a result lists a rod whose elements end at these breaks."""
     # Strains and internal forces may jump at a break: a reader finds it among the abscissae.
     evenly = np.linspace(0.0, 1.0, SAMPLES)
     return np.unique(np.concatenate([evenly, breaks]))

@@ -59,13 +59,13 @@ class Shape:
     @cached_property
     def directors(self) -> tuple[Matrix, Matrix, Matrix]:
         """Directors d₁, d₂, d₃ at the nodes, three 3×M."""
-        d1, d2, d3 = (self._at_nodes(d) for d in self.section_directors)
+        d1, d2, d3 = (self.at_nodes(d) for d in self.section_directors)
         return d1, d2, d3
 
     @cached_property
     def quaternion(self) -> Matrix:
         """Quaternions at the nodes, 4×M."""
-        return self._at_nodes(self.section_quaternion)
+        return self.at_nodes(self.section_quaternion)
 
     @cached_property
     def tangent(self) -> Matrix:
@@ -121,7 +121,8 @@ class Shape:
         chosen = [d[:, nodes] for d in self.directors]
         return side_by_side(chosen)
 
-    def _at_nodes(self, sections: Matrix) -> Matrix:
+    def at_nodes(self, sections: Matrix) -> Matrix:
+        """Fields of the distinct sections, m×(intervals + 1), at the nodes, m×M."""
         grid = self.rod.grid
         # Both sides of a break are nodes on one section.
         if grid.elements == 1:

@@ -27,7 +27,11 @@ class RodProperties:
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6), N m² and N; rows of strains that are not
             admitted are not read.
         intrinsic: ξ⁰ as six tuples of Legendre coefficients in 2X − 1: three of 1/m, three without unit.
-        linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None when nothing weighs the rod.
+        linear_density: abscissae (k,) ↦ mass per length (k,), kg/m; None where the rod has no mass.
+        rotary_inertia: abscissae (k,) ↦ moments of inertia per length about section x, y and tangent (k, 3), kg m;
+            None where the rod has none.
+        damping: abscissae (k,) ↦ diagonal of the Kelvin–Voigt tensor Υ (k, 6), N m² s and N s, whose stress is Υ ξ̇;
+            None where the rod has none. Rows of strains that are not admitted are not read.
     """
 
     name: str
@@ -37,6 +41,8 @@ class RodProperties:
     hooke: Callable[[Array], Array]
     intrinsic: tuple[tuple[float, ...], ...]
     linear_density: Callable[[Array], Array] | None = None
+    rotary_inertia: Callable[[Array], Array] | None = None
+    damping: Callable[[Array], Array] | None = None
 
     def intrinsic_strain(self, X: Array) -> Array:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""

@@ -29,6 +29,15 @@ class SectionShape:
     second_moment_y: Array
     torsion_constant: Array
 
+    @property
+    def second_moments(self) -> Array:
+        """I_xx, I_yy and the polar moment I_xx + I_yy, shape (len, 3), m⁴: they resist rotation when times the density.
+
+        The polar moment is not the torsion constant J, which warping makes smaller.
+        """
+        polar = self.second_moment_x + self.second_moment_y
+        return np.stack([self.second_moment_x, self.second_moment_y, polar], axis=-1)
+
 
 def circle(radius: Array) -> SectionShape:
     """Solid circle of the given radius (m)."""

@@ -203,7 +203,18 @@ class DiscreteRod:
 
     @cached_property
     def stiffness(self) -> Array:
-        """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit.
+        """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit."""
+        return self._section_matrix(self.properties.hooke)
+
+    @cached_property
+    def viscosity(self) -> Array:
+        """ℓ ∫ Φᵀ Υ Φ dX divided by EI/ℓ, Υ the coefficients of damping, shape (n, n), s; zero without damping."""
+        if self.properties.damping is None:
+            return np.zeros((self.size, self.size))
+        return self._section_matrix(self.properties.damping)
+
+    def _section_matrix(self, diagonal: Callable[[Array], Array]) -> Array:
+        """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n).
 
         Gauss points enough for the product of two polynomials with a section stiffness of degree four.
         """
@@ -215,12 +226,12 @@ class DiscreteRod:
             X = start + width * (points + 1) / 2
             lengths = weights * width / 2 * self.length
             weight = lengths / self.energy_unit
-            hooke = self.properties.hooke(X) * weight[:, None]
+            coefficients = diagonal(X) * weight[:, None]
             element = np.full(len(X), e)
-            # Strains do not couple: the Hooke tensor is diagonal, and so are its blocks.
+            # Strains do not couple: the tensor is diagonal, and so are its blocks.
             for c, columns in self.columns.items():
                 phi = self.shape_functions(c, X, element)
-                matrix[columns, columns] += phi.T @ (hooke[:, [c]] * phi)
+                matrix[columns, columns] += phi.T @ (coefficients[:, [c]] * phi)
         largest = np.abs(matrix).max()
         matrix[np.abs(matrix) < ROUNDING * largest] = 0.0
         return matrix

@@ -108,15 +108,18 @@ class Tangent:
     @cached_property
     def rotation(self) -> Matrix:
         """δθ of the nodes, 3M×n_a, rad."""
-        grid = self.rod.grid
         if not self.kernels.axes:
-            return ca.DM(3 * grid.size, self.angular_size)
+            return ca.DM(3 * self.rod.grid.size, self.angular_size)
+        return self.at_nodes(self.section_rotation)
+
+    def at_nodes(self, sections: Matrix) -> Matrix:
+        """Variations at the nodes, 3M×k, from those of the sections beyond the base, which has none; stacked."""
         # Both nodes at a break turn with their one section; the base does not turn.
-        section_of_node = np.asarray(grid.section_of_node).tolist()
+        section_of_node = np.asarray(self.rod.grid.section_of_node).tolist()
         parts = []
-        for part in ca.vertsplit(self.section_rotation, self.intervals):
-            sections = _with_base(part)
-            parts.append(sections[section_of_node, :])
+        for part in ca.vertsplit(sections, self.intervals):
+            with_base = _with_base(part)
+            parts.append(with_base[section_of_node, :])
         return ca.vertcat(*parts)
 
     @cached_property

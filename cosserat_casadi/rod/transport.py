@@ -55,7 +55,7 @@ class IntervalKernels:
     def increment(self) -> ca.Function:
         """The map turn ↦ (quaternion, omega, factors): increment, its Ω, and the factors of its derivatives, 2×1."""
         turn = ca.SX.sym("turn", self.size)
-        omega = self._rotation_vector(turn)
+        omega = self.rotation_vector(turn)
         made = magnus.increment(omega)
         factors = ca.vertcat(made.half_sine, made.cubic)
         outputs = ca.cse([made.quaternion, ca.sparsify(omega), factors])
@@ -79,7 +79,7 @@ class IntervalKernels:
         the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
         """
         a = self._arguments()
-        omega = self._rotation_vector(a.turn)
+        omega = self.rotation_vector(a.turn)
         moment = a.rotation.T @ a.moment
         pulled = a.increment.pulled(moment)
         # Reverse mode: (∂Ω/∂turn)ᵀ pulled.
@@ -95,7 +95,7 @@ class IntervalKernels:
         second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
         a = self._arguments()
-        omega = self._rotation_vector(a.turn)
+        omega = self.rotation_vector(a.turn)
         rates = ca.jacobian(omega, a.turn)
         turning = (a.rotation @ a.increment.tangent) @ rates
         # V is that of the increment seen from the base: Ω turned by R.
@@ -120,7 +120,7 @@ class IntervalKernels:
             moment=ca.SX.sym("moment", 3),
         )
 
-    def _rotation_vector(self, turn: ca.SX) -> ca.SX:
+    def rotation_vector(self, turn: ca.SX) -> ca.SX:
         """Rotation vector Ω of a turn, 3×1."""
         if not self.axes:
             return ca.SX(3, 1)

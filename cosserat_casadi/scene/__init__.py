@@ -33,11 +33,13 @@ from cosserat_casadi.scene.loads import (
     PointWrench,
     TipWrench,
 )
+from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.scene.rods import (
     Annulus,
     Base,
     Circle,
+    Damping,
     Intrinsic,
     Material,
     Rectangle,
@@ -46,6 +48,7 @@ from cosserat_casadi.scene.rods import (
     Stiffness,
 )
 from cosserat_casadi.scene.scene import FreeInput, Scene
+from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
 
 __all__ = [
@@ -65,6 +68,7 @@ __all__ = [
     "Circle",
     "ClampedSupport",
     "CurveTarget",
+    "Damping",
     "DistributedWrench",
     "Family",
     "FixedJoint",
@@ -72,6 +76,7 @@ __all__ = [
     "Gravity",
     "Helix",
     "InputField",
+    "InputMotion",
     "Intrinsic",
     "Joint",
     "JointRecord",
@@ -88,6 +93,7 @@ __all__ = [
     "Rod",
     "Scene",
     "Section",
+    "Simulation",
     "SphericalJoint",
     "Stiffness",
     "Support",

@@ -71,7 +71,7 @@ offset = [1.5e-3, 0.0]
 
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1, lower=0.0),
-        "length": InputField("m", 1, positive=True),
+        "length": InputField("m", 1, positive=True, continuous=True),
     }
 
     kind: Literal["tendon"] = Field(description="cable led along the rod")

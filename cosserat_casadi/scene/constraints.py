@@ -6,15 +6,28 @@ A new kind of support or joint is a record of its own, registered with `SUPPORTS
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+import numpy as np
+from pydantic import AfterValidator, Discriminator, Field
 
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table
 from cosserat_casadi.scene.reach import named_rod, out_of_reach
-from cosserat_casadi.scene.records import Entry, sound
-from cosserat_casadi.scene.values import Direction, Name, NotNegative, Quadruple, Quaternion, Vector
+from cosserat_casadi.scene.records import Entry, refusal, sound
+from cosserat_casadi.scene.values import (
+    SEVERAL,
+    SINGLE,
+    Direction,
+    Name,
+    NotNegative,
+    Quadruple,
+    Quaternion,
+    Triple,
+    Vector,
+    listed,
+)
 
 # Supports
 
@@ -37,8 +50,8 @@ class SupportRecord(Entry):
         support = sound(cls, given)
         if rod is None or support is None:
             return
-        # The base of a carried rod is an unknown: what its tip reaches is for the model to find out.
-        if rod.base.rod is not None:
+        # The base of a carried or free rod is an unknown: what its tip reaches is for the model to find out.
+        if rod.base.rod is not None or rod.base.free:
             return
         for fault in out_of_reach(rod, support.position, support.orientation):
             yield Fault(fault.path, f"unreachable combination: {fault.problem}", fault.remedy)
@@ -94,6 +107,52 @@ Support = Annotated[ClampedSupport | PinnedSupport, SUPPORTS]
 
 # Bodies and joints
 
+INERTIA_SLACK = 1e-9
+"""Share of the largest entry of an inertia that is put down to rounding."""
+
+
+def _moments_or_matrix(value: Any) -> str:
+    if isinstance(value, list | tuple) and any(isinstance(row, list | tuple) for row in value):
+        return SEVERAL.tag
+    return SINGLE.tag
+
+
+def _of_a_body(value: Triple | tuple[Triple, Triple, Triple]) -> Triple | tuple[Triple, Triple, Triple]:
+    """Refuse an inertia that no distribution of mass has."""
+    inertia = _matrix(value)
+    scale = np.abs(inertia).max()
+    if scale == 0.0:
+        return value
+    # Relative to the largest entry, sums and differences of the largest numbers stay numbers.
+    relative = inertia / scale
+    if np.abs(relative - relative.T).max() > INERTIA_SLACK:
+        raise refusal([Fault((), "must be symmetric", "the inertia about the centre of mass, in the body's axes")])
+    # In ascending order.
+    smallest, middle, largest = np.linalg.eigvalsh(relative)
+    if smallest < -INERTIA_SLACK:
+        raise refusal([Fault((), f"must have no negative principal moment, got {smallest * scale:.6g}")])
+    # Each moment is the integral of two squared distances: two of the moments hold all three.
+    if largest > smallest + middle + INERTIA_SLACK:
+        listed_moments = ", ".join(f"{moment * scale:.6g}" for moment in (smallest, middle, largest))
+        problem = f"no body has the principal moments {listed_moments}"
+        raise refusal([Fault((), problem, "the largest is at most the sum of the other two")])
+    return value
+
+
+def _matrix(inertia: Triple | tuple[Triple, Triple, Triple]) -> FloatArray:
+    """An inertia as a matrix (3, 3), from its diagonal or its rows."""
+    given = np.asarray(inertia, dtype=float)
+    if given.ndim == 1:
+        return np.diag(given)
+    return given
+
+
+Inertia = Annotated[
+    Annotated[Vector, SINGLE] | Annotated[tuple[Vector, Vector, Vector], listed(3, "3 rows of 3 numbers"), SEVERAL],
+    Discriminator(_moments_or_matrix),
+    AfterValidator(_of_a_body),
+]
+
 
 class Body(Entry):
     """A rigid body that rods carry."""
@@ -107,6 +166,16 @@ mass = 0.1
     name: Name = Field(description="name of the body, a letter, then letters, digits and underscores")
     mass: NotNegative = Field(0.0, description="mass, kg")
     centre_of_mass: Vector = Field((0.0, 0.0, 0.0), description="centre of mass in the axes of the body, m")
+    inertia: Inertia = Field(
+        (0.0, 0.0, 0.0),
+        description="moments of inertia about the centre of mass in the axes of the body, kg m²; three, or the rows of "
+        "a symmetric matrix",
+    )
+
+    @property
+    def inertia_matrix(self) -> FloatArray:
+        """Inertia about the centre of mass in the axes of the body, shape (3, 3), kg m²."""
+        return _matrix(self.inertia)
 
 
 class JointRecord(Entry):

@@ -9,7 +9,7 @@ from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, sho
 from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rods import Rod
-from cosserat_casadi.scene.targets import bound_numbers
+from cosserat_casadi.scene.values import numbers_of
 
 Owners = dict[str, tuple[type[Entry] | None, Table]]
 """Tables that may have inputs, by name, with the record of each; None where its kind is not known."""
@@ -17,7 +17,7 @@ Owners = dict[str, tuple[type[Entry] | None, Table]]
 
 def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     """An input names nothing in the scene, or what cannot be free."""
-    owners = _owners(scene)
+    owners = owners_of(scene)
     entries = scene.get("inputs")
     if not isinstance(entries, list):
         return
@@ -30,7 +30,7 @@ def inputs_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             yield Fault(("inputs", i), f"must read 'load.field', got {shown(entry)}")
         elif name in owners:
             record, table = owners[name]
-            for fault in _field_faults(field, record, table, scene):
+            for fault in field_faults(field, record, table, scene):
                 yield fault.below(("inputs", i))
         else:
             problem = f"no load, actuator or rod is named {shown(name)}"
@@ -54,7 +54,7 @@ def bounds_of_no_input(scene: SceneTables) -> Iterator[Fault]:
         if first.setdefault(name, i) != i:
             yield Fault(path, f"bounds[{first[name]}] bounds {shown(name)} already")
         for side in ("lower", "upper"):
-            count = len(bound_numbers(bound.get(side)))
+            count = len(numbers_of(bound.get(side)))
             wanted = counts[name]
             if wanted is not None and count > 1 and count != wanted:
                 yield Fault(("bounds", i, side), f"must have {_numbers(wanted)}, got {count}")
@@ -66,7 +66,7 @@ def _numbers(count: int) -> str:
     return f"1 number or {count}"
 
 
-def _owners(scene: SceneTables) -> Owners:
+def owners_of(scene: SceneTables) -> Owners:
     """What may have inputs, by name, with its record where the kind is known."""
     owners = _causes(scene)
     for name, (_, table) in scene.named("rods").items():
@@ -85,7 +85,7 @@ def _causes(scene: SceneTables) -> Owners:
     return causes
 
 
-def _field_faults(field: str, record: type[Entry] | None, table: Table, scene: SceneTables) -> Iterator[Fault]:
+def field_faults(field: str, record: type[Entry] | None, table: Table, scene: SceneTables) -> Iterator[Fault]:
     """Why a field of a table cannot stay free at run time, without path; nothing where the kind is not known."""
     if record is None:
         return
@@ -105,7 +105,7 @@ def _field_faults(field: str, record: type[Entry] | None, table: Table, scene: S
 
 def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
     """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
-    owners = _owners(scene)
+    owners = owners_of(scene)
     entries = scene.get("inputs")
     names = _magnitudes(scene)
     if isinstance(entries, list):

@@ -7,6 +7,9 @@ from typing import Any, Literal
 
 from cosserat_casadi.scene.profiles import coefficient_count
 
+AXES = {1: ("",), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
+"""Names of the entries of a number, a vector and a quaternion."""
+
 
 @dataclass(frozen=True)
 class InputField:
@@ -21,7 +24,9 @@ class InputField:
         lower: least value that each number can have by what it is; None where there is none.
         axes: axes of the components: "none" of a number, those of the world, or "frame" for those that the record's
             own ``frame`` names.
-        geometry: whether it moves rods or their bases, so that the equations are not linear in it.
+        geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
+            must have a velocity.
+        continuous: whether its path in a motion must not jump: it prescribes a length.
     """
 
     unit: str
@@ -32,6 +37,7 @@ class InputField:
     lower: float | None = None
     axes: Literal["none", "world", "frame"] = "none"
     geometry: bool = False
+    continuous: bool = False
 
     def entry_count(self, value: Any) -> int:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
@@ -42,3 +48,10 @@ class InputField:
         for component in value:
             coefficients = max(coefficients, coefficient_count(component))
         return self.components * coefficients
+
+
+def column_suffixes(components: int, degrees: int) -> list[str]:
+    """What the columns of an input end in, column after column: ".x", then ".x.1" for the first Legendre degree."""
+    axes = [f".{axis}" if axis else "" for axis in AXES[components]]
+    higher = [f".{degree}" for degree in range(1, degrees)]
+    return [axis + degree for degree in ("", *higher) for axis in axes]

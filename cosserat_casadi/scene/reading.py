@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.scene.faults import Path as FaultPath
-from cosserat_casadi.scene.faults import shown
+from cosserat_casadi.scene.faults import SceneTables, shown
 from cosserat_casadi.scene.messages import problems_of
 from cosserat_casadi.scene.overrides import RefusedOverride, apply_overrides, assign
 from cosserat_casadi.scene.records import keys_of
@@ -39,15 +39,16 @@ def read_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     Raises:
         SceneError: with every fault of the file and the overrides.
     """
-    text = file_text(Path(path))
-    return parse_scene(text, overrides)
+    file = Path(path)
+    tables = parsed(file_text(file))
+    return _scene(tables, overrides, file.parent)
 
 
 def parse_scene(text: str, overrides: Sequence[str] = ()) -> Scene:
     """Read a scene from TOML text.
 
     Args:
-        text: the scene.
+        text: the scene; files that it names are relative to the working directory.
         overrides: as in `read_scene`.
 
     Raises:
@@ -61,18 +62,13 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
     """Read a scene from the tables of a TOML file; they are left as they are.
 
     Args:
-        mapping: tables as dictionaries, arrays as lists.
+        mapping: tables as dictionaries, arrays as lists; files that they name are relative to the working directory.
         overrides: as in `read_scene`.
 
     Raises:
         SceneError: with every fault.
     """
-    try:
-        tables = _copy(mapping)
-        return _validated(tables, overrides)
-    # Copying, reading and judging all go down the tables by recursion.
-    except RecursionError:
-        raise SceneError(Problem("", TOO_DEEP)) from None
+    return _scene(mapping, overrides, Path())
 
 
 def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> dict[str, Any]:
@@ -105,11 +101,21 @@ def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     return assignment.leaf
 
 
-def _validated(tables: Any, overrides: Sequence[str]) -> Scene:
+def _scene(mapping: Mapping[str, Any], overrides: Sequence[str], folder: Path) -> Scene:
+    try:
+        tables = _copy(mapping)
+        return _validated(tables, overrides, folder)
+    # Copying, reading and judging all go down the tables by recursion.
+    except RecursionError:
+        raise SceneError(Problem("", TOO_DEEP)) from None
+
+
+def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
     if not isinstance(tables, dict):
         raise SceneError(Problem("", f"must be a table, got {shown(tables)}"))
     # A refused override does not stop the reading: its problem comes together with those of the file.
     applied, problems = apply_overrides(tables, overrides, SCENE_KEYS)
+    _locate_files(tables, folder)
     try:
         scene = Scene.model_validate(tables)
     except ValidationError as error:
@@ -117,6 +123,14 @@ def _validated(tables: Any, overrides: Sequence[str]) -> Scene:
     if problems:
         raise SceneError(*problems)
     return scene
+
+
+def _locate_files(tables: dict[str, Any], folder: Path) -> None:
+    """Put the folder of the scene before the files that its motions name."""
+    for _, motion in SceneTables(tables).tables("motions"):
+        file = motion.get("file")
+        if isinstance(file, str) and isinstance(motion, dict):
+            motion["file"] = str(folder / file)
 
 
 def _copy(value: Any) -> Any:

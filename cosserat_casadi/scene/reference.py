@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -60,12 +61,16 @@ Legendre coefficients, however the scene writes it.
 UNITS = (
     "without unit",
     "N m/m",
+    "N m² s",
     "N m²",
     "N m",
     "N/m",
+    "N s",
     "N",
     "kg/m³",
     "kg/m",
+    "kg m²",
+    "kg m",
     "kg",
     "m/s²",
     "m²",
@@ -73,6 +78,8 @@ UNITS = (
     "1/m",
     "Pa",
     "rad",
+    "Hz",
+    "s",
 )
 """Units as descriptions of keys give them, longest first where one begins another."""
 
@@ -116,7 +123,7 @@ def _list_or_table(key: str, kinds: Family[Any] | type[Record]) -> Iterator[str]
 
 def _title(key: str) -> str:
     """A table of a scene as its file heads it."""
-    if key == "accuracy":
+    if key in ("accuracy", "simulation"):
         return f"[{key}]"
     return f"[[{key}]]"
 
@@ -132,7 +139,7 @@ def _kinds(family: Family[Any], level: int) -> Iterator[str]:
 
 def _record(record: type[Record], path: str, level: int, without: str = "") -> Iterator[str]:
     """The section of one record below its heading, then those of the tables in it."""
-    yield f"{record.__doc__}\n"
+    yield f"{inspect.getdoc(record)}\n"
     if record.example:
         yield _example(record)
     yield _key_table(record, path, [key for key in contents_by_key(record) if key != without])
@@ -220,7 +227,10 @@ TABLE = "table"
 ALONG = "[table](#along-a-rod)"
 """The value of a table that says how something varies along a rod."""
 
-COMPONENT = f"number, or list of numbers, or {ALONG}"
+ONE_OR_SEVERAL = "number, or list of numbers"
+"""The value that is a number, or several."""
+
+COMPONENT = f"{ONE_OR_SEVERAL}, or {ALONG}"
 """The value of a component that may vary along a rod."""
 
 
@@ -285,6 +295,8 @@ def _range(node: Mapping[str, Any]) -> str:
 def _list(node: Mapping[str, Any]) -> str:
     if "prefixItems" not in node:
         entry = _value(node["items"])
+        if entry == ONE_OR_SEVERAL:
+            return "list of numbers, or of lists of numbers"
         return f"list of {_plural(entry)}"
     entries = node["prefixItems"]
     entry = _value(entries[0])

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, StrictBool
 
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
@@ -23,6 +23,7 @@ from cosserat_casadi.scene.values import (
     Direction,
     Name,
     NotEmpty,
+    NotNegative,
     Number,
     Polynomials,
     Positive,
@@ -31,6 +32,7 @@ from cosserat_casadi.scene.values import (
     SizeOrZero,
     Vector,
     above_base,
+    listed,
     without_repetition,
 )
 
@@ -161,6 +163,34 @@ linear_density = 0.01
     extension: Size | None = Field(None, description="axial stiffness, N")
 
 
+class Damping(Record):
+    """Kelvin–Voigt damping: stress H (ξ − ξ⁰) + Υ ξ̇, in motion alone."""
+
+    example: ClassVar[str] = """\
+damping = { retardation_time = 0.01 }
+"""
+
+    retardation_time: NotNegative | None = Field(
+        None, description="τ in Υ = τ H with the Hooke tensor H, s; instead of coefficients"
+    )
+    bending_x: SizeOrZero | None = Field(None, description="damping of bending about local x, N m² s; 0 when left out")
+    bending_y: SizeOrZero | None = Field(None, description="damping of bending about local y, N m² s; 0 when left out")
+    torsion: SizeOrZero | None = Field(None, description="damping of torsion, N m² s; 0 when left out")
+    shear_x: SizeOrZero | None = Field(None, description="damping of shear along local x, N s; 0 when left out")
+    shear_y: SizeOrZero | None = Field(None, description="damping of shear along local y, N s; 0 when left out")
+    extension: SizeOrZero | None = Field(None, description="damping of extension, N s; 0 when left out")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """The retardation time or coefficients, one of the two."""
+        coefficients = [name for name in STRAINS if name in given]
+        if "retardation_time" in given and coefficients:
+            yield Fault((coefficients[0],), "stands beside retardation_time", "give one of the two")
+        if "retardation_time" not in given and not coefficients:
+            remedy = "give retardation_time, s, or coefficients by strain such as bending_x"
+            yield Fault(("retardation_time",), "missing", remedy)
+
+
 # Shape and pose
 
 
@@ -203,14 +233,28 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
         None,
         description="direction of the base's z axis, without unit; the shortest rotation of z, instead of quaternion",
     )
+    free: StrictBool = Field(
+        False, description="whether nothing holds the base in motion: the rod starts at this pose, free in space"
+    )
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The tangent is an orientation already; a section has a rod."""
+        """The tangent is an orientation already; a section has a rod; what a rod carries is not free."""
         if "tangent" in given and "quaternion" in given:
             yield Fault(("tangent",), "stands beside quaternion", "give one of the two")
         if "at" in given and "rod" not in given:
             yield Fault(("at",), "stands without rod", "name the rod that carries this one, or leave it out")
+        if given.get("free") is True and "rod" in given:
+            yield Fault(("free",), "stands beside rod", "a base that a rod carries is not free: leave one of them out")
+
+    def held(self) -> Base:
+        """The base clamped where it starts."""
+        if not self.free:
+            return self
+        return self.model_copy(update={"free": False})
+
+
+RotaryInertia = Annotated[tuple[NotNegative, NotNegative, NotNegative], listed(3, "3 numbers")]
 
 
 class Rod(Entry):
@@ -245,6 +289,12 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
     linear_density: Size | None = Field(
         None, description="mass per length, kg/m, with stiffness; a list of two goes linearly from base to tip"
     )
+    rotary_inertia: RotaryInertia | None = Field(
+        None,
+        description="moments of inertia per length about section x, y and tangent, kg m; with linear_density, 0 when "
+        "left out; with material and section they follow from the density",
+    )
+    damping: Damping | None = Field(None, description="internal damping, in motion alone")
     intrinsic: Intrinsic = Field(Intrinsic(), description="strains of the unloaded rod, 1/m and without unit")
     base: Base = Field(Base(), description="pose of the base, in the world or in a section of another rod, m")
 
@@ -255,15 +305,22 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """The elasticity is given once, and for every admitted strain."""
+        """The elasticity is given once, for every admitted strain; damping for no other; inertia with its mass."""
         yield from _elasticity_given_once(given)
+        yield from _inertia_without_mass(given)
+        admitted = [STRAINS[index] for index in admitted_strains(given.get("strain"))]
         stiffness = given.get("stiffness")
-        if not isinstance(stiffness, Mapping):
-            return
-        for index in admitted_strains(given.get("strain")):
-            name = STRAINS[index]
-            if name not in stiffness:
-                yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
+        if isinstance(stiffness, Mapping):
+            for name in admitted:
+                if name not in stiffness:
+                    yield Fault(("stiffness", name), "missing", f"the rod admits {name}")
+        damping = given.get("damping")
+        # Without a sound choice of strains none is known to be left out.
+        if isinstance(damping, Mapping) and admitted:
+            for name in STRAINS:
+                if name in damping and name not in admitted:
+                    remedy = f"its strains: {', '.join(admitted)}"
+                    yield Fault(("damping", name), "is of a strain that the rod does not admit", remedy)
 
     @classmethod
     def input_conflicts(cls, field: str, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -272,9 +329,11 @@ base = { position = [0, 0, 0.1], tangent = [1, 0, 0] }
             return
         name = given.get("name")
         base = given.get("base")
-        # The base of a carried rod is an unknown, not an input.
+        # The base of a carried rod is an unknown, not an input, as is a free one.
         if isinstance(base, Mapping) and "rod" in base:
             yield Fault((), f"{shown(name)} starts on another rod", "move the base of that one")
+        elif isinstance(base, Mapping) and base.get("free") is True:
+            yield Fault((), f"the base of {shown(name)} is free", "nothing holds it: what acts on it are loads")
         holding = (*scene.tables("supports"), *scene.tables("joints"))
         held = any(table.get("rod") == name for _, table in holding)
         admitted = set(admitted_strains(given.get("strain")))
@@ -296,6 +355,18 @@ def _elasticity_given_once(rod: Table) -> Iterator[Fault]:
         yield Fault(("material",), "missing", "a section needs a material")
     elif not made_of and "stiffness" not in rod:
         yield Fault(("material",), "missing", "give material and section, or stiffness")
+
+
+def _inertia_without_mass(rod: Table) -> Iterator[Fault]:
+    """The rotary inertia stands beside what it follows from, or without the mass that it belongs to."""
+    if "rotary_inertia" not in rod:
+        return
+    made_of = [key for key in ("material", "section") if key in rod]
+    if made_of:
+        remedy = "it follows from the density: leave it out, or give stiffness and linear_density"
+        yield Fault(("rotary_inertia",), f"stands beside {' and '.join(made_of)}", remedy)
+    elif "linear_density" not in rod:
+        yield Fault(("linear_density",), "missing", "a rotary inertia belongs to a mass per length, kg/m")
 
 
 def admitted_strains(strain: Any) -> tuple[int, ...]:

@@ -17,6 +17,8 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, inputs_that_are_not
 from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.motion_rules import motions_of_no_input
+from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.rods import Rod, admitted_strains
 from cosserat_casadi.scene.targets import TARGETS, Bound
@@ -32,6 +34,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "bodies": Body,
     "targets": TARGETS,
     "bounds": Bound,
+    "motions": InputMotion,
 }
 """What the lists of a scene hold."""
 
@@ -216,5 +219,6 @@ RULES: tuple[Rule, ...] = (
     miscounted_modes,
     inputs_that_are_not,
     bounds_of_no_input,
+    motions_of_no_input,
 )
 """Every rule. Faults at one key of the file are listed in this order."""

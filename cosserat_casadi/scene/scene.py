@@ -14,9 +14,11 @@ from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import Load
+from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
+from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
 from cosserat_casadi.scene.values import NotEmpty, without_repetition
 
@@ -79,6 +81,8 @@ inputs = ["push.force", "cable.tension"]
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
+    simulation: Simulation | None = Field(None, description="how a motion is computed; for `cosserat simulate` alone")
+    motions: tuple[InputMotion, ...] = Field((), description="inputs over time; for `cosserat simulate` alone")
 
     @property
     def causes(self) -> tuple[Load | Actuator, ...]:
@@ -105,6 +109,30 @@ inputs = ["push.force", "cable.tension"]
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
         inputs = self.free_inputs()
         return tuple(entry.name for entry in inputs)
+
+    @property
+    def motion_tolerance(self) -> float:
+        """Wanted error of the paths of tips relative to the rod length: the simulation's, or else the scene's."""
+        if self.simulation is None or self.simulation.tolerance is None:
+            return self.accuracy.tolerance
+        return self.simulation.tolerance
+
+    def with_motion_inputs(self) -> Scene:
+        """The scene in which what its motions move is free as well, behind what it leaves free already."""
+        free = self.input_names()
+        # Several motions of one input add up.
+        moving = dict.fromkeys(motion.input for motion in self.motions)
+        further = [name for name in moving if name not in free]
+        if not further:
+            return self
+        return self.model_copy(update={"inputs": (*free, *further)})
+
+    def held(self) -> Scene:
+        """The scene in which free bases are clamped where they start, as at the beginning of a motion."""
+        if not any(rod.base.free for rod in self.rods):
+            return self
+        rods = tuple(rod.model_copy(update={"base": rod.base.held()}) for rod in self.rods)
+        return self.model_copy(update={"rods": rods})
 
     def _named_input(self, name: str) -> FreeInput:
         owner, _, field = name.partition(".")

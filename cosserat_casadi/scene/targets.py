@@ -6,14 +6,14 @@ They do not act on the rods: a scene with targets is solved like one without.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Table
 from cosserat_casadi.scene.records import Entry
-from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector
+from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector, numbers_of
 
 
 class TargetRecord(Entry):
@@ -136,8 +136,8 @@ upper = 1.0
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The lower bound is below the upper one."""
-        lower = bound_numbers(given.get("lower"))
-        upper = bound_numbers(given.get("upper"))
+        lower = numbers_of(given.get("lower"))
+        upper = numbers_of(given.get("upper"))
         if "lower" not in given and "upper" not in given:
             yield Fault(("lower",), "missing", "give lower, upper or both")
         count = max(len(lower), len(upper))
@@ -150,18 +150,6 @@ upper = 1.0
         pairs = zip(_spread(lower, count), _spread(upper, count), strict=False)
         if any(low > high for low, high in pairs):
             yield Fault(("upper",), "must not be below lower")
-
-
-def bound_numbers(value: Any) -> list[float]:
-    """The numbers of a bound; none where it is faulty or left out."""
-    numbers = [value]
-    if isinstance(value, list | tuple):
-        numbers = list(value)
-    # Truth values are integers in Python.
-    for number in numbers:
-        if isinstance(number, bool) or not isinstance(number, int | float):
-            return []
-    return numbers
 
 
 def _spread(numbers: list[float], count: int) -> list[float]:

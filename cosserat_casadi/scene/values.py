@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any
@@ -20,7 +21,7 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
-from cosserat_casadi.scene.faults import Fault, shown
+from cosserat_casadi.scene.faults import Fault, Path, shown
 from cosserat_casadi.scene.profiles import ENDS, SERIES, Notation, Profile, RefusedProfile, read_profile
 from cosserat_casadi.scene.records import refusal
 
@@ -209,6 +210,26 @@ def _repetitions(names: Sequence[str]) -> Iterator[Fault]:
             problem = f"{shown(name)} is listed twice"
             yield Fault((i,), problem)
         seen.add(name)
+
+
+def numbers_of(value: Any) -> list[float]:
+    """The numbers of a value that is one or a list of them; none where it is faulty or left out."""
+    numbers = [value]
+    if isinstance(value, list | tuple):
+        numbers = list(value)
+    # Truth values are integers in Python.
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, int | float):
+            return []
+    return numbers
+
+
+def not_increasing(times: Sequence[float], path: Path) -> Iterator[Fault]:
+    """The first of several times that is not later than the one before it."""
+    for i, (before, time) in enumerate(itertools.pairwise(times), 1):
+        if not time > before:
+            yield Fault((*path, i), f"must be > {shown(before)}, the time before it, got {shown(time)}")
+            return
 
 
 def above_base(remedy_at_base: str) -> AfterValidator:

@@ -44,7 +44,7 @@ def check_format(path: Path) -> None:
         problem = f"{path} is neither CSV nor Parquet"
         raise SceneError(Problem("--output", problem, f"use {' or '.join(FORMATS)}"))
     if _is_parquet(path):
-        _arrow()
+        arrow_module()
 
 
 def record_file(path: Path) -> Path:
@@ -152,7 +152,7 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
 
 
 def _write_parquet(sweep: Sweep, path: Path) -> None:
-    arrow = _arrow()
+    arrow = arrow_module()
     columns: dict[str, Any] = {}
     for name in sweep.swept:
         columns[name] = arrow.array(sweep[name])
@@ -171,7 +171,7 @@ def _write_parquet(sweep: Sweep, path: Path) -> None:
 
 
 def _read_parquet(path: Path) -> tuple[list[str], list[Any]]:
-    _arrow()
+    arrow_module()
     import pyarrow.parquet
 
     table = pyarrow.parquet.read_table(path)
@@ -184,7 +184,12 @@ def _read_csv(path: Path) -> tuple[list[str], list[Any]]:
     return header, list(zip(*rows, strict=True))
 
 
-def _arrow() -> Any:
+def arrow_module() -> Any:
+    """The module pyarrow.
+
+    Raises:
+        ParquetUnavailableError: it is not installed.
+    """
     try:
         import pyarrow
     except ImportError:

@@ -11,11 +11,8 @@ import numpy.typing as npt
 
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import read_numbers
+from cosserat_casadi.scene.number_table import read_numbers, shortened
 from cosserat_casadi.sweep.grid_file import read_grid
-
-MOST_TOLD = 20
-"""Faults of one table that are told; a file may have one in every row."""
 
 
 @dataclass(frozen=True)
@@ -91,11 +88,3 @@ def _column(name: str, values: npt.ArrayLike) -> FloatArray:
         return np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise SceneError(Problem(name, "must be a number or a list of numbers")) from None
-
-
-def shortened(problems: list[Problem], where: str) -> list[Problem]:
-    """The first faults, and how many more there are."""
-    if len(problems) <= MOST_TOLD:
-        return problems
-    further = len(problems) - MOST_TOLD
-    return [*problems[:MOST_TOLD], Problem(where, f"has {further} more faults")]

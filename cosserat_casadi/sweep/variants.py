@@ -22,11 +22,12 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
+from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
-from cosserat_casadi.sweep.table import Table, shortened
+from cosserat_casadi.sweep.table import Table
 
-NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds")
+NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
 """Tables of a scene that are no property of what is computed."""
 
 STIFFNESS = ("material", "section", "stiffness", "linear_density")

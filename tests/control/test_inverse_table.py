@@ -152,7 +152,7 @@ def test_a_row_out_of_reach_leaves_the_others_alone(tmp_path: Path) -> None:
             "line 3: the quaternion must have norm 1, got norm 2",
         ),
         (POSITION, "x,y,z\n1,2,a\n", "line 2"),
-        (POSITION, "x,y,z\n", "holds no load case"),
+        (POSITION, "x,y,z\n", "holds no row of numbers"),
     ],
 )
 def test_refused_tables(tmp_path: Path, target: dict[str, Any], text: str, expected: str) -> None:

@@ -53,7 +53,7 @@ def test_every_fault_of_a_csv_is_named(layout: InputLayout, tmp_path: Path) -> N
 def test_a_csv_without_cases_is_refused(layout: InputLayout, tmp_path: Path, text: str) -> None:
     path = tmp_path / "loads.csv"
     path.write_text(text)
-    with pytest.raises(SceneError, match="holds no load case"):
+    with pytest.raises(SceneError, match="holds no row of numbers"):
         read_load_cases(path, layout)
     with pytest.raises(SceneError, match="cannot be read"):
         read_load_cases(tmp_path / "none.csv", layout)

@@ -1,0 +1,164 @@
+"""``cosserat simulate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.progress import motion_display, share_display
+from cosserat_casadi.cli.reports.motion import print_hasty_animation, print_motion, print_motion_warnings
+from cosserat_casadi.cli.signals import StoppedError
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import check_writable
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.results.motion_file import check_motion_path, write_motion
+from cosserat_casadi.results.start_file import read_start
+from cosserat_casadi.scene import Scene, read_scene
+
+HASTY_FRAMES = 10
+"""Frames below which an animation shows little but its ends."""
+
+UNHURRIED = 5.0
+"""Time that the speed which is then proposed gives an animation, s."""
+
+
+def simulate(
+    scene: SceneFile,
+    output: Annotated[Path | None, typer.Option(help="Write the motion here: .json, .csv, .parquet or .npz.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
+    animation: Annotated[Path | None, typer.Option(help="Draw an animation here: .gif or .mp4.")] = None,
+    speed: Annotated[
+        float,
+        typer.Option(metavar="FACTOR", help="Of the animation: 1 is as fast as the motion, 0.1 ten times slower."),
+    ] = 1.0,
+    start: Annotated[
+        Path | None, typer.Option("--from", metavar="RESULT", help="Start at rest from this result file of solve.")
+    ] = None,
+    step: Annotated[float | None, typer.Option(help="Fixed time step, s; by default the tolerance chooses it.")] = None,
+    duration: Annotated[float | None, typer.Option(help="Time to simulate, s.")] = None,
+    frames: Annotated[int | None, typer.Option(help="Rows of the result, evenly spaced in time.")] = None,
+    tolerance: Annotated[
+        float | None, typer.Option(help="Error that the tip's path may have, over the rod's length.")
+    ] = None,
+    settings: Settings = None,
+) -> None:
+    """Simulate the motion of a scene over time.
+
+    Exit codes: 0 computed to its end, 2 refused, 3 ended early, 130 interrupted; what was computed is written in any
+    case but 2.
+    """
+    # Options that stand for a key of the scene come last: they win over --set.
+    keys = {"step": step, "duration": duration, "frames": frames, "tolerance": tolerance}
+    overrides = [f"simulation.{key}={value!r}" for key, value in keys.items() if value is not None]
+    problems: list[Problem] = []
+    _check_files(output, plot, animation, speed, problems)
+    checked_scene, start_solution = _check_scene(scene, (*(settings or ()), *overrides), start, problems)
+
+    motion = _simulate_with_progress(checked_scene, start_solution)
+    if output is not None:
+        write_motion(motion, output)
+    if motion.outcome is MotionOutcome.INTERRUPTED:
+        # Who has stopped a simulation does not want to wait for pictures of it.
+        print_motion(Console(), motion, given_files(output))
+        raise StoppedError
+    # A motion that was not started has no picture.
+    drawn = None
+    if animation is not None and len(motion.times):
+        drawn = animation
+    if plot is not None:
+        _draw(motion, plot)
+    if drawn is not None:
+        _animate(motion, drawn, speed)
+    print_motion(Console(), motion, given_files(output, plot, drawn))
+    print_motion_warnings(Console(stderr=True), motion)
+    if not motion.converged:
+        raise typer.Exit(NOT_FOUND)
+
+
+def _check_files(
+    output: Path | None, plot: Path | None, animation: Path | None, speed: float, problems: list[Problem]
+) -> None:
+    """Add what is wrong with the files that are to be written, before time is spent on a simulation."""
+    if output is not None:
+        with collect_problems(problems):
+            check_writable(output, "--output")
+        with collect_problems(problems):
+            check_motion_path(output)
+    with collect_problems(problems):
+        check_outputs(None, plot)
+    if not speed > 0.0:
+        problems.append(Problem("--speed", f"must be > 0, got {speed:g}", "0.1 shows the motion ten times slower"))
+    if animation is None:
+        return
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.animation import check_animation_path
+
+    with collect_problems(problems):
+        check_writable(animation, "--animation")
+    with collect_problems(problems):
+        check_animation_path(animation)
+
+
+def _check_scene(
+    scene_file: Path, settings: tuple[str, ...], start: Path | None, problems: list[Problem]
+) -> tuple[Scene, Solution | None]:
+    """The scene, and the solution that the motion starts from where a file names one.
+
+    Args:
+        scene_file: the scene.
+        settings: values of it to change.
+        start: a result file.
+        problems: what was refused before.
+
+    Raises:
+        SceneError: with those problems and every fault of the scene and the result file.
+    """
+    scene: Scene | None = None
+    solution: Solution | None = None
+    with collect_problems(problems):
+        scene = read_scene(scene_file, settings)
+        if scene.simulation is None:
+            remedy = "add a table [simulation] with duration = 1.0 (s), or give --duration"
+            problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+        if start is not None:
+            solution = read_start(start, scene)
+    if problems or scene is None:
+        raise SceneError(*problems)
+    return scene, solution
+
+
+def _simulate_with_progress(scene: Scene, start: Solution | None) -> Motion:
+    """Simulate a scene and show how far the simulation is."""
+    # Imported here, because the integrator is needed by this command alone.
+    from cosserat_casadi.motion.resolve import simulate_scene
+
+    with motion_display() as show_motion:
+        motion: Motion = simulate_scene(scene, start=start, progress=show_motion)
+        return motion
+
+
+def _draw(motion: Motion, file: Path) -> None:
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.motion_plot import save_motion_plot
+
+    save_motion_plot(motion, file)
+
+
+def _animate(motion: Motion, file: Path, speed: float) -> None:
+    """Draw an animation, and say how to slow it down where it has next to no frames."""
+    from cosserat_casadi.plots.animation import frame_times, save_animation
+
+    with share_display("Drawing the animation") as show_share:
+        save_animation(motion, file, speed=speed, progress=show_share)
+    frames = len(frame_times(motion, speed))
+    computed_time = float(motion.times[-1] - motion.times[0])
+    if frames < HASTY_FRAMES and computed_time > 0.0:
+        # One digit is enough for a factor that is only proposed.
+        proposed = float(f"{computed_time / UNHURRIED:.1g}")
+        print_hasty_animation(Console(stderr=True), frames, proposed)

@@ -1,0 +1,91 @@
+"""What ``simulate`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import (
+    digits,
+    discretisation_sentences,
+    plural,
+    print_plain,
+    print_written,
+    table_of,
+    title_line,
+)
+from cosserat_casadi.motion.trajectory import Motion
+
+
+def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:
+    """Print the outcome, where rods and bodies end, the figures of merit, and the files that were written."""
+    colour = "red"
+    if motion.converged:
+        colour = "green"
+    print_plain(console, title_line(motion.model.scene.title))
+    print_plain(console, f"[bold {colour}]{escape(motion.message)}[/]")
+    if len(motion.times):
+        console.print(_end_table(motion))
+    for sentence in _merit_sentences(motion):
+        print_plain(console, escape(sentence))
+    print_written(console, written)
+
+
+def print_motion_warnings(console: Console, motion: Motion) -> None:
+    """Warn of what limits the accuracy, such as a load that jumps."""
+    for warning in motion.warnings:
+        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
+
+
+def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
+    """Say how an animation that is over at once can be slowed down."""
+    print_plain(
+        console,
+        f"The animation has {plural(frames, 'frame')}: add --speed {speed:g} to see the motion slowly.",
+        soft_wrap=True,
+    )
+
+
+def _end_table(motion: Motion) -> Table:
+    """Tips of rods and positions of bodies at the last time, in world axes."""
+    table = table_of(f"at t = {motion.times[-1]:.6g} s", "quantity")
+    for axis in ("x", "y", "z"):
+        table.add_column(axis, justify="right")
+    for name in motion.model.discrete.rods:
+        position = motion.tip(name).position[-1]
+        table.add_row(escape(name), "tip position, m", *digits(position))
+    for name in motion.model.body:
+        position = motion.body(name).position[-1]
+        table.add_row(escape(name), "body position, m", *digits(position))
+    return table
+
+
+def _merit_sentences(motion: Motion) -> Iterator[str]:
+    """How the motion was computed, how good it is, and what it was computed on."""
+    if motion.start:
+        yield f"start: {motion.start}"
+    yield f"steps: {_step_words(motion)}"
+    if np.isfinite(motion.error_estimate):
+        longest = max(rod.properties.length for rod in motion.model.discrete.rods.values())
+        metres = motion.error_estimate * longest
+        yield f"estimated error of the tips' paths: {metres:.1e} m, {motion.error_estimate:.1e} of the length"
+    imbalance = np.abs(motion.energy.imbalance)
+    if np.isfinite(imbalance).any():
+        yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
+    yield "; ".join(discretisation_sentences(motion.model))
+
+
+def _step_words(motion: Motion) -> str:
+    statistics = motion.statistics
+    parts = [f"{statistics.steps:,}"]
+    if statistics.steps:
+        parts.append(f"of {statistics.smallest_step:.2g} to {statistics.largest_step:.2g} s")
+    words = " ".join(parts)
+    iterations = plural(statistics.iterations, "iteration")
+    jacobians = plural(statistics.jacobians, "Jacobian")
+    return f"{words}, {statistics.rejected:,} rejected; {iterations}, {jacobians}"

@@ -1,0 +1,239 @@
+"""Energies, powers and momenta of a scene in motion: what its balance of energy is made of.
+
+Along a motion the kinetic and the elastic energy grow by what loads, actuators, moving bases and changing lengths put
+in, less what the viscous stress dissipates. A length that grows brings new rod along at the speed of its section.
+Docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.rotation import dot
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.load_assembly import BodyLoad, BodyLoads, is_dead_force
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import MotionArguments, System
+from cosserat_casadi.rod.motion import AT_REST, FrameMotion, RodMotion, StrainRates
+from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.wrenches import LineWrench, PoseWrench, RodLoad, Wrench
+
+
+@dataclass(frozen=True)
+class MotionEnergy:
+    """Energies and powers of a scene in given arguments.
+
+    Attributes:
+        system: rods, frames and constraints in arguments that have a motion.
+    """
+
+    system: System
+
+    @cached_property
+    def kinetic(self) -> Matrix:
+        """Kinetic energy of rods and bodies, 1×1, J."""
+        of_rods = [inertia.kinetic_energy for inertia in self.system.inertias.values()]
+        of_bodies = [inertia.kinetic_energy for inertia in self.system.body_inertias.values()]
+        return _sum([*of_rods, *of_bodies])
+
+    @cached_property
+    def elastic(self) -> Matrix:
+        """Elastic energy of the rods, 1×1, J."""
+        return self.system.energy()
+
+    @cached_property
+    def load_is_dead(self) -> FloatArray:
+        """One for every load that is a force of fixed direction, and so has an energy, else zero; shape (loads,)."""
+        flags = [is_dead_force(self.system.discrete, load) for load in self._loads]
+        return np.asarray(flags, dtype=float)
+
+    @cached_property
+    def of_loads(self) -> Matrix:
+        """Energy −Σ f·r of each load, (loads)×1, J: zero for a load that is no dead force."""
+        energies = []
+        for load, dead in zip(self._loads, self.load_is_dead, strict=True):
+            energy = ca.DM(1, 1)
+            if dead:
+                energy = self._energy_of(load)
+            energies.append(energy)
+        return ca.vertcat(*energies)
+
+    @cached_property
+    def dissipated_power(self) -> Matrix:
+        """Power that the viscous stress of the rods turns into heat, 1×1, W."""
+        return _sum([viscosity.dissipated_power for viscosity in self.system.viscosities.values()])
+
+    @cached_property
+    def load_powers(self) -> Matrix:
+        """Power of each load, (loads)×1, W."""
+        return ca.vertcat(*[self._power_of(load) for load in self._loads])
+
+    @cached_property
+    def actuator_powers(self) -> Matrix:
+        """Power of each actuator, (actuators)×1, W: minus its effort times the rate of what it does work on."""
+        powers = []
+        for actuator in self.system.discrete.scene.actuators:
+            effort, conjugate, gradient = self.system.actuator(actuator.name)
+            rate = gradient @ self._motion.v + self._by_inputs(conjugate)
+            sign = EFFECTS[actuator.kind].energy_sign
+            powers.append(-sign * effort * rate)
+        stacked: Matrix = ca.vertcat(*powers)
+        return stacked
+
+    @cached_property
+    def base_power(self) -> Matrix:
+        """Power of the clamps of moving bases, and of what changes the lengths of rods, 1×1, W."""
+        powers = []
+        for rod, igm in self.system.rods.items():
+            if self.system.discrete.unloaded.floating_base(rod) is None:
+                base = self.system.base_motion(rod)
+                by_force = ca.dot(igm.statics.base_force, base.velocity)
+                by_moment = ca.dot(igm.statics.base_moment, base.angular_velocity)
+                powers.append(by_force + by_moment)
+            if self.system.discrete.layout.of_rod(rod, "length") is not None:
+                powers.append(self._length_power(rod))
+        return _sum(powers)
+
+    @cached_property
+    def momentum(self) -> tuple[Matrix, Matrix]:
+        """Momentum, N s, and angular momentum about the origin of the world, N m s, 3×1 each."""
+        linear: Matrix = ca.DM.zeros(3, 1)
+        angular: Matrix = ca.DM.zeros(3, 1)
+        for rod, inertia in self.system.inertias.items():
+            base = self.system.base(rod)
+            of_rod = base.rotation @ inertia.linear_momentum
+            about_base = base.rotation @ inertia.angular_momentum
+            linear = linear + of_rod
+            angular = angular + about_base + ca.cross(base.position, of_rod)
+        for name, body in self.system.body_inertias.items():
+            of_body = body.mass * body.velocity
+            centre = self.system.frame(name).position + body.arm
+            spin = body.world_inertia @ body.motion.angular_velocity
+            linear = linear + of_body
+            angular = angular + spin + ca.cross(centre, of_body)
+        return linear, angular
+
+    @property
+    def _loads(self) -> tuple[scenes.Load, ...]:
+        return self.system.discrete.scene.loads
+
+    @property
+    def _motion(self) -> MotionArguments:
+        motion = self.system.arguments.motion
+        assert motion is not None, "asked for in motion"
+        return motion
+
+    def _by_inputs(self, value: Matrix) -> Matrix:
+        """Rate of a value with the inputs, at fixed unknowns."""
+        if not self.system.discrete.layout.geometry:
+            return ca.DM(1, 1)
+        rate: Matrix = ca.jtimes(value, self.system.arguments.inputs, self._motion.inputs_rate)
+        return rate
+
+    # Loads
+
+    def _on_rods(self, load: scenes.Load) -> Iterator[tuple[str, Wrench]]:
+        """The rods that a load acts on with its wrenches at this instant, base axes."""
+        for rod in self.system.discrete.rods:
+            for wrench in self.system.loads_of(load, rod):
+                yield rod, self._frozen(rod, wrench)
+
+    def _frozen(self, rod: str, load: RodLoad) -> Wrench:
+        if isinstance(load, PoseWrench):
+            return LoadedSections(load, self.system.shapes[rod]).frozen
+        return load
+
+    def _on_bodies(self, load: scenes.Load) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
+        """The bodies that a load acts on, where they are and how they move, world axes."""
+        for name, frame_motion in self.system.frame_motions.items():
+            body = frame_motion.frame.body
+            if body is None:
+                continue
+            pose = self.system.frame(name)
+            loads = BodyLoads(self.system.discrete, body, pose.position, pose.rotation, self.system.arguments.inputs)
+            body_load = loads.of(load)
+            if body_load is not None:
+                yield pose, frame_motion.motion, body_load
+
+    def _power_of(self, load: scenes.Load) -> Matrix:
+        powers = []
+        for rod, wrench in self._on_rods(load):
+            powers.append(self._wrench_power(self.system.motions[rod], wrench))
+        for _, motion, body_load in self._on_bodies(load):
+            twist = ca.vertcat(motion.angular_velocity, motion.velocity)
+            powers.append(ca.dot(body_load.wrench, twist))
+        return _sum(powers)
+
+    def _energy_of(self, load: scenes.Load) -> Matrix:
+        """Minus the work of dead forces from the origin of the world."""
+        energies = []
+        for rod, wrench in self._on_rods(load):
+            if wrench.force is not None:
+                base = self.system.base(rod)
+                position = base.rotation.T @ base.position + self.system.shapes[rod].position
+                work = self._work(rod, wrench, wrench.force, position)
+                energies.append(-work)
+        for pose, _, body_load in self._on_bodies(load):
+            point = pose.position + body_load.arm
+            energies.append(-ca.dot(body_load.force, point))
+        return _sum(energies)
+
+    def _wrench_power(self, motion: RodMotion, wrench: Wrench) -> Matrix:
+        """Power of a wrench on the sections of a rod that move so, 1×1, W."""
+        rod = motion.rod.properties.name
+        powers = []
+        if wrench.force is not None:
+            powers.append(self._work(rod, wrench, wrench.force, motion.velocity))
+        if wrench.moment is not None:
+            powers.append(self._work(rod, wrench, wrench.moment, motion.angular_velocity))
+        return _sum(powers)
+
+    def _work(self, rod: str, wrench: Wrench, vector: Matrix, moved: Matrix) -> Matrix:
+        """Sum over the loaded sections of a force or a moment times a field at the nodes, 3×M, 1×1."""
+        rod_shape = self.system.shapes[rod]
+        if isinstance(wrench, LineWrench):
+            per_length = Statics(rod_shape, [wrench]).line(wrench, vector)
+            return dot(per_length, moved) @ ca.DM(rod_shape.rod.node_lengths)
+        node = rod_shape.rod.grid.node_at(wrench.at)
+        if wrench.follower:
+            vector = rod_shape.rotation_at(node) @ vector
+        return ca.dot(vector, moved[:, node])
+
+    # Lengths
+
+    def _length_power(self, rod: str) -> Matrix:
+        """Power of what changes a rod's length: all that works against, or with, the motion of the length alone."""
+        igm = self.system.rods[rod]
+        rates = self.system.strain_rates(rod)
+        assert rates.ratio_rate is not None, "asked for where the length is free"
+        still = ca.DM(igm.rod.size, 1)
+        alone = StrainRates(still, still, rates.ratio_rate, ca.DM(1, 1))
+        motion = RodMotion(self.system.shapes[rod], alone, AT_REST)
+        powers = [self._by_inputs(igm.energy)]
+        powers += [-self._wrench_power(motion, wrench) for wrench in igm.statics.wrenches]
+        for effort, conjugate in igm.efforts:
+            powers.append(effort * self._by_inputs(conjugate.value))
+        viscosity = self.system.viscosities.get(rod)
+        if viscosity is not None:
+            powers.append(viscosity.shrinking_power)
+        inertia = self.system.inertias.get(rod)
+        if inertia is not None:
+            # The rod that comes along has the speed of its section already.
+            powers.append(inertia.kinetic_energy / inertia.ratio * rates.ratio_rate)
+        return _sum(powers)
+
+
+def _sum(terms: list[Matrix]) -> Matrix:
+    """Sum of 1×1 terms; zero without any."""
+    total: Matrix = ca.DM(0.0)
+    for term in terms:
+        total = total + term
+    return total

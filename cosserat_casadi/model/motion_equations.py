@@ -1,0 +1,127 @@
+"""The equations of motion of a scene, F(x, v, a) = 0, and their exact derivatives: docs/theory.md, section 11.
+
+They are the equations of the scene at rest under one more load, the inertia of rods and bodies, and the viscous stress
+of the rods. So the derivative with x at fixed inertia is the Jacobian of statics, and what is added here is small.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.assembly import Blocks
+from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.system import System
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
+
+
+@dataclass(frozen=True)
+class MotionEquations:
+    """The equations of motion of a scene in given arguments.
+
+    Attributes:
+        system: rods, frames and constraints in arguments that have a motion.
+    """
+
+    system: System
+
+    @cached_property
+    def residual(self) -> Matrix:
+        """Residuals of rods, constraints, floating frames and cables in motion, without unit, size×1."""
+        unknowns = self.system.discrete.unknowns
+        added: list[Matrix] = []
+        for block in unknowns.blocks:
+            rows: Matrix = ca.DM(block.size, 1)
+            if block.kind is BlockKind.STRAIN and block.owner in self.system.viscosities:
+                rows = self.system.viscosities[block.owner].force
+            added.append(rows)
+        for name, frame_motion in self.system.frame_motions.items():
+            number = list(unknowns.slices).index((BlockKind.POSE, str(name)))
+            added[number] = frame_motion.norm_rows
+        return Equations(self.system).residual + ca.vertcat(*added)
+
+    @cached_property
+    def matrices(self) -> MotionMatrices:
+        """∂F/∂x, ∂F/∂v and ∂F/∂a, size×size each, sparse by blocks."""
+        stiffness = self._blocks()
+        damping = self._blocks()
+        mass = self._blocks()
+        for rod in self.system.inertias:
+            for rows, columns, part in self._rod_blocks(rod):
+                stiffness.add(rows, columns, part.stiffness)
+                damping.add(rows, columns, part.damping)
+                mass.add(rows, columns, part.mass)
+        for name, inertia in self.system.body_inertias.items():
+            frame = self.system.discrete.frames[name]
+            entries = self.system.discrete.deviation(name)
+            jet = self.system.frame_motions[name].motion_jet()
+            part = inertia.matrices.along(jet)
+            stiffness.add(entries, entries, part.stiffness / frame.unit)
+            damping.add(entries, entries, part.damping / frame.unit)
+            mass.add(entries, entries, part.mass / frame.unit)
+        for name, frame_motion in self.system.frame_motions.items():
+            entries = self.system.discrete.deviation(name)
+            stiffness.add(entries, entries, frame_motion.norm_matrices.stiffness)
+            damping.add(entries, entries, frame_motion.norm_matrices.damping)
+            mass.add(entries, entries, frame_motion.norm_matrices.mass)
+        for rod, viscosity in self.system.viscosities.items():
+            entries = self.system.discrete.unknowns.strain(rod)
+            stiffness.add(entries, entries, viscosity.stiffness)
+            damping.add(entries, entries, viscosity.damping)
+        return MotionMatrices(
+            stiffness=Equations(self.system).jacobian + stiffness.matrix(),
+            damping=damping.matrix(),
+            mass=mass.matrix(),
+        )
+
+    def _blocks(self) -> Blocks:
+        ends = [entries.stop for entries in self.system.discrete.unknowns.slices.values()]
+        return Blocks(ends)
+
+    def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
+        """What the inertia of a rod adds to the rows of its strains and of its base, if that floats."""
+        discrete = self.system.discrete
+        base = discrete.unloaded.floating_base(rod)
+        tangent = MotionTangent(self.system.tangents[rod], self.system.inertias[rod], floating=base is not None)
+        unit = discrete.rods[rod].energy_unit
+        strains = discrete.unknowns.strain(rod)
+        if base is None:
+            return [(strains, strains, _divided(tangent.matrices, unit))]
+        whole = tangent.matrices.along(self._to_unknowns(rod, base))
+        deviation = discrete.deviation(base)
+        count = discrete.rods[rod].size
+        ranges = {"strain": slice(0, count), "base": slice(count, None)}
+        places = {"strain": strains, "base": deviation}
+        units = {"strain": unit, "base": discrete.frames[base].unit}
+        blocks = []
+        for row, rows in places.items():
+            for column, columns in places.items():
+                part = MotionMatrices(
+                    stiffness=whole.stiffness[ranges[row], ranges[column]],
+                    damping=whole.damping[ranges[row], ranges[column]],
+                    mass=whole.mass[ranges[row], ranges[column]],
+                )
+                blocks.append((rows, columns, _divided(part, units[row])))
+        return blocks
+
+    def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
+        """From the unknowns of a rod and of its base to strains and the motion of the base in its axes, with rates."""
+        base_R_world = self.system.frame(base).rotation.T
+        moved = self.system.frame_motions[base].motion_jet(base_R_world)
+        count = self.system.discrete.rods[rod].size
+        still = ca.DM(count, count)
+        return Jet(
+            value=ca.diagcat(ca.DM.eye(count), moved.value),
+            rate=ca.diagcat(still, moved.rate),
+            acceleration=ca.diagcat(still, moved.acceleration),
+        )
+
+
+def _divided(matrices: MotionMatrices, unit: float) -> MotionMatrices:
+    """Derivatives of forces in J as derivatives of rows without unit."""
+    return MotionMatrices(matrices.stiffness / unit, matrices.damping / unit, matrices.mass / unit)

@@ -1,0 +1,87 @@
+"""The named functions of a model in motion: see model/functions.py and docs/theory.md, section 11.
+
+Coordinates x are those of statics, v and a their first and second time derivatives. Multipliers and tensions have
+neither: their entries of v and a are not read.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
+from cosserat_casadi.model.motion_energy import MotionEnergy
+from cosserat_casadi.model.motion_equations import MotionEquations
+
+MOTION = ("x", "v", "a", "inputs", "inputs_rate", "inputs_acceleration")
+"""Arguments of the functions of a scene in motion."""
+
+VELOCITY = ("x", "v", "inputs", "inputs_rate")
+"""Arguments of the functions that no acceleration enters."""
+
+
+class MotionFunctions:
+    """The named functions of a model in motion.
+
+    Attributes:
+        discrete: the scene with its constant matrices.
+    """
+
+    discrete: DiscreteScene
+
+    @scene_function(Output("residual"), arguments=MOTION)
+    def inverse_dynamics(self, written: Expressions) -> list[Matrix]:
+        """(x, v, a, inputs, inputs_rate, inputs_acceleration) ↦ residual of the equations of motion, without unit.
+
+        Zero along a motion. At rest it is the residual of statics to the last bit.
+        """
+        return [MotionEquations(written.system).residual]
+
+    @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
+    def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:
+        """(x, v, a, inputs, …) ↦ derivatives of the residual with x, v and a, size×size each, and the residual."""
+        equations = MotionEquations(written.system)
+        matrices = equations.matrices
+        return [matrices.stiffness, matrices.damping, matrices.mass, equations.residual]
+
+    @scene_function(Output("mass"))
+    def mass_matrix(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ mass matrix, size×size, symmetric but for the units of its rows, s²."""
+        return [MotionEquations(written.at_rest).matrices.mass]
+
+    @owned_functions(Owner.ROD, (Output("base_force", "N"), Output("base_moment", "N m")), arguments=MOTION)
+    def base_wrench(self, written: Expressions) -> list[Matrix]:
+        """(x, v, a, inputs, …) ↦ force and moment about the base of the clamp on the rod in motion, world axes."""
+        statics = written.system.rods[written.owner].statics
+        rotation = written.system.base(written.owner).rotation
+        return [rotation @ statics.base_force, rotation @ statics.base_moment]
+
+    @scene_function(
+        Output("kinetic", "J"),
+        Output("elastic", "J"),
+        Output("of_loads", "J"),
+        Output("load_is_dead"),
+        arguments=VELOCITY,
+    )
+    def energies(self, written: Expressions) -> list[Matrix]:
+        """(x, v, inputs, inputs_rate) ↦ kinetic and elastic energy, energy of each load, and whether it has one."""
+        energy = MotionEnergy(written.system)
+        return [energy.kinetic, energy.elastic, energy.of_loads, ca.DM(energy.load_is_dead)]
+
+    @scene_function(
+        Output("dissipated", "W"),
+        Output("of_loads", "W"),
+        Output("of_actuators", "W"),
+        Output("of_bases", "W"),
+        arguments=MOTION,
+    )
+    def powers(self, written: Expressions) -> list[Matrix]:
+        """(x, v, a, inputs, …) ↦ power that is dissipated, and powers of loads, actuators, moving bases and lengths."""
+        energy = MotionEnergy(written.system)
+        return [energy.dissipated_power, energy.load_powers, energy.actuator_powers, energy.base_power]
+
+    @scene_function(Output("linear", "N s"), Output("angular", "N m s"), arguments=VELOCITY)
+    def momentum(self, written: Expressions) -> list[Matrix]:
+        """(x, v, inputs, inputs_rate) ↦ momentum, and angular momentum about the origin of the world, 3×1 each."""
+        return list(MotionEnergy(written.system).momentum)

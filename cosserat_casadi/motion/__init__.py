@@ -1,0 +1,1 @@
+"""Motion: inputs over time, simulation, what a motion is, modes and linearisation."""

@@ -1,0 +1,335 @@
+"""Inputs over time: values, rates and accelerations of all inputs, exact, in pieces that are smooth.
+
+Where an input has a table, the sum of its tables stands for the scene's value; without one the scene's value stays. Its
+waves are added to that.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.scene.motions import InputMotion
+
+SAME_TIME = 1e-12
+"""Distance of two times, relative to the duration, at which they are one: pieces are longer."""
+
+
+class InputState(NamedTuple):
+    """All inputs at one time, in the order of the stacked vector.
+
+    Attributes:
+        value: shape (inputs,), in the units of the inputs.
+        rate: first derivative with time, shape (inputs,), units per s.
+        acceleration: second derivative with time, shape (inputs,), units per s².
+    """
+
+    value: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+@dataclass(frozen=True)
+class Break:
+    """A time at which the path of an input is not smooth.
+
+    Attributes:
+        input: name of the input.
+        time: s.
+        order: of the first derivative that jumps: 0 the value itself, 1 its rate, 2 its acceleration.
+    """
+
+    input: str
+    time: float
+    order: int
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A span of time in which all inputs are smooth.
+
+    Attributes:
+        start: s.
+        end: s.
+    """
+
+    start: float
+    end: float
+    _constant: FloatArray
+    _paths: tuple[tuple[slice, _Path], ...]
+
+    def at(self, t: float) -> InputState:
+        """The inputs at a time from start to end; at these two, their limits from within."""
+        value = self._constant.copy()
+        rate = np.zeros_like(value)
+        acceleration = np.zeros_like(value)
+        for span, path in self._paths:
+            contribution = path.at(t)
+            value[span] += contribution.value
+            rate[span] += contribution.rate
+            acceleration[span] += contribution.acceleration
+        return InputState(value, rate, acceleration)
+
+
+class MovingInputs:
+    """The inputs of a model over time.
+
+    Args:
+        layout: the inputs of the model.
+        motions: what moves; every input that they name is in the layout.
+        defaults: stacked values of what does not move, shape (inputs,), in the units of the inputs.
+
+    Raises:
+        SceneError: an input that a motion names is none of the model.
+    """
+
+    def __init__(self, layout: InputLayout, motions: Sequence[InputMotion], defaults: FloatArray) -> None:
+        _refuse_unknown(layout, motions)
+        self._motions = tuple(motions)
+        self._slices = layout.slices
+        self._paths = tuple(_path_of(motion) for motion in motions)
+        self._constant = np.array(defaults, dtype=float)
+        for motion in motions:
+            if motion.is_table:
+                self._constant[self._slices[motion.input]] = 0.0
+
+    @property
+    def moves(self) -> bool:
+        """Whether any input changes at all."""
+        return any(path.moves for path in self._paths)
+
+    def at(self, t: float) -> InputState:
+        """The inputs at a time; where they jump, their limits from later times."""
+        return self._piece(t, np.inf, slack=0.0).at(t)
+
+    def pieces(self, duration: float) -> list[Piece]:
+        """Spans of time in which all inputs are smooth, one after the other from 0 to the duration (s)."""
+        slack = SAME_TIME * duration
+        cuts = [0.0]
+        times = sorted(time for path in self._paths for time, _ in path.breaks)
+        for time in times:
+            # Equal times of two tables may differ by rounding.
+            if cuts[-1] + 2 * slack < time < duration - 2 * slack:
+                cuts.append(time)
+        ends = [*cuts[1:], duration]
+        return [self._piece(start, end, slack) for start, end in zip(cuts, ends, strict=True)]
+
+    def breaks(self, duration: float) -> list[Break]:
+        """What is not smooth from 0 to the duration (s), in the order of time: the inputs rest before 0."""
+        found = self._breaks_at_start()
+        for motion, path in zip(self._motions, self._paths, strict=True):
+            found += [Break(motion.input, time, order) for time, order in path.breaks if 0.0 < time < duration]
+        return sorted(found, key=lambda entry: (entry.time, entry.order))
+
+    def jumps(self, duration: float) -> list[Break]:
+        """Times from 0 to the duration (s) at which the value of an input itself jumps: loads that act suddenly."""
+        return [entry for entry in self.breaks(duration) if entry.order == 0]
+
+    def _breaks_at_start(self) -> list[Break]:
+        """Inputs that begin to move at once, or to accelerate at once."""
+        state = self.at(0.0)
+        found = []
+        for name in dict.fromkeys(motion.input for motion in self._motions):
+            span = self._slices[name]
+            if np.any(state.rate[span]):
+                found.append(Break(name, 0.0, 1))
+            elif np.any(state.acceleration[span]):
+                found.append(Break(name, 0.0, 2))
+        return found
+
+    def _piece(self, start: float, end: float, slack: float) -> Piece:
+        paths = []
+        for motion, path in zip(self._motions, self._paths, strict=True):
+            span = self._slices[motion.input]
+            paths.append((span, path.within(start + slack, end - slack)))
+        return Piece(start, end, self._constant, tuple(paths))
+
+
+def _refuse_unknown(layout: InputLayout, motions: Sequence[InputMotion]) -> None:
+    known = ", ".join(layout.names) or "none"
+    unknown = [motion.input for motion in motions if motion.input not in layout.names]
+    problems = [Problem(name, "is not an input of this model", f"its inputs are {known}") for name in unknown]
+    if problems:
+        raise SceneError(*problems)
+
+
+# Paths of one input
+
+
+class _Path(ABC):
+    """What one motion adds to its input, over time."""
+
+    @property
+    @abstractmethod
+    def moves(self) -> bool:
+        """Whether it changes with time."""
+
+    @property
+    @abstractmethod
+    def breaks(self) -> tuple[tuple[float, int], ...]:
+        """Times at which it is not smooth (s), each with the order of the first derivative that jumps."""
+
+    @abstractmethod
+    def within(self, start: float, end: float) -> _Path:
+        """The path with its limits from within at both ends of a span of time without break inside."""
+
+    @abstractmethod
+    def at(self, t: float) -> InputState:
+        """Value, rate and acceleration at a time, each of shape (entries,)."""
+
+
+@dataclass(frozen=True)
+class _Wave(_Path):
+    """amplitude · sin(ω t + φ), or amplitude · (1 − cos(ω t + φ))."""
+
+    amplitude: FloatArray
+    angular_frequency: float
+    phase: float
+    begins_at_rest: bool
+
+    @property
+    def moves(self) -> bool:
+        return bool(np.any(self.amplitude))
+
+    @property
+    def breaks(self) -> tuple[tuple[float, int], ...]:
+        return ()
+
+    def within(self, start: float, end: float) -> _Wave:
+        return self
+
+    def at(self, t: float) -> InputState:
+        omega = self.angular_frequency
+        sine = np.sin(omega * t + self.phase)
+        cosine = np.cos(omega * t + self.phase)
+        if self.begins_at_rest:
+            value = self.amplitude * (1.0 - cosine)
+            rate = self.amplitude * omega * sine
+            return InputState(value, rate, self.amplitude * omega**2 * cosine)
+        value = self.amplitude * sine
+        rate = self.amplitude * omega * cosine
+        return InputState(value, rate, -self.amplitude * omega**2 * sine)
+
+
+@dataclass(frozen=True)
+class _Table(_Path):
+    """A piecewise polynomial, constant before its first knot and after its last.
+
+    Attributes:
+        knots: ascending times, shape (k,), s.
+        origins: time that each segment is written about, shape (k + 1,), s.
+        coefficients: of 1, s, s², s³ with s = t − origin, shape (k + 1, 4, entries).
+        breaks_at: times at which it is not smooth, with their orders.
+        first: index of the first segment that may be evaluated.
+        last: index of the last one.
+    """
+
+    knots: FloatArray
+    origins: FloatArray
+    coefficients: FloatArray
+    breaks_at: tuple[tuple[float, int], ...]
+    first: int
+    last: int
+
+    @property
+    def moves(self) -> bool:
+        return bool(np.any(np.ptp(self.coefficients[:, 0], axis=0)))
+
+    @property
+    def breaks(self) -> tuple[tuple[float, int], ...]:
+        return self.breaks_at
+
+    def within(self, start: float, end: float) -> _Table:
+        first = int(np.searchsorted(self.knots, start, side="right"))
+        last = int(np.searchsorted(self.knots, end, side="left"))
+        return replace(self, first=first, last=max(first, last))
+
+    def at(self, t: float) -> InputState:
+        # At a break the segment of the span is asked for, not that beyond it.
+        segment = int(np.searchsorted(self.knots, t, side="right"))
+        segment = min(max(segment, self.first), self.last)
+        s = t - self.origins[segment]
+        constant, linear, quadratic, cubic = self.coefficients[segment]
+        value = constant + s * (linear + s * (quadratic + s * cubic))
+        rate = linear + s * (2 * quadratic + 3 * s * cubic)
+        acceleration = 2 * quadratic + 6 * s * cubic
+        return InputState(value, rate, acceleration)
+
+
+def _path_of(motion: InputMotion) -> _Path:
+    if motion.is_table:
+        return _table_of(motion)
+    # A wave without frequency is refused where the scene is read.
+    assert motion.frequency is not None
+    angular_frequency = 2 * np.pi * motion.frequency
+    return _Wave(motion.amplitudes, angular_frequency, motion.phase, motion.wave == "one_minus_cosine")
+
+
+def _table_of(motion: InputMotion) -> _Table:
+    knots = motion.knots
+    values = motion.knot_values
+    coefficients = np.zeros((len(knots) + 1, 4, motion.entry_count))
+    # Before the first knot, and from the last one on, the value is constant.
+    coefficients[0, 0] = values[0]
+    coefficients[1:, 0] = values
+    breaks = [(time, 0) for time in motion.jumps] + [(time, 1) for time in motion.kinks]
+    if motion.interpolation == "linear":
+        coefficients[1:-1, 1] = np.diff(values, axis=0) / np.diff(knots)[:, None]
+    elif motion.interpolation == "cubic":
+        coefficients[1:-1] = _cubic_coefficients(knots, values)
+        breaks = _cubic_breaks(knots, values)
+    origins = np.concatenate([knots[:1], knots])
+    return _Table(knots, origins, coefficients, tuple(breaks), first=0, last=len(knots))
+
+
+def _cubic_breaks(knots: FloatArray, values: FloatArray) -> list[tuple[float, int]]:
+    """A spline has continuous accelerations between its ends; beyond them it rests."""
+    if not np.any(np.ptp(values, axis=0)):
+        return []
+    inside = [(time, 3) for time in knots[1:-1].tolist()]
+    return [(float(knots[0]), 2), *inside, (float(knots[-1]), 2)]
+
+
+def _cubic_coefficients(knots: FloatArray, values: FloatArray) -> FloatArray:
+    """Coefficients of the cubic spline of zero slope at both ends, shape (k − 1, 4, entries)."""
+    spacing = np.diff(knots)[:, None]
+    chord = np.diff(values, axis=0) / spacing
+    slopes = _spline_slopes(spacing, chord)
+    left = slopes[:-1]
+    right = slopes[1:]
+    quadratic = (3 * chord - 2 * left - right) / spacing
+    cubic = (left + right - 2 * chord) / spacing**2
+    return np.stack([values[:-1], left, quadratic, cubic], axis=1)
+
+
+def _spline_slopes(spacing: FloatArray, chord: FloatArray) -> FloatArray:
+    """Slopes at the knots that make accelerations continuous, zero at both ends, shape (k, entries).
+
+    The equation of an inner knot i is h_i m_(i−1) + 2 (h_(i−1) + h_i) m_i + h_(i−1) m_(i+1) = 3 (h_i d_(i−1) + h_(i−1)
+    d_i) with spacings h and slopes of chords d. It is solved by elimination downwards, then upwards: its matrix is
+    diagonally dominant and needs no pivots.
+
+    Args:
+        spacing: h, shape (k − 1, 1), s.
+        chord: d, shape (k − 1, entries), units per s.
+    """
+    before = spacing[:-1]
+    after = spacing[1:]
+    diagonal = 2 * (before + after)
+    right_side = 3 * (after * chord[:-1] + before * chord[1:])
+    inner = len(right_side)
+    for i in range(1, inner):
+        factor = after[i] / diagonal[i - 1]
+        diagonal[i] -= factor * before[i - 1]
+        right_side[i] -= factor * right_side[i - 1]
+    slopes = np.zeros((len(chord) + 1, chord.shape[1]))
+    for i in reversed(range(inner)):
+        slopes[i + 1] = (right_side[i] - before[i] * slopes[i + 2]) / diagonal[i]
+    return slopes

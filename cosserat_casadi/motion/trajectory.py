@@ -1,0 +1,234 @@
+"""What a simulation gives: the motion of a scene, with the poses, energies and figures of merit that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.poses import (
+    ActuatorStates,
+    Poses,
+    actuator_states,
+    body_poses,
+    section_poses,
+    tip_poses,
+)
+
+
+class MotionOutcome(Enum):
+    """Every way a simulation can end; the value is the sentence that a user reads. Only COMPLETED is the whole motion.
+
+    New members come last.
+    """
+
+    COMPLETED = "Motion computed to its end."
+    STEP_TOO_SMALL = (
+        "The motion ended early: no step was small enough to go on. A load may jump, or the equations may have no "
+        "solution beyond this time."
+    )
+    UNRESOLVED = (
+        "A motion of the discrete model was computed, but the rod is not resolved by its modes and nodes: allow more "
+        "of them, or a larger tolerance."
+    )
+    SINGULAR_CONSTRAINT = (
+        "The motion ended early: the constraints became dependent on each other, as in a loop that is stretched out."
+    )
+    NOT_FINITE = "The motion ended early: the equations gave a value that is not a finite number."
+    INTERRUPTED = "The motion ended early: it was interrupted."
+    NO_START = "No motion was computed: no state to start from was found."
+    NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
+
+    @property
+    def label(self) -> str:
+        """The word of the result file."""
+        return self.name.lower()
+
+
+@dataclass(frozen=True)
+class MotionProgress:
+    """How far a simulation is.
+
+    Attributes:
+        stage: what is being done, such as "simulating".
+        time: reached, s.
+        duration: to be reached, s.
+        step: size of the present time step, s.
+    """
+
+    stage: str
+    time: float
+    duration: float
+    step: float
+
+    @property
+    def share(self) -> float:
+        """Share of the duration that is reached, 0 to 1."""
+        return self.time / self.duration
+
+
+@dataclass(frozen=True)
+class MotionState:
+    """The state of a scene at one time.
+
+    Attributes:
+        x: unknowns, shape (model.size,).
+        v: their rates, 1/s.
+        a: their second derivatives, 1/s².
+        inputs: stacked inputs, shape (model.inputs.size,).
+    """
+
+    x: FloatArray
+    v: FloatArray
+    a: FloatArray
+    inputs: FloatArray
+
+
+@dataclass(frozen=True)
+class Energies:
+    """Energies of a scene at T times, each of shape (T,), J.
+
+    Attributes:
+        kinetic: of rods and bodies.
+        elastic: of the rods.
+        potential: of dead forces and gravity.
+        dissipated: by the rods' damping since the start.
+        work: done since the start by all other loads, by actuators, and by moving bases and lengths.
+        imbalance: what is left over of the balance of the other five, relative to the largest energy; without unit.
+    """
+
+    kinetic: FloatArray
+    elastic: FloatArray
+    potential: FloatArray
+    dissipated: FloatArray
+    work: FloatArray
+    imbalance: FloatArray
+
+
+@dataclass(frozen=True)
+class StepStatistics:
+    """What the time steps of a motion took.
+
+    Attributes:
+        steps: that were accepted.
+        rejected: that were tried again with a smaller size.
+        iterations: Newton iterations of all steps together.
+        jacobians: evaluations of the Jacobian.
+        smallest_step: size of the smallest accepted step, s; nan where there is none.
+        largest_step: likewise of the largest.
+    """
+
+    steps: int
+    rejected: int
+    iterations: int
+    jacobians: int
+    smallest_step: float
+    largest_step: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The end of a simulation; the whole motion only where ``converged`` says so.
+
+    Attributes:
+        model: the model that was simulated.
+        outcome: how the simulation ended.
+        message: a sentence for the user.
+        times: of the rows below, shape (T,), s.
+        x: unknowns, shape (T, model.size).
+        v: their rates, likewise, 1/s; without meaning for multipliers and tensions.
+        a: their second derivatives, likewise, 1/s².
+        inputs: stacked inputs, shape (T, model.inputs.size).
+        energy: energies at the times, and the balance between them.
+        error_estimate: estimated error of the tips' paths relative to the rods' lengths, of space and time together;
+            nan where none was made.
+        statistics: what the time steps took.
+        start: a sentence on how the motion was started.
+        interpolant: the state at a time between the first and the last: the dense output of the steps.
+        warnings: sentences on what limits the accuracy, such as a load that jumps.
+    """
+
+    model: Model
+    outcome: MotionOutcome
+    message: str
+    times: FloatArray
+    x: FloatArray
+    v: FloatArray
+    a: FloatArray
+    inputs: FloatArray
+    energy: Energies
+    error_estimate: float
+    statistics: StepStatistics
+    start: str
+    interpolant: Callable[[float], MotionState]
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether the motion was computed to its end, as asked."""
+        return self.outcome is MotionOutcome.COMPLETED
+
+    def tip(self, rod: str | None = None) -> Poses:
+        """Poses of a rod's tip, shapes (T, 3) and (T, 4); the name may be left out where there is one rod.
+
+        Raises:
+            KeyError: there is no such rod, or there are several to choose from.
+        """
+        name = self.model.rod_name(rod)
+        return tip_poses(self.model, name, self.x, self.inputs)
+
+    def section(self, rod: str | None, X: npt.ArrayLike) -> Poses:
+        """Poses of a rod's sections at abscissae X in [0, 1], shapes (T, k, 3) and (T, k, 4).
+
+        Args:
+            rod: name of the rod; None stands for the only one.
+            X: shape (k,).
+
+        Raises:
+            KeyError: there is no such rod, or there are several to choose from.
+        """
+        name = self.model.rod_name(rod)
+        return section_poses(self.model, name, X, self.x, self.inputs)
+
+    def body(self, name: str) -> Poses:
+        """Poses of a rigid body, shapes (T, 3) and (T, 4).
+
+        Raises:
+            KeyError: there is no such body.
+        """
+        if name not in self.model.body:
+            raise KeyError(_unknown(name, "a body", "bodies", list(self.model.body)))
+        return body_poses(self.model, name, self.x, self.inputs)
+
+    def actuator(self, name: str) -> ActuatorStates:
+        """Tension (N) and length (m) of a tendon, or pressure (Pa) and volume (m³) of a chamber, each of shape (T,).
+
+        Raises:
+            KeyError: there is no such actuator.
+        """
+        if name not in self.model.actuator:
+            raise KeyError(_unknown(name, "an actuator", "actuators", list(self.model.actuator)))
+        return actuator_states(self.model, name, self.x, self.inputs)
+
+    def at(self, time: float) -> MotionState:
+        """The state at any time of the motion, by the dense output of the steps.
+
+        Raises:
+            ValueError: the motion does not reach this time.
+        """
+        if len(self.times) == 0:
+            raise ValueError("the motion has no state: it was not started")
+        first = float(self.times[0])
+        last = float(self.times[-1])
+        # A nan compares as false with both ends, and is refused too.
+        if not first <= time <= last:
+            raise ValueError(f"the motion goes from {first:g} s to {last:g} s, which does not hold {time:g} s")
+        return self.interpolant(time)
+
+
+def _unknown(name: str, kind: str, plural: str, names: list[str]) -> str:
+    return f"{name!r} is not {kind} of this scene; its {plural} are {', '.join(names) or 'none'}"

@@ -1,0 +1,150 @@
+"""Accelerations and multipliers that belong to given positions and velocities.
+
+Rows of F that depend on neither v, a nor an algebraic entry are constraints g(t, x) = 0. Twice differentiated along
+the motion they are linear in a: G a + (what the motion with a = 0 makes of d²g/dt²) = 0. With the other rows, linear
+in a and in the algebraic entries, they are one linear system (E. Hairer, G. Wanner, *Solving Ordinary Differential
+Equations II*, 2nd ed., Springer 1996, section VII.1). Where a mass matrix is singular in elastic directions their
+balance says nothing of a: along them some small a is taken, and what is left of their balance is told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import chebyshev
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
+
+DEGREE = 6
+"""Degree of the polynomial that the constraints along the motion are differentiated by."""
+
+RANK = 1e-11
+"""Singular value, relative to the largest, below which a direction is one without mass."""
+
+CORRECTIONS = 3
+"""Linear solves; the equations are linear, and those after the first take away rounding."""
+
+
+@dataclass(frozen=True)
+class ConsistentStart:
+    """A start that satisfies the equations of motion as well as positions and velocities allow.
+
+    Attributes:
+        instant: the start with its accelerations and algebraic entries.
+        position_error: largest constraint left at the positions, without unit; zero where they are consistent.
+        velocity_error: largest rate of a constraint, 1/s; zero where the velocities are consistent.
+        balance_error: largest entry of the other rows; zero but for directions without mass that are out of balance.
+        massless: number of directions whose acceleration the equations leave open.
+    """
+
+    instant: Instant
+    position_error: float
+    velocity_error: float
+    balance_error: float
+    massless: int
+
+
+@dataclass(frozen=True)
+class _ConstraintsInTime:
+    """Constraints along the motion x + τ v, with their derivatives at τ = 0.
+
+    Attributes:
+        values: g, shape (m,).
+        rates: dg/dt, shape (m,), 1/s.
+        accelerations: d²g/dt² without the part of a, shape (m,), 1/s².
+    """
+
+    values: FloatArray
+    rates: FloatArray
+    accelerations: FloatArray
+
+
+def consistent_start(
+    equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float
+) -> ConsistentStart:
+    """Solve for accelerations and algebraic entries at given positions and velocities.
+
+    Nothing is repaired: errors of the positions and velocities are told, and the caller judges them.
+
+    Args:
+        equations: the equations of motion.
+        time: s.
+        x: positions, and a guess of the algebraic entries, shape (n,).
+        v: velocities, shape (n,), 1/s.
+        interval: time after the start in which the equations are smooth and the motion bends little, s; constraints
+            are differentiated in it.
+    """
+    differential = equations.differential
+    instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
+    linearisation = equations.linearised(instant)
+    constraints = _constraint_rows(linearisation, differential)
+    in_time = _in_time(equations, instant, constraints, interval)
+
+    matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
+    matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
+    inverse, massless = _pseudo_inverse(matrix)
+    for _ in range(CORRECTIONS):
+        rows = equations.residual_at(instant)
+        rows[constraints] = in_time.accelerations + matrix[constraints] @ instant.a
+        change = -inverse @ rows
+        corrected_x = np.where(differential, instant.x, instant.x + change)
+        corrected_a = np.where(differential, instant.a + change, 0.0)
+        instant = Instant(time, corrected_x, instant.v, corrected_a)
+
+    balance = equations.residual_at(instant)[~constraints]
+    return ConsistentStart(
+        instant=instant,
+        position_error=float(np.max(np.abs(in_time.values), initial=0.0)),
+        velocity_error=float(np.max(np.abs(in_time.rates), initial=0.0)),
+        balance_error=float(np.max(np.abs(balance), initial=0.0)),
+        massless=massless,
+    )
+
+
+def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Rows in which nothing but positions stands, shape (n,)."""
+    no_mass = ~np.any(linearisation.mass, axis=1)
+    no_damping = ~np.any(linearisation.damping, axis=1)
+    no_multiplier = ~np.any(linearisation.stiffness[:, ~differential], axis=1)
+    return np.asarray(no_mass & no_damping & no_multiplier)
+
+
+def _in_time(
+    equations: MotionEquations, instant: Instant, constraints: npt.NDArray[np.bool_], interval: float
+) -> _ConstraintsInTime:
+    """Differentiate the constraints along the motion, by a polynomial through values after the start.
+
+    Values before the start may belong to a piece in which the inputs moved otherwise.
+    """
+    nodes = np.cos(np.pi * np.arange(DEGREE, -1, -1) / DEGREE)
+    delays = interval * (1.0 + nodes) / 2.0
+    samples = []
+    for delay in delays:
+        moved = Instant(instant.time + delay, instant.x + delay * instant.v, instant.v, instant.a)
+        samples.append(equations.residual_at(moved)[constraints])
+    values = np.stack(samples)
+    coefficients = chebyshev.chebfit(nodes, values, DEGREE)
+    # The nodes run over two units while the interval passes.
+    stretch = 2.0 / interval
+    rates = stretch * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 1))
+    accelerations = stretch**2 * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 2))
+    return _ConstraintsInTime(values[0], np.asarray(rates), np.asarray(accelerations))
+
+
+def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:
+    """Pseudo-inverse with rows and columns scaled, and the number of directions it leaves out."""
+    rows = _scale(np.abs(matrix).max(axis=1))
+    columns = _scale((np.abs(matrix) / rows[:, None]).max(axis=0))
+    left, singular, right = np.linalg.svd(matrix / rows[:, None] / columns)
+    kept = singular > RANK * singular.max(initial=0.0)
+    inverse = (right[kept].T / singular[kept]) @ left[:, kept].T
+    missing = len(singular) - int(np.sum(kept))
+    return inverse / columns[:, None] / rows, missing
+
+
+def _scale(sizes: FloatArray) -> FloatArray:
+    """Sizes to divide by; nothing is divided where all is zero."""
+    return np.where(sizes > 0.0, sizes, 1.0)

@@ -1,0 +1,95 @@
+"""Equations of motion as the time integrator sees them: an implicit system of second order, with constraints.
+
+F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries of x; of the others, the algebraic ones
+(multipliers, tensions), only the values enter. F is linear in a. Constraints between positions make the index 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A state of motion at one time; v and a of algebraic entries are zero.
+
+    Attributes:
+        time: t, s.
+        x: unknowns, shape (n,).
+        v: their rates, shape (n,), 1/s.
+        a: their accelerations, shape (n,), 1/s².
+    """
+
+    time: float
+    x: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """The derivatives of F; the columns of algebraic entries are zero in damping and mass.
+
+    Attributes:
+        stiffness: K = ∂F/∂x, shape (n, n).
+        damping: C = ∂F/∂v, shape (n, n), s.
+        mass: M = ∂F/∂a, shape (n, n), s².
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    mass: FloatArray
+
+    @property
+    def finite(self) -> bool:
+        """Whether every entry is a finite number."""
+        matrices = (self.stiffness, self.damping, self.mass)
+        return all(bool(np.all(np.isfinite(matrix))) for matrix in matrices)
+
+
+@dataclass(frozen=True)
+class MotionEquations:
+    """Square equations F(t, x, v, a) = 0 of n unknowns.
+
+    Attributes:
+        differential: which entries of x have rates and accelerations; the others are algebraic, shape (n,).
+        residual: (t, x, v, a) ↦ F, shape (n,).
+        jacobians: (t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n).
+        residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None where one at a time
+            is as quick.
+    """
+
+    differential: npt.NDArray[np.bool_]
+    residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+    jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
+    residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns n."""
+        return len(self.differential)
+
+    def residual_at(self, instant: Instant) -> FloatArray:
+        """F at an instant, shape (n,); entries that overflow are not finite."""
+        with np.errstate(all="ignore"):
+            return self.residual(instant.time, instant.x, instant.v, instant.a)
+
+    def residual_of_stages(self, times: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        """F at s instants: times of shape (s,), the others and the result of shape (s, n)."""
+        with np.errstate(all="ignore"):
+            if self.residuals is not None:
+                return self.residuals(times, x, v, a)
+            stages = range(len(times))
+            return np.stack([self.residual(float(times[i]), x[i], v[i], a[i]) for i in stages])
+
+    def linearised(self, instant: Instant) -> Linearisation:
+        """The derivatives of F at an instant."""
+        with np.errstate(all="ignore"):
+            stiffness, damping, mass = self.jacobians(instant.time, instant.x, instant.v, instant.a)
+        return Linearisation(stiffness, damping, mass)

@@ -1,0 +1,130 @@
+"""Simplified Newton's method for the stages of one step.
+
+One Jacobian serves all stages and all iterations, and further steps while it contracts. What counts as converged is
+the error that is left in the positions, and in h times the velocities, as the contraction of the corrections foretells
+it. E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.step import stages_of
+from cosserat_casadi.numerics.step_matrices import StepMatrices
+
+ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
+"""Change of position, relative to the largest, that is rounding and not a correction."""
+
+
+class StageOutcome(Enum):
+    """How Newton's method ended in one step."""
+
+    CONVERGED = auto()
+    DIVERGED = auto()
+    NOT_FINITE = auto()
+
+
+@dataclass(frozen=True)
+class StageSolution:
+    """Where Newton's method ended in one step.
+
+    Attributes:
+        unknowns: those of the stages, as in :class:`Step`, shape (s, n).
+        outcome: how it ended.
+        iterations: corrections computed.
+        contraction: ratio of the last two corrections; 0 where there was but one.
+        residual: largest entry of F before the last correction.
+    """
+
+    unknowns: FloatArray
+    outcome: StageOutcome
+    iterations: int
+    contraction: float
+    residual: float
+
+
+@dataclass(frozen=True)
+class NewtonBounds:
+    """When Newton's method stops.
+
+    Attributes:
+        weights: what each entry of an error is multiplied by before the largest counts; 0 for algebraic ones, (n,).
+        error: weighted error that may be left.
+        iterations: most corrections of one step.
+    """
+
+    weights: FloatArray
+    error: float
+    iterations: int
+
+    def length(self, change: FloatArray) -> float:
+        """Largest weighted entry of changes of position, shape (…, n); not finite where one of them is not."""
+        return float(np.max(np.abs(change) * self.weights, initial=0.0))
+
+
+def solve_stages(
+    equations: MotionEquations, matrices: StepMatrices, start: Instant, guess: FloatArray, bounds: NewtonBounds
+) -> StageSolution:
+    """Solve for the stages of a step.
+
+    Args:
+        equations: the equations of motion.
+        matrices: the factorised linear systems, which know the method and the step h.
+        start: where the step begins.
+        guess: first iterate of the unknowns, shape (s, n).
+        bounds: when to stop.
+    """
+    method = matrices.method
+    to_unknowns = np.where(equations.differential, matrices.step**-2, 1.0)
+    rounding = ROUNDING * bounds.length(start.x)
+    allowed = max(bounds.error, rounding)
+    unknowns = guess
+    length_before = np.inf
+    contraction = 0.0
+    for iteration in range(1, bounds.iterations + 1):
+        stages = stages_of(method, equations.differential, start, matrices.step, unknowns)
+        residuals = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
+        largest = float(np.max(np.abs(residuals), initial=0.0))
+        corrections = matrices.corrections(residuals)
+        # A h²a is h times the change of v; that of x, A² h²a, is never larger, as no row of |A| has a sum above one.
+        length = bounds.length(method.matrix @ corrections)
+        if not np.isfinite(length + largest):
+            return StageSolution(unknowns, StageOutcome.NOT_FINITE, iteration, contraction, largest)
+        unknowns = unknowns + to_unknowns * corrections
+        if iteration > 1:
+            contraction = length / length_before
+        outcome = _outcome(length, contraction, allowed, bounds.iterations - iteration)
+        if outcome is not None:
+            return StageSolution(unknowns, outcome, iteration, contraction, largest)
+        length_before = length
+    return StageSolution(unknowns, StageOutcome.DIVERGED, bounds.iterations, contraction, largest)
+
+
+def _outcome(length: float, contraction: float, allowed: float, iterations_left: int) -> StageOutcome | None:
+    """How the iteration ends with a correction; None where another one is due.
+
+    Args:
+        length: of the correction, weighted.
+        contraction: ratio to the one before; 0 for the first.
+        allowed: weighted error that may be left.
+        iterations_left: corrections that may follow.
+    """
+    # Where corrections shrink, what is left after this one is shorter than it; where they do not, it is rounding.
+    if length <= allowed:
+        return StageOutcome.CONVERGED
+    if contraction >= 1.0:
+        return StageOutcome.DIVERGED
+    if contraction == 0.0:
+        return None
+    left = length * contraction / (1.0 - contraction)
+    if left <= allowed:
+        return StageOutcome.CONVERGED
+    left_at_last = left * contraction**iterations_left
+    if left_at_last > allowed:
+        return StageOutcome.DIVERGED
+    return None

@@ -1,0 +1,145 @@
+"""A step of a collocation method, from its stages to any time in it.
+
+The unknowns of the stages are accelerations of the differential entries, a_j, and values of the algebraic ones. Their
+polynomial of degree s − 1 through the stages, integrated twice from the start of the step, is the motion in it:
+x(t₀ + θh) = x₀ + θh v₀ + h² Σ_j a_j ∫₀^θ ∫₀^σ ℓ_j, and v its derivative. E. Hairer, S. P. Nørsett, G. Wanner, *Solving
+Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.motion_equations import Instant
+
+
+@dataclass(frozen=True)
+class Stages:
+    """The instants at which a step collocates, side by side.
+
+    Attributes:
+        times: t₀ + c_i h, shape (s,), s.
+        x: shape (s, n).
+        v: shape (s, n), 1/s.
+        a: shape (s, n), 1/s².
+    """
+
+    times: FloatArray
+    x: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a motion.
+
+    Attributes:
+        method: the collocation method.
+        differential: which entries have accelerations, shape (n,).
+        start: where the step begins; its acceleration is that of the step before.
+        size: h, s.
+        unknowns: those of the stages: accelerations of differential entries, values of algebraic ones, shape (s, n).
+        end: where the step ends.
+        error: estimated error of the step over its tolerance; nan where none was estimated.
+        iterations: Newton iterations of the step as it was taken.
+        residual: largest entry of F at the stages before the last correction.
+        contraction: ratio of the last two corrections; 0 where there was but one.
+    """
+
+    method: Collocation
+    differential: npt.NDArray[np.bool_]
+    start: Instant
+    size: float
+    unknowns: FloatArray
+    end: Instant
+    error: float
+    iterations: int
+    residual: float
+    contraction: float
+
+    def at(self, time: float) -> Instant:
+        """The motion at a time of the step; its ends are those of the step, outside it is extrapolated.
+
+        Positions have an error of order s + 2 in h, velocities of s + 1, accelerations and algebraic entries of s.
+
+        Args:
+            time: s.
+        """
+        if time == self.end.time:
+            return self.end
+        share = (time - self.start.time) / self.size
+        return motion_at(self, share, time)
+
+
+def stages_of(
+    method: Collocation, differential: npt.NDArray[np.bool_], start: Instant, size: float, unknowns: FloatArray
+) -> Stages:
+    """Instants that belong to unknowns of the stages.
+
+    Args:
+        method: the collocation method.
+        differential: which entries have accelerations, shape (n,).
+        start: where the step begins.
+        size: h, s.
+        unknowns: as in :class:`Step`, shape (s, n).
+    """
+    a = np.where(differential, unknowns, 0.0)
+    v = np.where(differential, start.v + size * (method.matrix @ a), 0.0)
+    straight_on = start.x + size * method.nodes[:, None] * start.v
+    x = np.where(differential, straight_on + size**2 * (method.matrix_squared @ a), unknowns)
+    times = start.time + method.nodes * size
+    return Stages(times, x, v, a)
+
+
+def end_of(
+    method: Collocation,
+    differential: npt.NDArray[np.bool_],
+    start: Instant,
+    size: float,
+    unknowns: FloatArray,
+    time: float,
+) -> Instant:
+    """Where a step ends; a method whose last stage is not the end extrapolates accelerations and algebraic entries.
+
+    Args:
+        method: the collocation method.
+        differential: which entries have accelerations, shape (n,).
+        start: where the step begins.
+        size: h, s.
+        unknowns: as in :class:`Step`, shape (s, n).
+        time: of the end, s.
+    """
+    accelerations = np.where(differential, unknowns, 0.0)
+    at_end = method.values_at(1.0) @ unknowns
+    straight_on = start.x + size * start.v
+    x = np.where(differential, straight_on + size**2 * (method.position_weights @ accelerations), at_end)
+    v = np.where(differential, start.v + size * (method.weights @ accelerations), 0.0)
+    a = np.where(differential, at_end, 0.0)
+    return Instant(time, x, v, a)
+
+
+def motion_at(step: Step, share: float, time: float) -> Instant:
+    """The polynomial of a step at a share θ of it."""
+    method = step.method
+    differential = step.differential
+    start = step.start
+    accelerations = np.where(differential, step.unknowns, 0.0)
+    values = method.values_at(share) @ step.unknowns
+    displacement = share * step.size * start.v + step.size**2 * (method.double_integrals_at(share) @ accelerations)
+    velocity = start.v + step.size * (method.integrals_at(share) @ accelerations)
+    x = np.where(differential, start.x + displacement, values)
+    v = np.where(differential, velocity, 0.0)
+    a = np.where(differential, values, 0.0)
+    return Instant(time, x, v, a)
+
+
+def extrapolated(step: Step, size: float) -> FloatArray:
+    """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
+    shares = 1.0 + step.method.nodes * (size / step.size)
+    return step.method.values_at_stages(shares) @ step.unknowns

@@ -1,0 +1,145 @@
+"""The linear systems of one step: the dynamic stiffness at the eigenvalues of the method.
+
+With the accelerations a_j and the algebraic values as unknowns of the stages, one Jacobian (K, C, M) for all of them
+and the eigenvalues μ of A, the system of the stages falls apart into dynamic stiffnesses D(p) = K + p C + p² M at
+p = 1/(hμ): real ones and one of each conjugate pair. Its unknowns are changes of position, and multipliers as they
+are: in these units no power of h is lost between rows of balance and rows of constraints once rows and columns are
+scaled (C. L. Bottasso, D. Dopico, L. Trainelli, *On the optimal scaling of index three DAEs in multibody dynamics*,
+Multibody System Dynamics 19 (2008) 3–20). The method of eigenvalues: E. Hairer, G. Wanner, *Solving Ordinary
+Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.motion_equations import Linearisation
+
+SINGULAR = 1e15
+"""Condition, rows and columns scaled, beyond which a dynamic stiffness counts as singular."""
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """A change of state at the end of a step.
+
+    Attributes:
+        position: shape (n,).
+        velocity: shape (n,), 1/s.
+    """
+
+    position: FloatArray
+    velocity: FloatArray
+
+
+@dataclass(frozen=True)
+class StepMatrices:
+    """The factorised linear systems of a step.
+
+    Inverses, not factors: NumPy keeps no factors, and what rounding adds by them is less than what one Jacobian for
+    all stages leaves to the next iteration.
+
+    Attributes:
+        method: the collocation method.
+        step: h, s.
+        linearisation: K, C and M they are made of.
+        inverses: D(p)⁻¹ at each eigenvalue of the method, each of shape (n, n), real or complex.
+        shares: accelerations times h² over changes of position, 1/μ²; 1 for algebraic entries, shape (k, n).
+    """
+
+    method: Collocation
+    step: float
+    linearisation: Linearisation
+    inverses: Sequence[npt.NDArray[Any]]
+    shares: npt.NDArray[np.complex128]
+
+    def corrections(self, residuals: FloatArray) -> FloatArray:
+        """Newton's corrections of all stages.
+
+        Args:
+            residuals: F at the stages, shape (s, n).
+
+        Returns:
+            changes of h² a for differential entries, of the values for algebraic ones, shape (s, n).
+        """
+        transformed = self.method.to_eigenvectors @ residuals
+        solutions = np.empty_like(transformed)
+        for k, inverse in enumerate(self.inverses):
+            solutions[k] = inverse @ transformed[k]
+        changes = self.method.from_eigenvectors @ (self.shares * solutions)
+        return np.asarray(-changes.real)
+
+    def filtered(self, deviation: Deviation) -> Deviation:
+        """(1 − hμJ)⁻¹ applied to a deviation, J the Jacobian of the equations as a system of first order.
+
+        What stiff directions would damp at once is taken out of it, and what a constraint forbids. With a complex
+        eigenvalue μ it is the real part.
+
+        Args:
+            deviation: what to filter.
+        """
+        inverse = self.inverses[0]
+        rate = 1.0 / (self.step * self.method.eigenvalues[0])
+        position = deviation.position
+        velocity = deviation.velocity
+        momentum = self.linearisation.mass @ (rate * position + velocity)
+        impulse = momentum + self.linearisation.damping @ position
+        changed = inverse @ (rate * impulse)
+        return Deviation(changed.real, (rate * (changed - position)).real)
+
+
+def step_matrices(
+    method: Collocation, step: float, linearisation: Linearisation, differential: npt.NDArray[np.bool_]
+) -> StepMatrices | None:
+    """Factorise the linear systems of a step.
+
+    Args:
+        method: the collocation method.
+        step: h, s.
+        linearisation: K, C and M.
+        differential: which entries have accelerations, shape (n,).
+
+    Returns:
+        the matrices; None where one of them is singular to rounding.
+    """
+    inverses = []
+    shares = np.ones((len(method.eigenvalues), len(differential)), dtype=np.complex128)
+    for k, eigenvalue in enumerate(method.eigenvalues):
+        rate = 1.0 / (step * eigenvalue)
+        if eigenvalue.imag == 0.0:
+            rate = rate.real
+        stiffness = linearisation.stiffness + rate * linearisation.damping + rate**2 * linearisation.mass
+        inverse = _inverse(stiffness)
+        if inverse is None:
+            return None
+        inverses.append(inverse)
+        shares[k, differential] = 1.0 / eigenvalue**2
+    return StepMatrices(method, step, linearisation, inverses, shares)
+
+
+def _inverse(matrix: npt.NDArray[Any]) -> npt.NDArray[Any] | None:
+    """Inverse by way of a matrix whose largest entry of every row and column is one; None where it is singular."""
+    sizes = np.abs(matrix)
+    rows = sizes.max(axis=1)
+    if not np.all(rows > 0.0):
+        return None
+    columns = (sizes / rows[:, None]).max(axis=0)
+    if not np.all(columns > 0.0):
+        return None
+    scaled = matrix / rows[:, None] / columns
+    try:
+        inverse = np.linalg.inv(scaled)
+    except np.linalg.LinAlgError:
+        return None
+    condition = np.linalg.norm(scaled, 1) * np.linalg.norm(inverse, 1)
+    # Not "condition > bound": a condition that is not a number must count as singular too.
+    if not condition <= SINGULAR:
+        return None
+    return np.asarray(inverse / columns[:, None] / rows)

@@ -1,0 +1,292 @@
+"""The animation of a motion: rods, bodies and the paths of tips in axes that hold the whole motion.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import textwrap
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from subprocess import CalledProcessError
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
+from cosserat_casadi.files import write_atomically, write_errors
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour
+from cosserat_casadi.plots.figure import figure_class
+from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
+from cosserat_casadi.plots.scenery import CLAMP, draw_supports
+
+FORMATS = (".gif", ".mp4")
+"""Suffixes that an animation may have."""
+
+FRAME_RATE = 25
+"""Frames a second; a GIF counts the time between two in hundredths of a second, so that 30 would run too fast."""
+
+MOST_FRAMES = 500
+"""Frames of an animation, all of which are held in memory; of a longer one they are further apart."""
+
+DPI = 100
+
+MARGIN = 0.08
+"""Free room around the motion, relative to its extent."""
+
+TITLE_LETTERS = 70
+"""Letters of a title in one line."""
+
+TICKS = 5
+"""Most intervals between the ticks of an axis."""
+
+
+class AnimationFailedError(CosseratError):
+    """The program that writes MP4 has failed."""
+
+    def __init__(self, exit_code: int) -> None:
+        super().__init__(f"ffmpeg could not write the animation and ended with exit code {exit_code}: write .gif")
+
+
+class AnimationUnavailableError(CosseratError):
+    """The program that writes MP4 is not there."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "MP4 needs the program ffmpeg, which is not on the PATH: install it with your system's package manager "
+            "(apt install ffmpeg, brew install ffmpeg), or write .gif"
+        )
+
+
+def check_animation_path(path: str | Path) -> None:
+    """Refuse an animation that cannot be made, before any work is done for it.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        problem = f"{path} has no suffix of an animation that can be made"
+        raise SceneError(Problem("--animation", problem, f"use one of {', '.join(FORMATS)}"))
+    figure_class()
+    if suffix == ".mp4":
+        from matplotlib.animation import FFMpegWriter
+
+        if not FFMpegWriter.isAvailable():
+            raise AnimationUnavailableError
+
+
+def frame_times(motion: Motion, speed: float = 1.0) -> FloatArray:
+    """Times of the frames of an animation, evenly spaced over the motion, both ends among them.
+
+    Args:
+        motion: at least one time of it was computed.
+        speed: 1 shows the motion as fast as it is, 0.1 ten times slower.
+
+    Returns:
+        shape (frames,), s; at most FRAME_RATE a second, and at most MOST_FRAMES.
+    """
+    first = motion.times[0]
+    last = motion.times[-1]
+    shown_seconds = (last - first) / speed
+    intervals = int(np.clip(np.floor(FRAME_RATE * shown_seconds), 1, MOST_FRAMES - 1))
+    return np.linspace(first, last, intervals + 1)
+
+
+def save_animation(
+    motion: Motion, file: str | Path, *, speed: float = 1.0, progress: Callable[[float], None] | None = None
+) -> None:
+    """Draw the animation of a motion into a file, whole or not at all.
+
+    Args:
+        motion: at least one time of it was computed.
+        file: its suffix is one of FORMATS.
+        speed: 1 shows the motion as fast as it is, 0.1 ten times slower.
+        progress: receives the share of the frames that are drawn.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
+        AnimationFailedError: ffmpeg gives up, as where it was built without H.264.
+        WriteError: the file cannot be written, as on a full disk.
+    """
+    check_animation_path(file)
+    path = Path(file)
+    times = frame_times(motion, speed)
+    film = _Film(motion, times, speed)
+    shown_seconds = (times[-1] - times[0]) / speed
+    # A motion that stopped at its start is one picture, for any time.
+    seconds_a_frame = shown_seconds / (len(times) - 1) or 1 / FRAME_RATE
+    with write_errors(path), _writer_of(film.figure, path.suffix.lower(), seconds_a_frame) as (writer, drawn):
+        for index in range(len(times)):
+            film.show(index)
+            writer.grab_frame()
+            if progress is not None:
+                progress((index + 1) / len(times))
+        _finish(writer)
+        write_atomically(path, drawn.read_bytes())
+
+
+def _finish(writer: Any) -> None:
+    """Write what is drawn.
+
+    Raises:
+        AnimationFailedError: ffmpeg gives up.
+    """
+    try:
+        writer.finish()
+    except CalledProcessError as failure:
+        raise AnimationFailedError(failure.returncode) from failure
+
+
+@contextmanager
+def _writer_of(figure: Any, suffix: str, seconds_a_frame: float) -> Iterator[tuple[Any, Path]]:
+    """A writer of frames, and the file that it fills in a folder that is gone afterwards."""
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    with tempfile.TemporaryDirectory() as folder:
+        # Writers know the format by the suffix, which a file that is moved to its place later cannot have.
+        drawn = Path(folder) / f"motion{suffix}"
+        if suffix == ".gif":
+            writer = PillowWriter(fps=_rate_of_gif(seconds_a_frame))
+        else:
+            writer = FFMpegWriter(fps=1 / seconds_a_frame)
+        writer.setup(figure, str(drawn), dpi=DPI)
+        try:
+            yield writer, drawn
+        except BaseException:
+            # ffmpeg waits for more frames until it is told that there are none.
+            if isinstance(writer, FFMpegWriter):
+                with suppress(CalledProcessError, OSError):
+                    writer.finish()
+            raise
+
+
+def _rate_of_gif(seconds_a_frame: float) -> float:
+    """Frames a second such that the writer, which cuts off to thousandths of a second, comes to whole hundredths."""
+    hundredths = max(1, round(100 * seconds_a_frame))
+    thousandths = 10 * hundredths + 0.5
+    return 1000 / thousandths
+
+
+@dataclass(frozen=True)
+class _Moving:
+    """A line that is led through other points from frame to frame.
+
+    Attributes:
+        line: of matplotlib.
+        points: by frame, shape (frames, k, 3), m; of a trail the one point that is reached, shape (frames, 3).
+    """
+
+    line: Any
+    points: FloatArray
+
+    def at(self, index: int) -> FloatArray:
+        """Points of a frame, shape (k, 3)."""
+        if self.points.ndim == 3:
+            return np.asarray(self.points[index])
+        return self.points[: index + 1]
+
+
+class _Film:
+    """A figure that shows one time of a motion after the other.
+
+    Attributes:
+        figure: matplotlib.figure.Figure, of the first time.
+    """
+
+    def __init__(self, motion: Motion, times: FloatArray, speed: float) -> None:
+        states = [motion.at(float(time)) for time in times]
+        x = np.array([state.x for state in states])
+        inputs = np.array([state.inputs for state in states])
+        shapes = moving_shapes(motion.model, times, x, inputs)
+        projection = None
+        if shapes.plane is None:
+            projection = "3d"
+
+        self.figure = figure_class()(figsize=(6.4, 4.8), layout="constrained")
+        title = textwrap.fill(motion.model.scene.title or "Untitled scene", TITLE_LETTERS)
+        self.figure.suptitle(title, fontsize=11, fontweight="bold")
+        axes = self.figure.add_subplot(projection=projection)
+        self._times = times
+        self._speed = speed
+        self._converged = motion.converged
+        self._canvas = Canvas(axes, shapes.plane, shapes.size)
+        self._lines = self._draw(motion, shapes)
+        draw_supports(self._canvas, motion.model.scene)
+        self._set_limits(shapes)
+        handles, labels = axes.get_legend_handles_labels()
+        # One rod needs no name.
+        if len(shapes.rods) > 1:
+            self.figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+        self.show(0)
+        # Laid out once: a layout for every frame would let the axes jump about.
+        self.figure.draw_without_rendering()
+        self.figure.set_layout_engine("none")
+
+    def show(self, index: int) -> None:
+        """Lead all lines to a frame, and write its time over them."""
+        for moving in self._lines:
+            self._canvas.move(moving.line, moving.at(index))
+        colour = PLAIN_TEXT
+        if not self._converged:
+            colour = FAILURE
+        self._canvas.axes.set_title(self._time_words(index), fontsize=10, color=colour)
+
+    def _draw(self, motion: Motion, shapes: MovingShapes) -> list[_Moving]:
+        """Draw all that moves; returns it."""
+        canvas = self._canvas
+        lines = []
+        for path in shapes.followed.values():
+            trail = canvas.line(path[:1], color="0.55", linewidth=1.2)
+            lines.append(_Moving(trail, path))
+        for name, outlines in shapes.outlines.items():
+            body = canvas.line(outlines[0], color=BODIES, linewidth=2.0, label=name)
+            lines.append(_Moving(body, outlines))
+        for index, (name, centre_lines) in enumerate(shapes.rods.items()):
+            rod = canvas.line(centre_lines[0], color=rod_colour(index), linewidth=3.5, label=name)
+            lines.append(_Moving(rod, centre_lines))
+            if motion.model.discrete.unloaded.floating_base(name) is None:
+                bases = centre_lines[:, :1]
+                lines.append(_Moving(canvas.markers(bases[0], **CLAMP), bases))
+        return lines
+
+    def _set_limits(self, shapes: MovingShapes) -> None:
+        """Axes with room for the whole motion, and of one scale."""
+        canvas = self._canvas
+        canvas.label_axes()
+        canvas.axes.locator_params(nbins=TICKS)
+        if canvas.plane is None:
+            canvas.equalise(shapes.points)
+            return
+        points = shapes.points[:, canvas.plane]
+        highest = points.max(axis=0)
+        lowest = points.min(axis=0)
+        centre = (highest + lowest) / 2
+        half_width = (0.5 + MARGIN) * shapes.size
+        limits = np.stack([centre - half_width, centre + half_width], axis=1)
+        canvas.axes.set(xlim=limits[0], ylim=limits[1])
+        canvas.axes.set_aspect("equal", adjustable="box")
+        canvas.axes.grid(alpha=0.3)
+
+    def _time_words(self, index: int) -> str:
+        """The time of a frame, with as many digits as tell it from the next, and the speed where it is not real."""
+        interval = self._times[-1] / max(1, len(self._times) - 1)
+        digits = 1
+        if interval > 0:
+            digits = max(1, int(np.ceil(-np.log10(interval))))
+        words = f"t = {self._times[index]:.{digits}f} s"
+        if self._speed != 1.0:
+            words += f", at {self._speed:g} of its speed"
+        if not self._converged:
+            words += ", not converged"
+        return words

@@ -1,0 +1,259 @@
+"""The figure of a motion: shapes and paths of tips over time, inputs, energies and their balance.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import Input
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.trajectory import Energies, Motion
+from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_colour
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
+from cosserat_casadi.plots.scenery import CLAMP, draw_supports
+
+SHAPES = 12
+"""Shapes that are drawn of a motion, evenly spaced in time, both ends among them."""
+
+PALEST = 0.18
+"""Share of its colour that the first shape has; the last has all of it."""
+
+TIME_MAP = "viridis_r"
+"""Colours of time along a path: light at the start, dark at the end, and apart for colour-blind readers."""
+
+LIGHTEST = 0.12
+"""Share of that map that is left out at its light end, which white paper swallows."""
+
+TICKS = 6
+"""Most intervals between the ticks of an axis in space."""
+
+STROKES = ("-", "--", ":")
+"""Strokes of the curves of a panel, each used for all colours before the next."""
+
+LEGEND_ROWS = 8
+"""Entries of a legend beside a panel, in one column."""
+
+NOTHING = 1e-12
+"""Share of the largest value below which a curve counts as zero."""
+
+
+def save_motion_plot(motion: Motion, file: str | Path) -> None:
+    """Draw a motion into a file, whole or not at all; the same motion gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_motion(motion), file)
+
+
+def plot_motion(motion: Motion) -> Any:
+    """Figure of a motion.
+
+    Left the rods at SHAPES times, early pale and late strong, with the outlines of bodies; in the plane where all of
+    the motion lies in one. The paths of tips and bodies are coloured by time, their ends marked. Right, over time: the
+    inputs that move, one panel a field and unit; the energies; the imbalance between them.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    moving = _moving_inputs(motion)
+    panel_count = len(moving) + 2
+    figure = figure_class()(figsize=(13.5, max(6.8, 1.9 * panel_count)), layout="constrained")
+    add_title(figure, motion.model.scene.title)
+    # A motion that was not started has nothing to show but why.
+    if len(motion.times) == 0:
+        figure.text(0.5, 0.5, motion.message, color=FAILURE, ha="center", wrap=True)
+        return figure
+
+    grid = figure.add_gridspec(panel_count, 2, width_ratios=(1.25, 1.0))
+    shapes = moving_shapes(motion.model, motion.times, motion.x, motion.inputs)
+    canvas = _add_canvas(figure, grid[:, 0], shapes)
+    _draw_shapes(canvas, motion, shapes)
+    _draw_paths(figure, canvas, shapes)
+    canvas.label_axes()
+    canvas.axes.locator_params(nbins=TICKS)
+    canvas.equalise(shapes.points)
+    _draw_subtitle(canvas.axes, motion)
+    # Below the axes, where it covers no shape.
+    figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=4, fontsize=9)
+
+    panels = [figure.add_subplot(grid[row, 1]) for row in range(panel_count)]
+    # The panels of the energies and of their imbalance come last.
+    for panel, (quantity, curves) in zip(panels[:-2], moving.items(), strict=True):
+        _draw_curves(panel, motion.times, curves)
+        panel.set_ylabel(quantity)
+    _draw_curves(panels[-2], motion.times, _energy_curves(motion.energy))
+    panels[-2].set_ylabel("energy, J")
+    _draw_imbalance(panels[-1], motion)
+    for panel in panels:
+        _set_time_limits(panel, motion.times)
+    for panel in panels[:-1]:
+        panel.tick_params(labelbottom=False)
+    panels[-1].set_xlabel("time, s")
+    return figure
+
+
+def _add_canvas(figure: Any, cell: Any, shapes: MovingShapes) -> Canvas:
+    projection = None
+    if shapes.plane is None:
+        projection = "3d"
+    return Canvas(figure.add_subplot(cell, projection=projection), shapes.plane, shapes.size)
+
+
+def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
+    """Draw rods and bodies at a few times, and where the rods begin and are held."""
+    rows = shown_rows(motion.times)
+    for order, row in enumerate(rows):
+        share = PALEST + (1 - PALEST) * (order + 1) / len(rows)
+        last = order == len(rows) - 1
+        for index, (name, lines) in enumerate(shapes.rods.items()):
+            label = name if last else None
+            canvas.line(lines[row], color=_faded(rod_colour(index), share), linewidth=2.5, label=label)
+        for name, outlines in shapes.outlines.items():
+            label = name if last else None
+            canvas.line(outlines[row], color=_faded(BODIES, share), linewidth=1.8, label=label)
+    for name, lines in shapes.rods.items():
+        if motion.model.discrete.unloaded.floating_base(name) is None:
+            canvas.markers(lines[-1, :1], **CLAMP)
+    draw_supports(canvas, motion.model.scene)
+
+
+def shown_rows(times: FloatArray) -> list[int]:
+    """Rows of the shapes that are drawn: those next to times that are evenly spaced over the motion."""
+    wanted = np.linspace(times[0], times[-1], SHAPES)
+    nearest = np.abs(times - wanted[:, None]).argmin(axis=1)
+    return sorted(set(nearest.tolist()))
+
+
+def _faded(colour: str, share: float) -> tuple[float, float, float]:
+    """A colour mixed with white, of which it keeps this share; not transparent, so that crossings do not darken."""
+    from matplotlib.colors import to_rgb
+
+    red, green, blue = (1 - share * (1 - component) for component in to_rgb(colour))
+    return red, green, blue
+
+
+def _draw_paths(figure: Any, canvas: Canvas, shapes: MovingShapes) -> None:
+    """Draw the paths of tips and bodies, coloured by time, with their ends marked."""
+    start_label: str | None = "start of a path"
+    end_label: str | None = "its end"
+    style = {
+        "cmap": _time_colours(),
+        "linewidths": 2.2,
+        "zorder": 4,
+        "clim": (shapes.times[0], shapes.times[-1]),
+    }
+    drawn = None
+    for path in shapes.followed.values():
+        if len(path) > 1:
+            drawn = canvas.shaded_line(path, shapes.times, **style)
+        start_style = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "0.1"}
+        end_style = {"marker": "D", "markersize": 6, "color": "0.1"}
+        canvas.markers(path[:1], zorder=5, label=start_label, **start_style)
+        canvas.markers(path[-1:], zorder=5, label=end_label, **end_style)
+        # The legend names the marks once.
+        start_label = None
+        end_label = None
+    if drawn is not None:
+        figure.colorbar(drawn, ax=canvas.axes, label="time, s", location="left", shrink=0.6, pad=0.04)
+
+
+def _time_colours() -> Any:
+    """The colour map of time."""
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(colormaps[TIME_MAP](np.linspace(LIGHTEST, 1.0, 256)))
+
+
+def _draw_subtitle(axes: Any, motion: Motion) -> None:
+    """How good the motion is, or in red how the simulation ended instead."""
+    style = {"fontsize": 10, "wrap": True}
+    if not motion.converged:
+        axes.set_title(motion.message, color=FAILURE, **style)
+        return
+    parts = [f"{motion.statistics.steps:,} steps"]
+    if np.isfinite(motion.error_estimate):
+        parts.append(f"estimated error of the tip's path {motion.error_estimate:.0e} ℓ")
+    axes.set_title("; ".join(parts), color=PLAIN_TEXT, **style)
+
+
+def _moving_inputs(motion: Motion) -> dict[str, dict[str, FloatArray]]:
+    """Numbers of the inputs that change, by the words of an axis, such as "force, N", and by column, shape (T,)."""
+    moving: dict[str, dict[str, FloatArray]] = {}
+    if len(motion.times) == 0:
+        return moving
+    layout = motion.model.inputs
+    entries = {index: entry for entry, span in layout for index in range(span.start, span.stop)}
+    for column, index in column_indices(layout).items():
+        values = motion.inputs[:, index]
+        if np.ptp(values) > NOTHING * np.abs(values).max():
+            # Forces and tensions have one unit, and seldom one size: they share no axis.
+            moving.setdefault(_axis_words(entries[index]), {})[column] = values
+    return moving
+
+
+def _axis_words(entry: Input) -> str:
+    if entry.unit == "1":
+        return entry.field
+    return f"{entry.field}, {entry.unit}"
+
+
+def _energy_curves(energy: Energies) -> dict[str, FloatArray]:
+    """The energies that are not zero throughout, by name."""
+    curves = {field.name: getattr(energy, field.name) for field in fields(energy) if field.name != "imbalance"}
+    largest = max(np.abs(values).max() for values in curves.values())
+    return {name: values for name, values in curves.items() if np.abs(values).max() > NOTHING * largest}
+
+
+def _draw_curves(panel: Any, times: FloatArray, curves: dict[str, FloatArray]) -> None:
+    """Draw curves over time with a legend beside the panel."""
+    panel.grid(alpha=0.3)
+    for index, (name, values) in enumerate(curves.items()):
+        stroke = STROKES[index // len(CATEGORIES) % len(STROKES)]
+        colour = CATEGORIES[index % len(CATEGORIES)]
+        panel.plot(times, values, color=colour, linestyle=stroke, linewidth=1.6, label=name)
+    if not curves:
+        _say(panel, "zero")
+        return
+    columns = -(-len(curves) // LEGEND_ROWS)
+    # Beside the panel: inside it would cover a curve sooner or later.
+    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns, fontsize=9, frameon=False)
+
+
+def _draw_imbalance(panel: Any, motion: Motion) -> None:
+    """Draw the magnitude of the imbalance by powers of ten; where it is zero there is no point."""
+    panel.grid(alpha=0.3)
+    panel.set_ylabel("imbalance /\nlargest energy")
+    magnitude = np.abs(motion.energy.imbalance)
+    positive = magnitude > 0
+    if not positive.any():
+        _say(panel, "zero")
+        return
+    panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), color="0.2", linewidth=1.4)
+
+
+def _say(panel: Any, word: str) -> None:
+    panel.text(0.5, 0.5, word, ha="center", va="center", color="0.5", transform=panel.transAxes)
+    panel.set_yticks([])
+
+
+def _set_time_limits(panel: Any, times: FloatArray) -> None:
+    """Give all panels the same axis of time."""
+    duration = times[-1] - times[0]
+    # A motion that stopped at its start has one time, and limits need two.
+    margin = 0.02 * duration or 1.0
+    panel.set_xlim(times[0] - margin, times[-1] + margin)

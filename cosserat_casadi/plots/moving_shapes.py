@@ -1,0 +1,90 @@
+"""Where the rods and bodies of a motion lie over time: what its figure and its animation are drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.poses import body_poses, section_poses
+from cosserat_casadi.plots.canvas import FLAT, SPACE, Plane
+from cosserat_casadi.plots.scenery import body_corners
+
+SECTIONS = np.linspace(0.0, 1.0, 101)
+"""Abscissae at which rods are drawn."""
+
+PLANES: tuple[Plane, ...] = ((0, 2), (0, 1), (1, 2))
+"""Planes that a motion may lie in, in the order in which they are tried."""
+
+
+@dataclass(frozen=True)
+class MovingShapes:
+    """Lines in world axes at T times.
+
+    Attributes:
+        times: shape (T,), s.
+        rods: centre lines at SECTIONS, by rod, shape (T, len(SECTIONS), 3), m.
+        outlines: closed outlines of bodies, by body, shape (T, k, 3), m.
+        followed: points whose paths are drawn, by what they are of, shape (T, 3), m.
+    """
+
+    times: FloatArray
+    rods: dict[str, FloatArray]
+    outlines: dict[str, FloatArray]
+    followed: dict[str, FloatArray]
+
+    @property
+    def points(self) -> FloatArray:
+        """All points of all times, shape (n, 3), m."""
+        lines = [*self.rods.values(), *self.outlines.values(), *self.followed.values()]
+        return np.concatenate([line.reshape(-1, 3) for line in lines])
+
+    @property
+    def size(self) -> float:
+        """Largest extent of the whole motion, m."""
+        extents = np.ptp(self.points, axis=0)
+        return float(extents.max())
+
+    @property
+    def plane(self) -> Plane | None:
+        """The plane along two world axes that holds the whole motion; None where there is none."""
+        extents = np.ptp(self.points, axis=0)
+        for plane in PLANES:
+            (across,) = set(SPACE) - set(plane)
+            if extents[across] <= FLAT * self.size:
+                return plane
+        return None
+
+
+def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatArray) -> MovingShapes:
+    """Lines of all rods and bodies.
+
+    Args:
+        model: the model.
+        times: shape (T,), s; at least one.
+        x: unknowns there, shape (T, model.size).
+        inputs: stacked inputs there, shape (T, model.inputs.size).
+    """
+    rods = {name: section_poses(model, name, SECTIONS, x, inputs).position for name in model.discrete.rods}
+    outlines = {}
+    followed = {}
+    carrying = {joint.rod for joint in model.scene.joints}
+    held = {support.rod for support in model.scene.supports}
+    for name, lines in rods.items():
+        if name in held:
+            # The tip rests; the middle does not.
+            followed[name] = lines[:, len(SECTIONS) // 2]
+        elif name not in carrying:
+            # The tips of rods that carry a body go where the body goes, whose own path says it once.
+            followed[name] = lines[:, -1]
+    for body in model.scene.bodies:
+        poses = body_poses(model, body.name, x, inputs)
+        world_R_body = rotations(poses.quaternion)
+        corners = body_corners(model.scene, body)
+        closed = np.concatenate([corners, corners[:1]])
+        outlines[body.name] = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, closed)
+        followed[body.name] = poses.position
+    return MovingShapes(times, rods, outlines, followed)

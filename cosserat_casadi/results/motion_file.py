@@ -1,0 +1,244 @@
+"""The files of a motion: JSON with everything, CSV and Parquet with a row a time, NPZ with arrays by dotted name.
+
+pyarrow is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.poses import Poses
+from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+from cosserat_casadi.results.solution_file import listed_abscissae
+from cosserat_casadi.sweep.outcome_file import arrow_module
+
+FORMATS = (".json", ".csv", ".parquet", ".npz")
+"""Suffixes that a file of a motion may have."""
+
+POSITION_COLUMNS = ("x", "y", "z")
+QUATERNION_COLUMNS = ("qw", "qx", "qy", "qz")
+"""Endings of the columns of a pose: position in m, quaternion."""
+
+Column = tuple[str, FloatArray]
+"""Name and values over time, shape (T,)."""
+
+
+def check_motion_path(path: str | Path) -> None:
+    """Refuse a file that could not be written, before any work is done for it.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMATS:
+        problem = f"{path} has no suffix of a file that a motion can be written to"
+        raise SceneError(Problem("--output", problem, f"use one of {', '.join(FORMATS)}"))
+    if suffix == ".parquet":
+        arrow_module()
+
+
+def write_motion(motion: Motion, path: str | Path) -> None:
+    """Write a motion, whole or not at all; the suffix says in which format, and the same motion gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        ParquetUnavailableError: it is Parquet, and pyarrow is not installed.
+        WriteError: the file cannot be written, as on a full disk.
+    """
+    check_motion_path(path)
+    contents = {
+        ".json": _json_bytes,
+        ".csv": _csv_bytes,
+        ".parquet": _parquet_bytes,
+        ".npz": _npz_bytes,
+    }
+    content = contents[Path(path).suffix.lower()]
+    write_atomically(Path(path), content(motion))
+
+
+def motion_result(motion: Motion) -> dict[str, Any]:
+    """A motion as the plain data of its JSON file; a number that is not finite becomes null."""
+    plain_data: dict[str, Any] = plain(_motion_data(motion))
+    return plain_data
+
+
+def motion_columns(motion: Motion) -> dict[str, FloatArray]:
+    """A motion as named columns over time, each of shape (T,), SI units.
+
+    ``t``; inputs as ``push.force.x``; of a rod ``rod.tip.x`` … ``rod.tip.qz`` and ``rod.X=0.5.x``; of a body
+    ``platform.x`` … ``platform.qz``; of an actuator ``cable.tension`` and ``cable.length``; ``energy.kinetic`` …
+    An effort or a conjugate that is an input too has one column, that of the input.
+    """
+    columns: dict[str, FloatArray] = {}
+    for name, values in _columns(motion):
+        columns.setdefault(name, values)
+    return columns
+
+
+def _motion_data(motion: Motion) -> dict[str, Any]:
+    """All of a motion, its arrays not yet turned into lists."""
+    model = motion.model
+    scene = model.scene
+    data: dict[str, Any] = {
+        **_head(motion),
+        "times": motion.times,
+        "inputs": _inputs_over_time(motion),
+        "discretisation": discretisation_entries(model),
+        "rods": {name: _rod_entry(motion, name) for name in model.discrete.rods},
+    }
+    # A reader of rods alone need not know of tables that the scene does not have.
+    if scene.bodies:
+        data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.bodies}
+    if scene.actuators:
+        data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
+    data["energy"] = asdict(motion.energy)
+    return data
+
+
+def _head(motion: Motion) -> dict[str, Any]:
+    """What there is one of in a motion, however many times it holds."""
+    return {
+        "schema": SCHEMA,
+        "title": motion.model.scene.title,
+        "converged": motion.converged,
+        "outcome": motion.outcome.label,
+        "message": motion.message,
+        "warnings": list(motion.warnings),
+        "error_estimate": motion.error_estimate,
+        "start": motion.start,
+        "steps": motion.statistics.steps,
+        "statistics": asdict(motion.statistics),
+    }
+
+
+def _inputs_over_time(motion: Motion) -> dict[str, FloatArray]:
+    """Every input at the T times, shape (T,) of a number, (T, 3) of a vector, (T, k, 3) of Legendre coefficients."""
+    inputs = {}
+    for entry, entries in motion.model.inputs:
+        components, degrees = entry.shape
+        # Stacked coefficient after coefficient, as a reader of a result finds them.
+        values = motion.inputs[:, entries].reshape(-1, degrees, components)
+        if degrees == 1:
+            values = values[:, 0, :]
+        if entry.size == 1:
+            values = values[:, 0]
+        inputs[entry.name] = values
+    return inputs
+
+
+def _rod_entry(motion: Motion, name: str) -> dict[str, Any]:
+    X = listed_abscissae(motion.model.discretisation[name].breaks)
+    sections = motion.section(name, X)
+    return {
+        "tip": _pose_entry(motion.tip(name)),
+        "X": X,
+        "position": sections.position,
+    }
+
+
+def _pose_entry(poses: Poses) -> dict[str, FloatArray]:
+    return {"position": poses.position, "quaternion": poses.quaternion}
+
+
+def _actuator_entry(motion: Motion, name: str) -> dict[str, FloatArray]:
+    """Effort and conjugate by their own names, such as tension and length."""
+    function = motion.model.actuator[name]
+    states = motion.actuator(name)
+    return {function.name_out(0): states.effort, function.name_out(1): states.conjugate}
+
+
+def _columns(motion: Motion) -> Iterator[Column]:
+    model = motion.model
+    yield "t", motion.times
+    for column, index in column_indices(model.inputs).items():
+        yield column, motion.inputs[:, index]
+    for name in model.discrete.rods:
+        yield from _pose_columns(f"{name}.tip", motion.tip(name))
+        X = listed_abscissae(model.discretisation[name].breaks)
+        positions = motion.section(name, X).position
+        for index, abscissa in enumerate(X.tolist()):
+            yield from _vector_columns(f"{name}.X={abscissa:g}", positions[:, index], POSITION_COLUMNS)
+    for body in model.scene.bodies:
+        yield from _pose_columns(body.name, motion.body(body.name))
+    for actuator in model.scene.actuators:
+        for quantity, values in _actuator_entry(motion, actuator.name).items():
+            yield f"{actuator.name}.{quantity}", values
+    for energy, values in asdict(motion.energy).items():
+        yield f"energy.{energy}", values
+
+
+def _pose_columns(name: str, poses: Poses) -> Iterator[Column]:
+    yield from _vector_columns(name, poses.position, POSITION_COLUMNS)
+    yield from _vector_columns(name, poses.quaternion, QUATERNION_COLUMNS)
+
+
+def _vector_columns(name: str, values: FloatArray, endings: tuple[str, ...]) -> Iterator[Column]:
+    """One column for each component of values, shape (T, components)."""
+    for ending, component in zip(endings, values.T, strict=True):
+        yield f"{name}.{ending}", component
+
+
+def _json_bytes(motion: Motion) -> bytes:
+    return json_text(motion_result(motion)).encode()
+
+
+def _csv_bytes(motion: Motion) -> bytes:
+    columns = motion_columns(motion)
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow(columns)
+    for row in np.column_stack(list(columns.values())).tolist():
+        writer.writerow([_cell(number) for number in row])
+    return lines.getvalue().encode()
+
+
+def _cell(number: float) -> str:
+    """A number as the shortest text that reads back as the same one; empty where it is not finite."""
+    if not np.isfinite(number):
+        return ""
+    return repr(number)
+
+
+def _parquet_bytes(motion: Motion) -> bytes:
+    arrow = arrow_module()
+    import pyarrow.parquet
+
+    columns = {}
+    for name, values in motion_columns(motion).items():
+        columns[name] = arrow.array(values, mask=~np.isfinite(values))
+    # The columns cannot say how the motion ended: the head of the JSON file travels with them.
+    head = json.dumps(plain(_head(motion)), ensure_ascii=False)
+    table = arrow.table(columns).replace_schema_metadata({"cosserat": head})
+    content = io.BytesIO()
+    pyarrow.parquet.write_table(table, content)
+    return content.getvalue()
+
+
+def _npz_bytes(motion: Motion) -> bytes:
+    content = io.BytesIO()
+    arrays: dict[str, Any] = dict(_dotted(_motion_data(motion)))
+    np.savez(content, **arrays)
+    return content.getvalue()
+
+
+def _dotted(data: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Entries of nested tables by dotted name; a title that the scene does not have is left out."""
+    for key, entry in data.items():
+        if isinstance(entry, dict):
+            yield from _dotted(entry, f"{prefix}{key}.")
+        elif entry is not None:
+            yield f"{prefix}{key}", entry

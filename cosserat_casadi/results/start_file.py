@@ -1,0 +1,127 @@
+"""A result file read back: the equilibrium that a motion starts from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene import Scene
+
+WHERE = "--from"
+
+AGREEMENT = 1e-6
+"""Distance of positions, relative to the length, up to which an equilibrium is the one of the file."""
+
+
+def read_start(path: str | Path, scene: Scene) -> Solution:
+    """The equilibrium of a result file, for a scene that has it.
+
+    A result file lists strains along the rods. They give the strain coordinates; multipliers and floating frames are
+    found by solving once more, at the inputs of the file and on its discretisation.
+
+    Args:
+        path: what ``cosserat solve`` has written.
+        scene: the scene; what is not an input of it must be as it was when it was solved.
+
+    Raises:
+        SceneError: the file cannot be read or is not of an equilibrium, or the scene does not have that equilibrium.
+    """
+    data = _read(Path(path))
+    if data.get("converged") is not True:
+        raise _refusal(path, "holds no equilibrium", "solve the scene first")
+    # Free bases are clamped in statics.
+    held = scene.held()
+    try:
+        model = build(held, _discretisation(data, held))
+        guess = _strain_coordinates(model, data)
+        solution = solve(model, _inputs(model, data), start=guess)
+        distance = _distance(solution, data)
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        problem = "is no result file of this scene: something that it should hold is missing or of another shape"
+        raise _refusal(path, problem, "write it with cosserat solve SCENE --output") from error
+    # A nan is no agreement.
+    if not (solution.converged and distance <= AGREEMENT):
+        problem = "holds an equilibrium that this scene does not have"
+        raise _refusal(path, problem, "the scene was changed since: solve it again")
+    return solution
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise _refusal(path, f"cannot be read: {error.strerror}", "") from error
+    except ValueError as error:
+        raise _refusal(path, "is not JSON", "write it with cosserat solve SCENE --output") from error
+    if not isinstance(data, dict):
+        raise _refusal(path, "is no result file", "write it with cosserat solve SCENE --output")
+    return data
+
+
+def _refusal(path: str | Path, problem: str, remedy: str) -> SceneError:
+    return SceneError(Problem(WHERE, f"{path} {problem}", remedy))
+
+
+def _discretisation(data: Mapping[str, Any], scene: Scene) -> dict[str, Discretisation]:
+    chosen = {}
+    for rod in scene.rods:
+        entry = data["discretisation"][rod.name]
+        chosen[rod.name] = Discretisation(
+            modes=tuple(entry["modes"]),
+            nodes=entry["nodes"],
+            breaks=tuple(entry["breaks"]),
+            transport=entry["transport"],
+        )
+    return chosen
+
+
+def _inputs(model: Model, data: Mapping[str, Any]) -> dict[str, FloatArray]:
+    """Values of the inputs that the file names; further ones of the scene keep the scene's values."""
+    values = {}
+    for entry in model.inputs.entries:
+        if entry.name not in data["inputs"]:
+            continue
+        listed = np.asarray(data["inputs"][entry.name], dtype=float)
+        components, degrees = entry.shape
+        # Legendre coefficients are rows in the file.
+        values[entry.name] = listed.reshape(degrees, components).T
+    return values
+
+
+def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
+    """Unknowns whose strain coordinates fit the strains of the file, and that are zero otherwise; shape (size,)."""
+    x = model.unloaded()
+    stacked = model.pack(_inputs(model, data))
+    for name, rod in model.discrete.rods.items():
+        X = np.asarray(data["rods"][name]["X"], dtype=float)
+        strain = np.asarray(data["rods"][name]["strain"], dtype=float)
+        intrinsic = rod.properties.intrinsic_strain(X)
+        # Strain coordinates are of the reference length, strains of the length that the rod has.
+        deviation = (strain - intrinsic) * model.length_ratio(name, stacked)
+        elements = rod.grid.element_of(X)
+        q = x[model.discrete.unknowns.strain(name)]
+        for component, columns in rod.columns.items():
+            shape_functions = rod.shape_functions(component, X, elements)
+            q[columns] = np.linalg.lstsq(shape_functions, deviation[:, component], rcond=None)[0]
+    return x
+
+
+def _distance(solution: Solution, data: Mapping[str, Any]) -> float:
+    """Largest distance between positions of a solution and those of the file, relative to the length of the rod."""
+    distances = []
+    for name, rod in solution.model.discrete.rods.items():
+        listed = data["rods"][name]
+        position = solution.pose(listed["X"], name).position
+        change = position - np.asarray(listed["position"], dtype=float)
+        distances.append(float(np.abs(change).max()) / rod.properties.length)
+    return max(distances)

@@ -1,0 +1,126 @@
+"""Inertia of a rod: the wrench that it puts on its sections, its kinetic energy and its momentum.
+
+The discrete kinetic energy is T = ½ Σ ℓ w (ρA ṙ·ṙ + Σ c_k ḋ_k·ḋ_k) over the nodes: the mass of each section in its
+centre, and its second moments c_k = ∫ρ x_k² dA along the directors d_k. Rotary inertia about the axes of the section is
+J_1 = c_2 + c_3 and so on; a plane section has c_3 = 0. So inertia is the force −ρA r̈ and the moment −Σ c_k d_k × d̈_k,
+which enter the backward sweep as any load does, and accelerations alone are needed: no Coriolis term is written.
+See docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.rotation import cross
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.motion import RodMotion
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.wrenches import LineWrench
+
+
+def second_moments(rotary_inertia: FloatArray) -> FloatArray:
+    """Second moments c_k along the section's axes from the inertia about them, shape (k, 3) each, kg m.
+
+    c_1 = (J_2 + J_3 − J_1)/2, and so on round.
+    """
+    half_sum = rotary_inertia.sum(axis=1, keepdims=True) / 2
+    return np.asarray(half_sum - rotary_inertia)
+
+
+@dataclass(frozen=True)
+class SectionMasses:
+    """What moves at each node, for one reference length of rod.
+
+    Attributes:
+        mass: ρA at the nodes, shape (M,), kg/m.
+        second_moments: c_k at the nodes for those directors k that have any, shape (M,) each, kg m.
+    """
+
+    mass: FloatArray
+    second_moments: dict[int, FloatArray]
+
+
+def section_masses(rod: DiscreteRod) -> SectionMasses | None:
+    """Mass and second moments of a rod's sections; None where the rod has no mass."""
+    properties = rod.properties
+    if properties.linear_density is None:
+        return None
+    X = rod.grid.nodes
+    mass = np.asarray(properties.linear_density(X), dtype=float)
+    moments = {}
+    if properties.rotary_inertia is not None:
+        along_axes = second_moments(properties.rotary_inertia(X))
+        for axis in range(3):
+            # Zero by cancellation in a plane section: J_x + J_y − J_z.
+            if np.any(np.abs(along_axes[:, axis]) > 1e-12 * np.abs(along_axes).max()):
+                moments[axis] = along_axes[:, axis]
+    return SectionMasses(mass, moments)
+
+
+@dataclass(frozen=True)
+class RodInertia:
+    """Inertia of a rod in motion, in the axes of its base.
+
+    Attributes:
+        motion: of its sections.
+        masses: what moves.
+    """
+
+    motion: RodMotion
+    masses: SectionMasses
+
+    @property
+    def ratio(self) -> Matrix | float:
+        """Length of the rod relative to the reference length: a longer rod has more mass."""
+        ratio = self.motion.shape.ratio
+        return 1.0 if ratio is None else ratio
+
+    @cached_property
+    def wrench(self) -> LineWrench:
+        """Force −ρA r̈ and moment −Σ c_k d_k × d̈_k per reference length at the nodes."""
+        force = self._scaled(self.motion.acceleration, -self.masses.mass)
+        moment = None
+        for axis, second_moment in self.masses.second_moments.items():
+            director = self.motion.shape.directors[axis]
+            turning = cross(director, self.motion.director_acceleration(axis))
+            term = self._scaled(turning, -second_moment)
+            moment = term if moment is None else moment + term
+        return LineWrench(force, moment, None, follower=False)
+
+    @cached_property
+    def kinetic_energy(self) -> Matrix:
+        """Kinetic energy in the world, 1×1, J."""
+        total = self._sum(ca.sum1(self.motion.velocity**2), self.masses.mass)
+        for axis, second_moment in self.masses.second_moments.items():
+            squares = ca.sum1(self.motion.director_rate(axis) ** 2)
+            total = total + self._sum(squares, second_moment)
+        return total / 2
+
+    @cached_property
+    def linear_momentum(self) -> Matrix:
+        """Momentum Σ ρA ṙ, 3×1, N s, base axes."""
+        return self._sum(self.motion.velocity, self.masses.mass)
+
+    @cached_property
+    def angular_momentum(self) -> Matrix:
+        """Angular momentum about the base, 3×1, N m s, base axes: Σ ρA r × ṙ + c_k d_k × ḋ_k."""
+        about_base = cross(self.motion.shape.position, self.motion.velocity)
+        total = self._sum(about_base, self.masses.mass)
+        for axis, second_moment in self.masses.second_moments.items():
+            director = self.motion.shape.directors[axis]
+            spin = cross(director, self.motion.director_rate(axis))
+            total = total + self._sum(spin, second_moment)
+        return total
+
+    def _scaled(self, vectors: Matrix, factors: FloatArray) -> Matrix:
+        """Vectors of the nodes times the factors of the nodes and the ratio of the lengths, 3×M."""
+        return self.ratio * (vectors @ ca.diag(ca.DM(factors)))
+
+    def _sum(self, values: Matrix, factors: FloatArray) -> Matrix:
+        """Sum over the rod of values at the nodes, m×M, times factors per length, m×1."""
+        lengths = self.motion.rod.node_lengths
+        return self.ratio * (values @ ca.DM(lengths * factors))

@@ -1,0 +1,305 @@
+"""Forward sweeps of a motion: velocities and accelerations of the sections, chapter 2 of the report.
+
+Both are the exact time derivatives of the discrete rotations and positions of kinematics.py. All vectors are those of
+the motion in the world, with coordinates in the axes that the base has at the instant: a rate is never the rate of a
+coordinate. An interval that turns by exp(Ω^) adds R b to the angular velocity, b = T Ω̇, and with the section at its
+beginning that turns at ω it adds ω × R b + R ḃ to the angular acceleration. See docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths import magnus
+from cosserat_casadi.maths.rotation import cross, hat
+from cosserat_casadi.maths.shapes import check_shape
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.kinematics import Shape
+from cosserat_casadi.rod.strain import DiscreteRod, Ratio
+from cosserat_casadi.rod.transport import KEPT, IntervalKernels, interval_kernels, interval_turns
+
+
+@dataclass(frozen=True)
+class FrameMotion:
+    """Velocities and accelerations of a frame in the world, coordinates in the frame's own axes or the world's.
+
+    Attributes:
+        velocity: of its origin, 3×1, m/s.
+        angular_velocity: 3×1, rad/s.
+        acceleration: of its origin, 3×1, m/s².
+        angular_acceleration: 3×1, rad/s².
+    """
+
+    velocity: Matrix
+    angular_velocity: Matrix
+    acceleration: Matrix
+    angular_acceleration: Matrix
+
+    def __post_init__(self) -> None:
+        for name in ("velocity", "angular_velocity", "acceleration", "angular_acceleration"):
+            check_shape(name, getattr(self, name), 3, 1)
+
+    def in_axes(self, axes_R_world: Matrix) -> FrameMotion:
+        """The same motion with coordinates in other axes, 3×3."""
+        return FrameMotion(
+            velocity=axes_R_world @ self.velocity,
+            angular_velocity=axes_R_world @ self.angular_velocity,
+            acceleration=axes_R_world @ self.acceleration,
+            angular_acceleration=axes_R_world @ self.angular_acceleration,
+        )
+
+
+AT_REST = FrameMotion(ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1), ca.DM(3, 1))
+"""A frame that does not move: zeros that store nothing, and cost nothing."""
+
+
+@dataclass(frozen=True)
+class StrainRates:
+    """Rates of a rod's strain coordinates, and of its length where that is free.
+
+    Attributes:
+        velocity: q̇, n×1, 1/s.
+        acceleration: q̈, n×1, 1/s².
+        ratio_rate: rate of the length relative to the reference length, 1×1, 1/s; None where the length is fixed.
+        ratio_acceleration: its second derivative, 1×1, 1/s²; None where the length is fixed.
+    """
+
+    velocity: Matrix
+    acceleration: Matrix
+    ratio_rate: Ratio = None
+    ratio_acceleration: Ratio = None
+
+
+NO_CHANGE = ca.DM(1, 1)
+"""Rate of a length that is fixed: it takes the intrinsic strain out of the rates of strains."""
+
+
+@dataclass(frozen=True)
+class MotionKernels:
+    """Functions of one interval in motion.
+
+    All take the Taylor coefficients of the interval's turn with their first and second rates, and the rotation of the
+    section at which it begins.
+
+    Attributes:
+        intervals: the functions of an interval at rest.
+    """
+
+    intervals: IntervalKernels
+
+    @cached_property
+    def rates(self) -> ca.Function:
+        """The map (turn, turn_rate, turn_acceleration, rotation) ↦ (R b, R ḃ), b = T Ω̇, in the axes of the base."""
+        symbols = self._symbols()
+        turn, turn_rate, turn_acceleration, rotation = symbols
+        spin = self._turning(turn) @ turn_rate
+        spin_rate = self._rate(spin, turn, turn_rate, turn_acceleration)
+        outputs = [ca.sparsify(output) for output in ca.cse([rotation @ spin, rotation @ spin_rate])]
+        names = ["turn", "turn_rate", "turn_acceleration", "rotation"]
+        return ca.Function("rates", symbols, outputs, names, ["spin", "spin_rate"], KEPT)
+
+    @cached_property
+    def variation(self) -> ca.Function:
+        """First and second rate of A, the δθ of the interval with its turn, in the axes of the base, 3×size each.
+
+        (turn, turn_rate, turn_acceleration, rotation, ω, α) ↦ (Ȧ, Ä), with ω and α of the section at which the
+        interval begins: A = R B, Ȧ = ω^ A + R Ḃ, Ä = (α^ + ω^ ω^) A + 2 ω^ R Ḃ + R B̈.
+        """
+        symbols = self._symbols()
+        turn, turn_rate, turn_acceleration, rotation = symbols
+        omega = ca.SX.sym("angular_velocity", 3)
+        alpha = ca.SX.sym("angular_acceleration", 3)
+        local = self._turning(turn)
+        local_rate = self._rate(local, turn, turn_rate, turn_acceleration)
+        local_acceleration = self._rate(local_rate, turn, turn_rate, turn_acceleration)
+        turning = rotation @ local
+        turned = rotation @ local_rate
+        spun = hat(omega) @ turning
+        first = spun + turned
+        second = hat(alpha) @ turning + hat(omega) @ (spun + 2 * turned) + rotation @ local_acceleration
+        outputs = ca.cse([first, second])
+        names = ["turn", "turn_rate", "turn_acceleration", "rotation", "omega", "alpha"]
+        return ca.Function(
+            "motion_variation",
+            [*symbols, omega, alpha],
+            [ca.sparsify(output) for output in outputs],
+            names,
+            ["A_rate", "A_acceleration"],
+            KEPT,
+        )
+
+    def _symbols(self) -> list[ca.SX]:
+        size = self.intervals.size
+        return [
+            ca.SX.sym("turn", size),
+            ca.SX.sym("turn_rate", size),
+            ca.SX.sym("turn_acceleration", size),
+            ca.SX.sym("rotation", self.intervals.rotation_pattern),
+        ]
+
+    def _turning(self, turn: ca.SX) -> ca.SX:
+        """B = T ∂Ω/∂turn, 3×size: δθ of the interval in the axes of the section at which it begins."""
+        omega = self.intervals.rotation_vector(turn)
+        return magnus.increment(omega).tangent @ ca.jacobian(omega, turn)
+
+    @staticmethod
+    def _rate(value: ca.SX, turn: ca.SX, turn_rate: ca.SX, turn_acceleration: ca.SX) -> ca.SX:
+        """Time derivative of a function of the turn and its rate, of the same shape."""
+        state = ca.vertcat(turn, turn_rate)
+        direction = ca.vertcat(turn_rate, turn_acceleration)
+        rate = ca.jtimes(ca.vec(value), state, direction)
+        return ca.reshape(rate, *value.shape)
+
+
+def motion_kernels(rod: DiscreteRod) -> MotionKernels:
+    """The kernels that fit a rod's turning axes and its integration method."""
+    return _motion_kernels(interval_kernels(rod))
+
+
+@cache
+def _motion_kernels(intervals: IntervalKernels) -> MotionKernels:
+    """One set of functions for all models: what they share is generated once."""
+    return MotionKernels(intervals)
+
+
+@dataclass(frozen=True)
+class RodMotion:
+    """Velocities and accelerations of a rod's sections, in the axes of its base.
+
+    Attributes:
+        shape: the rod's shape.
+        rates: of its strain coordinates.
+        base: motion of its base in the world, coordinates in the axes of the base.
+    """
+
+    shape: Shape
+    rates: StrainRates
+    base: FrameMotion = AT_REST
+
+    @property
+    def rod(self) -> DiscreteRod:
+        """The rod."""
+        return self.shape.rod
+
+    @cached_property
+    def turn_rates(self) -> tuple[Matrix, Matrix]:
+        """First and second rate of the Taylor coefficients of the turns, size×intervals each, rad/s and rad/s²."""
+        first = interval_turns(self.rod, self.rates.velocity, self._ratio_rate)
+        second = interval_turns(self.rod, self.rates.acceleration, self._ratio_acceleration)
+        return first, second
+
+    @cached_property
+    def section_angular_velocity(self) -> Matrix:
+        """ω of the distinct sections, 3×(intervals + 1), rad/s."""
+        return _swept(self.base.angular_velocity, self._spins[0])
+
+    @cached_property
+    def section_angular_acceleration(self) -> Matrix:
+        """ω̇ of the distinct sections, 3×(intervals + 1), rad/s²."""
+        spin, spin_rate = self._spins
+        begins = self.section_angular_velocity[:, :-1]
+        return _swept(self.base.angular_acceleration, cross(begins, spin) + spin_rate)
+
+    @cached_property
+    def angular_velocity(self) -> Matrix:
+        """ω at the nodes, 3×M, rad/s."""
+        return self._at_nodes(self.section_angular_velocity)
+
+    @cached_property
+    def angular_acceleration(self) -> Matrix:
+        """ω̇ at the nodes, 3×M, rad/s²."""
+        return self._at_nodes(self.section_angular_acceleration)
+
+    @cached_property
+    def stretch_rate(self) -> Matrix:
+        """ℓ R Γ̇ at the nodes, 3×M, m/s: what shear and extension add to the rate of the tangent."""
+        return self._stretched(self.rates.velocity, self._ratio_rate)
+
+    @cached_property
+    def tangent_rate(self) -> Matrix:
+        """ṫ = ω × t + ℓ R Γ̇ at the nodes, 3×M, m/s."""
+        return cross(self.angular_velocity, self.shape.tangent) + self.stretch_rate
+
+    @cached_property
+    def tangent_acceleration(self) -> Matrix:
+        """ẗ = ω̇ × t + ω × (ω × t) + 2 ω × ℓ R Γ̇ + ℓ R Γ̈ at the nodes, 3×M, m/s²."""
+        omega = self.angular_velocity
+        stretch_acceleration = self._stretched(self.rates.acceleration, self._ratio_acceleration)
+        along = cross(self.angular_acceleration, self.shape.tangent) + stretch_acceleration
+        # ω × (ω × t + ℓ R Γ̇) + ω × ℓ R Γ̇.
+        return along + cross(omega, self.tangent_rate + self.stretch_rate)
+
+    @cached_property
+    def velocity(self) -> Matrix:
+        """Velocities of the nodes in the world, 3×M, m/s."""
+        return self._integrated(self.base.velocity, self.tangent_rate)
+
+    @cached_property
+    def acceleration(self) -> Matrix:
+        """Accelerations of the nodes in the world, 3×M, m/s²."""
+        return self._integrated(self.base.acceleration, self.tangent_acceleration)
+
+    def director_rate(self, axis: int) -> Matrix:
+        """ḋ = ω × d of one director at the nodes, 3×M, 1/s."""
+        return cross(self.angular_velocity, self.shape.directors[axis])
+
+    def director_acceleration(self, axis: int) -> Matrix:
+        """d̈ = ω̇ × d + ω × (ω × d) of one director at the nodes, 3×M, 1/s²."""
+        director = self.shape.directors[axis]
+        centripetal = cross(self.angular_velocity, self.director_rate(axis))
+        return cross(self.angular_acceleration, director) + centripetal
+
+    @property
+    def _ratio_rate(self) -> Matrix:
+        return NO_CHANGE if self.rates.ratio_rate is None else self.rates.ratio_rate
+
+    @property
+    def _ratio_acceleration(self) -> Matrix:
+        return NO_CHANGE if self.rates.ratio_acceleration is None else self.rates.ratio_acceleration
+
+    @cached_property
+    def _spins(self) -> tuple[Matrix, Matrix]:
+        """R b and R ḃ of every interval, 3×intervals each."""
+        count = len(self.rod.grid.left_ends)
+        if not self.rod.properties.turning_axes:
+            return ca.DM(3, count), ca.DM(3, count)
+        turn = self.shape.interval_arguments[0]
+        kernel = motion_kernels(self.rod).rates.map(count)
+        spin, spin_rate = kernel(turn, *self.turn_rates, self.shape.interval_begins)
+        return spin, spin_rate
+
+    def _at_nodes(self, sections: Matrix) -> Matrix:
+        if sections.shape[1] == 1:
+            return ca.repmat(sections, 1, self.rod.grid.size)
+        return self.shape.at_nodes(sections)
+
+    def _stretched(self, coordinates: Matrix, ratio: Matrix) -> Matrix:
+        """Directors times ℓ and the linear strains of coordinates, 3×M, m."""
+        strain = self.rod.strain_rows(coordinates, (3, 4, 5), ratio)
+        total: Matrix = ca.DM(3, self.rod.grid.size)
+        for director, row in zip(self.shape.directors, strain, strict=True):
+            if row is not None and row.nnz():
+                total = total + self.shape.scale(director, self.rod.length * row)
+        return total
+
+    def _integrated(self, base: Matrix, rate: Matrix) -> Matrix:
+        """Field of the positions from that of the base, 3×1, and that of the tangents, 3×M."""
+        grid = self.rod.grid
+        integrate = ca.DM(grid.integration_matrix)
+        return ca.repmat(base, 1, grid.size) + rate @ integrate.T
+
+
+def _swept(base: Matrix, added: Matrix) -> Matrix:
+    """Sums from the base, 3×(intervals + 1), of what each interval adds, 3×intervals."""
+    rows: list[Matrix] = []
+    for start, row in zip(ca.vertsplit(base), ca.vertsplit(added), strict=True):
+        # A component that is zero for good stays so: a planar rod turns about one axis.
+        if row.nnz() == 0 and start.nnz() == 0:
+            rows.append(ca.DM(1, row.shape[1] + 1))
+            continue
+        # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
+        rows.append(ca.cumsum(ca.densify(ca.horzcat(start, row)), 1))
+    return ca.vertcat(*rows)

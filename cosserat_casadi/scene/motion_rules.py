@@ -1,0 +1,144 @@
+"""The rules of motions: what moves is an input of the scene, of as many numbers, on a path that it can follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
+from cosserat_casadi.scene.input_rules import field_faults, owners_of
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.records import Entry, sound
+from cosserat_casadi.scene.values import numbers_of
+
+
+class _Moving(NamedTuple):
+    """An input that a motion names: what is declared of it, and its owner's record and table."""
+
+    declared: InputField
+    record: type[Entry]
+    field: str
+    table: Table
+
+
+def motions_of_no_input(scene: SceneTables) -> Iterator[Fault]:
+    """A motion is of what is no input or cannot be free, or its input cannot follow it."""
+    motions = scene.tables("motions")
+    names = [motion.get("input") for _, motion in motions]
+    for i, table in motions:
+        name = table.get("input")
+        if not isinstance(name, str) or _is_of_unknown_kind(name, scene):
+            continue
+        moving = _input_of(name, scene)
+        if moving is None:
+            remedy = listing(_names(scene), "inputs")
+            yield Fault(("motions", i, "input"), f"{shown(name)} is no input of this scene", remedy)
+            continue
+        for fault in field_faults(moving.field, moving.record, moving.table, scene):
+            yield fault.below(("motions", i, "input"))
+        motion = sound(InputMotion, table)
+        # A motion with faults of its own has no values to judge.
+        if motion is None:
+            continue
+        faults = list(_count_faults(motion, moving))
+        if not faults:
+            faults += _path_faults(motion, moving.declared, _duration(scene))
+            # Several motions of an input may leave its range one by one, and not together.
+            if names.count(name) == 1:
+                faults += _range_faults(motion, moving)
+        for fault in faults:
+            yield fault.below(("motions", i))
+
+
+def _is_of_unknown_kind(name: str, scene: SceneTables) -> bool:
+    """Whether the owner of an input is there, and its kind is not known: that has a fault of its own."""
+    owner, _, _ = name.partition(".")
+    record, table = owners_of(scene).get(owner, (None, {}))
+    return record is None and bool(table)
+
+
+def _input_of(name: str, scene: SceneTables) -> _Moving | None:
+    """The input of a name; None where there is none."""
+    owner, _, field = name.partition(".")
+    record, table = owners_of(scene).get(owner, (None, {}))
+    if record is None or field not in record.free_fields(table):
+        return None
+    return _Moving(record.inputs[field], record, field, table)
+
+
+def _names(scene: SceneTables) -> Iterator[str]:
+    """Names of all that may be free in a scene."""
+    for owner, (record, table) in owners_of(scene).items():
+        if record is None:
+            continue
+        for field in record.free_fields(table):
+            if not list(record.input_conflicts(field, table, scene)):
+                yield f"{owner}.{field}"
+
+
+def _duration(scene: SceneTables) -> float:
+    """Time that is simulated, s; infinite where the scene does not say."""
+    simulation = scene.get("simulation")
+    if not isinstance(simulation, Mapping):
+        return np.inf
+    for duration in numbers_of(simulation.get("duration")):
+        return duration
+    return np.inf
+
+
+def _count_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
+    """The motion has another number of numbers than its input."""
+    wanted = moving.declared.entry_count(moving.table.get(moving.field))
+    if motion.entry_count == wanted:
+        return
+    key = "values" if motion.is_table else "amplitude"
+    numbers = "1 number" if wanted == 1 else f"{wanted} numbers"
+    remedy = ""
+    if wanted > moving.declared.components:
+        remedy = "those of each Legendre coefficient in turn"
+    problem = f"must have {numbers} at each time, got {motion.entry_count}"
+    yield Fault((key,), problem, remedy)
+
+
+def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> Iterator[Fault]:
+    """The path of a base or a length jumps, or has a kink where it would have to have a velocity."""
+    jumps = [time for time in motion.jumps if 0.0 < time <= duration]
+    # A velocity that the motion begins or ends with is no jump of it.
+    kinks = [time for time in motion.kinks if 0.0 < time < duration]
+    if jumps and (declared.geometry or declared.continuous):
+        problem = f"{motion.input} must not jump, and does at {jumps[0]:g} s"
+        yield Fault(("interpolation",), problem, 'interpolation = "cubic"')
+    elif kinks and declared.geometry:
+        problem = f"the path of {motion.input} must have a velocity, and has a kink at {kinks[0]:g} s"
+        yield Fault(("interpolation",), problem, 'interpolation = "cubic"')
+
+
+def _range_faults(motion: InputMotion, moving: _Moving) -> Iterator[Fault]:
+    """The only motion of an input takes it where it cannot be: a length to zero, a tension below it."""
+    declared = moving.declared
+    key = "values" if motion.is_table else "amplitude"
+    if declared.nonzero and motion.is_table and not np.all(np.any(motion.knot_values, axis=1)):
+        yield Fault((key,), "must not be zero", "w, x, y, z; its norm does not matter")
+    least = _least(motion, moving)
+    if declared.positive and least <= 0.0:
+        yield Fault((key,), f"{motion.input} must stay > 0, and goes to {least:g} {declared.unit}")
+    elif declared.lower is not None and least < declared.lower:
+        problem = f"{motion.input} must stay >= {declared.lower:g}, and goes to {least:g} {declared.unit}"
+        yield Fault((key,), problem)
+
+
+def _least(motion: InputMotion, moving: _Moving) -> float:
+    """Least value that an input of one number has on its path, at the times of a table; infinite where it has none."""
+    if motion.is_table:
+        return float(motion.knot_values.min())
+    start = numbers_of(moving.table.get(moving.field))
+    if len(start) != 1:
+        return np.inf
+    # 1 − cos goes from 0 to 2.
+    lowest = -abs(motion.amplitudes)
+    if motion.wave == "one_minus_cosine":
+        lowest = np.minimum(2 * motion.amplitudes, 0.0)
+    return start[0] + float(lowest.min())

@@ -1,0 +1,70 @@
+"""Columns of numbers from a CSV file with a header."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+
+MOST_TOLD = 20
+"""Faults of one table that are told; a file may have one in every row."""
+
+
+def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Problem]]:
+    """Header of a CSV file, its numbers, shape (count, columns), the line of each row, and every fault of its cells.
+
+    Raises:
+        SceneError: the file cannot be read, or holds no row.
+    """
+    try:
+        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
+    except (OSError, ValueError, csv.Error) as error:
+        raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
+    filled = [(number, row) for number, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
+    if len(filled) < 2:
+        raise SceneError(Problem(str(path), "holds no row of numbers", "give a header and a row of numbers below it"))
+    header = [cell.strip() for cell in filled[0][1]]
+    repeated = sorted({column for column in header if header.count(column) > 1})
+    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated]
+    numbers = np.full((len(filled) - 1, len(header)), np.nan)
+    lines = [number for number, _ in filled[1:]]
+    for values, (number, row) in zip(numbers, filled[1:], strict=True):
+        problems += _fill(values, f"{path}, line {number}", header, row)
+    return header, numbers, lines, problems
+
+
+def finite_number(text: str) -> float | None:
+    """The number that a text is; None where it is none, or not finite."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def shortened(problems: list[Problem], where: str) -> list[Problem]:
+    """The first faults, and how many more there are."""
+    if len(problems) <= MOST_TOLD:
+        return problems
+    further = len(problems) - MOST_TOLD
+    return [*problems[:MOST_TOLD], Problem(where, f"has {further} more faults")]
+
+
+def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
+    """Put the numbers of a row into an array, and say what is wrong with the others."""
+    if len(row) != len(header):
+        return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
+    problems = []
+    for k, (column, cell) in enumerate(zip(header, row, strict=True)):
+        number = finite_number(cell)
+        if number is None:
+            problems.append(Problem(where, f"{column} must be a finite number, got {cell!r}"))
+        else:
+            values[k] = number
+    return problems

@@ -1,0 +1,79 @@
+"""How a motion is computed: how long, from where, how exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.values import NotEmpty, NotNegative, Number, Positive, Whole, not_increasing, numbers_of
+
+FRAMES = 101
+"""Rows of a result where the scene says neither how many nor when."""
+
+
+class Simulation(Record):
+    """How `cosserat simulate` computes the motion; all other commands leave it aside."""
+
+    example: ClassVar[str] = """\
+[simulation]
+duration = 1.0
+frames = 201
+start = "unloaded"
+"""
+
+    duration: Positive = Field(description="time that is simulated, from 0 on, s")
+    frames: Annotated[Whole, Field(ge=2, le=1_000_000)] | None = Field(
+        None, description="rows of the result, evenly spaced, both ends among them; 101 when times are left out too"
+    )
+    times: Annotated[tuple[NotNegative, ...], NotEmpty()] | None = Field(
+        None, description="times of the rows of the result, increasing, within the duration, s; instead of frames"
+    )
+    start: Literal["equilibrium", "unloaded"] = Field(
+        "equilibrium",
+        description="how it begins, at rest: in the static equilibrium of the inputs at t = 0, or in the unloaded "
+        "shape",
+    )
+    tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] | None = Field(
+        None,
+        description="wanted error of the paths of tips, relative to the rod length, without unit; that of [accuracy] "
+        "when left out",
+    )
+    step: Positive | None = Field(
+        None, description="time step that is kept to, s; its error is estimated, not controlled; chosen when left out"
+    )
+    integrator: Literal["radau", "gauss"] = Field(
+        "radau",
+        description="'radau' damps what the steps do not resolve, 'gauss' keeps its energy",
+    )
+
+    @property
+    def frame_times(self) -> FloatArray:
+        """Times of the rows of the result, ascending, shape (rows,), s."""
+        if self.times is not None:
+            return np.asarray(self.times, dtype=float)
+        frames = FRAMES
+        if self.frames is not None:
+            frames = self.frames
+        return np.linspace(0.0, self.duration, frames)
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Frames or times; times that increase within the duration; a step that is not longer than that."""
+        if "frames" in given and "times" in given:
+            yield Fault(("times",), "stands beside frames", "give one of the two")
+        times = numbers_of(given.get("times"))
+        yield from not_increasing(times, ("times",))
+        # A duration that is no number has a fault of its own, and bounds nothing.
+        for duration in numbers_of(given.get("duration")):
+            for i, time in enumerate(times):
+                if time > duration:
+                    yield Fault(("times", i), f"must be <= duration, got {shown(time)} of {shown(duration)}")
+            for step in numbers_of(given.get("step")):
+                if step > duration > 0:
+                    yield Fault(("step",), f"must be <= duration, got {shown(step)} of {shown(duration)}")

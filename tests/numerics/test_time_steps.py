@@ -1,0 +1,491 @@
+"""Motions by collocation steps against DOP853 and closed forms: orders, constraints, invariants, control, failures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from moving import (
+    DUFFING,
+    PENDULUM,
+    PENDULUM_ANGLE,
+    Top,
+    duffing_force,
+    explicit,
+    pendulum_force,
+    pendulum_state,
+    reference,
+)
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
+from cosserat_casadi.numerics.consistent_start import consistent_start
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.time_steps import Integration, StepOutcome, StepSettings, integrate
+
+METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2), gauss(3)]
+
+
+def by_name(method: Collocation) -> str:
+    return method.name
+
+
+def start_at(equations: MotionEquations, x: FloatArray, v: FloatArray, time: float = 0.0) -> Instant:
+    return consistent_start(equations, time, x, v, interval=0.02).instant
+
+
+def fixed(
+    equations: MotionEquations, start: Instant, end: float, method: Collocation, size: float, error: float = 1e-13
+) -> Integration:
+    """Equal steps, their equations solved to rounding."""
+    tolerance = np.full(equations.size, error)
+    integration = integrate(equations, start, end, method, StepSettings(tolerance, size=size, newton=1.0))
+    assert integration.outcome is StepOutcome.COMPLETED, integration.message
+    return integration
+
+
+def controlled(
+    equations: MotionEquations, start: Instant, end: float, tolerance: float, method: Collocation | None = None
+) -> Integration:
+    settings = StepSettings(np.full(equations.size, tolerance))
+    integration = integrate(equations, start, end, method or radau(3), settings)
+    assert integration.outcome is StepOutcome.COMPLETED, integration.message
+    return integration
+
+
+def rates(errors: list[float] | FloatArray) -> FloatArray:
+    """Orders from errors at halved steps."""
+    values = np.asarray(errors)
+    return np.asarray(np.log2(values[:-1] / values[1:]))
+
+
+# Orders
+
+
+@pytest.mark.parametrize("method", METHODS, ids=by_name)
+@pytest.mark.parametrize("equations", [DUFFING, PENDULUM_ANGLE], ids=["duffing", "pendulum"])
+def test_smooth_equations_have_the_order_of_the_table(equations: MotionEquations, method: Collocation) -> None:
+    force = duffing_force if equations is DUFFING else pendulum_force
+    x = np.array([1.0])
+    v = np.array([0.3])
+    exact = reference(force, x, v, 0.0, 2.0)
+    errors = []
+    for size in (0.2, 0.1, 0.05):
+        end = fixed(equations, start_at(equations, x, v), 2.0, method, size).end
+        errors.append(float(np.linalg.norm(np.stack([end.x, end.v]) - exact)))
+    measured = rates(errors)
+    # Gauss's third stage comes near rounding, and Euler is not yet asymptotic.
+    assert_allclose(measured[-1], method.order, rtol=0, atol=0.6 if method.order == 6 else 0.15)
+
+
+@pytest.mark.parametrize("method", [radau(2), radau(3), gauss(2)], ids=by_name)
+def test_dense_output_has_one_order_more_than_its_polynomial(method: Collocation) -> None:
+    x = np.array([1.0])
+    v = np.array([0.3])
+    start = start_at(PENDULUM_ANGLE, x, v)
+    errors = []
+    for size in (0.1, 0.05, 0.025):
+        # One step from exact values, so that only the polynomial is seen.
+        step = fixed(PENDULUM_ANGLE, start, size, method, size).steps[0]
+        # The error has zeros in the step: the largest of several.
+        differences = []
+        for time in size * np.array([0.2, 0.5, 0.8]):
+            between = step.at(time)
+            differences.append(np.stack([between.x, between.v]) - reference(pendulum_force, x, v, 0.0, time))
+        errors.append(np.abs(differences).max(axis=(0, 2)))
+    measured = rates(np.array(errors))[-1]
+    assert_allclose(measured, [method.stages + 2, method.stages + 1], rtol=0, atol=0.15)
+
+
+def test_dense_output_joins_the_steps() -> None:
+    integration = controlled(PENDULUM, start_at(PENDULUM, *pendulum_state(1.2, 0.4)), 2.0, 1e-6)
+    for step in integration.steps:
+        for instant in (step.start, step.end):
+            between = step.at(instant.time * (1 - 1e-15))
+            assert_allclose(between.x[:2], instant.x[:2], rtol=0, atol=1e-13)
+            assert_allclose(between.v, instant.v, rtol=0, atol=1e-13)
+        after = step.at(step.end.time + 1e-12)
+        assert_allclose(after.x, step.end.x, rtol=0, atol=1e-10)
+        assert_allclose(after.a, step.end.a, rtol=0, atol=1e-10)
+
+
+# Stiff, massless, constrained
+
+
+def stiff_spring(stiffness: float, mass: float) -> MotionEquations:
+    """A pendulum x₀ that a stiff spring couples to x₁ = x₀² (an elastic direction, without mass if so given)."""
+
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        stretch = x[1] - x[0] ** 2
+        return np.array([a[0] + np.sin(x[0]) - 2 * stiffness * x[0] * stretch, mass * a[1] + stiffness * stretch])
+
+    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        stretch = x[1] - x[0] ** 2
+        own = np.cos(x[0]) + stiffness * (4 * x[0] ** 2 - 2 * stretch)
+        coupling = -2 * stiffness * x[0]
+        matrix = np.array([[own, coupling], [coupling, stiffness]])
+        return matrix, np.zeros((2, 2)), np.diag([1.0, mass])
+
+    return MotionEquations(np.ones(2, dtype=bool), residual, jacobians)
+
+
+def test_direction_without_mass_follows_its_balance() -> None:
+    # Without mass the spring is never stretched: x₀ is the free pendulum.
+    equations = stiff_spring(50.0, 0.0)
+    start = consistent_start(equations, 0.0, np.array([1.0, 1.0]), np.array([0.3, 0.6]), 0.02)
+    assert start.massless == 0
+    exact = reference(pendulum_force, np.array([1.0]), np.array([0.3]), 0.0, 2.0)
+    errors = []
+    for size in (0.2, 0.1, 0.05):
+        end = fixed(equations, start.instant, 2.0, radau(3), size).end
+        assert_allclose(end.x[1], end.x[0] ** 2, rtol=0, atol=1e-12)
+        errors.append(abs(end.x[0] - exact[0, 0]))
+    assert_allclose(rates(errors)[-1], 5.0, rtol=0, atol=0.3)
+
+
+def elastic_pendulum(stiffness: float) -> MotionEquations:
+    """A mass on a stiff spring of length one, by its angle and the stretch: as in rods, the stiff entry is x₁."""
+
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        angle, stretch = x
+        length = 1 + stretch
+        turning = length**2 * a[0] + 2 * length * v[0] * v[1] + length * np.sin(angle)
+        pulling = a[1] - length * v[0] ** 2 - np.cos(angle) + stiffness * stretch
+        return np.array([turning, pulling])
+
+    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        angle, stretch = x
+        length = 1 + stretch
+        by_stretch = 2 * length * a[0] + 2 * v[0] * v[1] + np.sin(angle)
+        by_position = np.array([[length * np.cos(angle), by_stretch], [np.sin(angle), stiffness - v[0] ** 2]])
+        by_velocity = np.array([[2 * length * v[1], 2 * length * v[0]], [-2 * length * v[0], 0.0]])
+        return by_position, by_velocity, np.diag([length**2, 1.0])
+
+    return MotionEquations(np.ones(2, dtype=bool), residual, jacobians)
+
+
+@pytest.mark.parametrize("stages", [2, 3])
+def test_stiff_spring_costs_no_order(stages: int) -> None:
+    # Frequency 1e5, steps of 1e4 of its time: the stretch follows the pull, and the angle is that of the pendulum.
+    stiffness = 1e10
+    equations = elastic_pendulum(stiffness)
+    exact = reference(pendulum_force, np.array([1.2]), np.array([0.4]), 0.0, 2.0)
+    stretch = (0.4**2 + np.cos(1.2)) / stiffness
+    start = Instant(0.0, np.array([1.2, stretch]), np.array([0.4, 0.0]), np.array([-np.sin(1.2), 0.0]))
+    errors = []
+    for size in (0.4, 0.2, 0.1):
+        end = fixed(equations, start, 2.0, radau(stages), size).end
+        errors.append(float(np.linalg.norm([end.x[0] - exact[0, 0], end.v[0] - exact[1, 0]])))
+        pull = exact[1, 0] ** 2 + np.cos(exact[0, 0])
+        assert_allclose(end.x[1] * stiffness, pull, rtol=0, atol=10 * size**stages)
+    assert_allclose(rates(errors)[-1], 2 * stages - 1, rtol=0, atol=0.3)
+
+
+@pytest.mark.parametrize("stages", [2, 3])
+def test_stiff_spring_does_not_shorten_the_steps(stages: int) -> None:
+    counts = []
+    for stiffness in (1e2, 1e6, 1e10):
+        equations = elastic_pendulum(stiffness)
+        stretch = (0.4**2 + np.cos(1.2)) / stiffness
+        start = start_at(equations, np.array([1.2, stretch]), np.array([0.4, 0.0]))
+        counts.append(controlled(equations, start, 2.0, 1e-5, radau(stages)).statistics.steps)
+    assert counts[2] <= counts[0]
+
+
+@pytest.mark.parametrize("stages", [2, 3])
+def test_constraint_keeps_the_orders_of_index_3(stages: int) -> None:
+    # Orders 2s − 1, s, s − 1 of positions, velocities and multipliers.
+    start = start_at(PENDULUM, *pendulum_state(1.2, 0.4))
+    end_angle = reference(pendulum_force, np.array([1.2]), np.array([0.4]), 0.0, 2.0)
+    exact_x, exact_v = pendulum_state(end_angle[0, 0], end_angle[1, 0])
+    errors = []
+    for size in (0.1, 0.05, 0.025):
+        integration = fixed(PENDULUM, start, 2.0, radau(stages), size)
+        end = integration.end
+        position_error = np.linalg.norm(end.x[:2] - exact_x[:2])
+        velocity_error = np.linalg.norm(end.v - exact_v)
+        errors.append([position_error, velocity_error, abs(end.x[2] - exact_x[2])])
+        gaps = [step.end.x[:2] @ step.end.x[:2] - 1 for step in integration.steps]
+        assert_allclose(gaps, 0.0, rtol=0, atol=1e-12)
+    measured = rates(np.array(errors))
+    # The last position of three stages is near the accuracy of the reference.
+    assert_allclose(measured[0], [2 * stages - 1, stages, stages - 1], rtol=0, atol=0.25)
+    assert_allclose(measured[-1, 1:], [stages, stages - 1], rtol=0, atol=0.1)
+
+
+@pytest.mark.parametrize("stages", [2, 3])
+def test_free_top_in_quaternions(stages: int) -> None:
+    top = Top(np.array([1.0, 2.0, 2.7]))
+    q = np.array([1.0, 0.0, 0.0, 0.0])
+    v = top.left(q).T @ np.array([0.2, 1.5, 0.1]) / 4
+    exact = top.reference(q, v, 4.0)
+    start = start_at(top.equations, q, v)
+    errors = []
+    for size in (0.4, 0.2, 0.1):
+        integration = fixed(top.equations, start, 4.0, radau(stages), size)
+        errors.append(float(np.linalg.norm(integration.end.x - exact)))
+        norms = [step.end.x @ step.end.x for step in integration.steps]
+        assert_allclose(norms, 1.0, rtol=0, atol=1e-12)
+    assert_allclose(rates(errors)[-1], 2 * stages - 1, rtol=0, atol=0.15)
+
+
+def test_massless_and_turning_ones_are_controlled_too() -> None:
+    spring = stiff_spring(50.0, 0.0)
+    spring_start = start_at(spring, np.array([1.0, 1.0]), np.array([0.3, 0.6]))
+    angle = reference(pendulum_force, np.array([1.0]), np.array([0.3]), 0.0, 2.0)[0, 0]
+    top = Top(np.array([1.0, 2.0, 2.7]))
+    q = np.array([1.0, 0.0, 0.0, 0.0])
+    v = top.left(q).T @ np.array([0.2, 1.5, 0.1]) / 4
+    turned = top.reference(q, v, 4.0)
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        spring_end = controlled(spring, spring_start, 2.0, tolerance).end
+        assert abs(spring_end.x[0] - angle) < tolerance
+        top_end = controlled(top.equations, start_at(top.equations, q, v), 4.0, tolerance).end
+        assert np.abs(top_end.x - turned).max() < tolerance
+
+
+# Symmetry and energy of Gauss
+
+
+@pytest.mark.parametrize("stages", [1, 2, 3])
+def test_gauss_comes_back_when_time_is_reversed(stages: int) -> None:
+    equations = PENDULUM_ANGLE
+    start = start_at(equations, np.array([2.0]), np.array([0.3]))
+    there = fixed(equations, start, 5.0, gauss(stages), 0.1, error=1e-15).end
+    assert abs(there.x[0] - 2.0) > 0.5
+    turned = Instant(0.0, there.x, -there.v, there.a)
+    back = fixed(equations, turned, 5.0, gauss(stages), 0.1, error=1e-15).end
+    assert_allclose(back.x, [2.0], rtol=0, atol=5e-12)
+    assert_allclose(back.v, [-0.3], rtol=0, atol=5e-12)
+
+
+def test_radau_does_not_come_back() -> None:
+    start = start_at(PENDULUM_ANGLE, np.array([2.0]), np.array([0.3]))
+    there = fixed(PENDULUM_ANGLE, start, 5.0, radau(2), 0.1).end
+    back = fixed(PENDULUM_ANGLE, Instant(0.0, there.x, -there.v, there.a), 5.0, radau(2), 0.1).end
+    assert abs(back.x[0] - 2.0) > 1e-6
+
+
+def test_gauss_keeps_a_quadratic_energy() -> None:
+    oscillator = explicit(lambda t, x, v: -x, lambda t, x, v: -np.eye(1), lambda t, x, v: np.zeros((1, 1)))
+    start = start_at(oscillator, np.ones(1), np.zeros(1))
+    steps = fixed(oscillator, start, 500.0, gauss(2), 0.1).steps
+    energies = [(step.end.x @ step.end.x + step.end.v @ step.end.v) / 2 for step in steps]
+    assert_allclose(energies, 0.5, rtol=0, atol=1e-12)
+
+
+def test_energy_of_gauss_stays_near_that_of_the_start() -> None:
+    start = start_at(PENDULUM_ANGLE, np.array([2.0]), np.zeros(1))
+    steps = fixed(PENDULUM_ANGLE, start, 1000.0, gauss(2), 0.2).steps
+    energies = np.array([step.end.v[0] ** 2 / 2 - np.cos(step.end.x[0]) for step in steps])
+    away = np.abs(energies + np.cos(2.0))
+    # No drift: the last tenth of 120 periods is no worse than the first.
+    assert away.max() < 1e-4
+    assert away[-500:].max() < 1.01 * away[:500].max()
+
+
+# Control of the step
+
+
+@pytest.mark.parametrize(
+    ("equations", "x", "v", "exact"),
+    [
+        (DUFFING, [1.0], [0.3], reference(duffing_force, np.array([1.0]), np.array([0.3]), 0.0, 2.0)[0]),
+        (
+            PENDULUM,
+            *pendulum_state(1.2, 0.4),
+            pendulum_state(reference(pendulum_force, np.array([1.2]), np.array([0.4]), 0.0, 2.0)[0, 0], 0.0)[0],
+        ),
+    ],
+    ids=["duffing", "constrained"],
+)
+def test_error_is_within_the_tolerance(
+    equations: MotionEquations, x: FloatArray, v: FloatArray, exact: FloatArray
+) -> None:
+    start = start_at(equations, np.array(x), np.array(v))
+    moving = equations.differential
+    errors = []
+    counts = []
+    for tolerance in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+        integration = controlled(equations, start, 2.0, tolerance)
+        error = float(np.abs(integration.end.x - exact)[moving].max())
+        assert error < tolerance
+        errors.append(error)
+        counts.append(integration.statistics.steps)
+        assert integration.statistics.rejected <= 8
+    # Work and precision: the tolerance costs its fourth root in steps, and each power of ten buys digits.
+    assert np.all(np.diff(errors) < 0.0)
+    assert np.all(np.diff(counts) >= 0)
+    assert counts[-1] / counts[-3] < 2 * 100**0.25
+    assert errors[-1] < 1e-4 * errors[0]
+
+
+def test_two_stages_are_controlled_too() -> None:
+    start = start_at(DUFFING, np.array([1.0]), np.array([0.3]))
+    exact = reference(duffing_force, np.array([1.0]), np.array([0.3]), 0.0, 2.0)
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        end = controlled(DUFFING, start, 2.0, tolerance, radau(2)).end
+        assert abs(end.x[0] - exact[0, 0]) < 5 * tolerance
+
+
+def test_van_der_pol_costs_no_more_than_radau_of_scipy() -> None:
+    mu = 1000.0
+    equations = explicit(
+        lambda t, x, v: mu * (1 - x**2) * v - x,
+        lambda t, x, v: np.diag(-2 * mu * x * v - 1),
+        lambda t, x, v: np.diag(mu * (1 - x**2)),
+    )
+
+    def rate(t: float, y: FloatArray) -> list[float]:
+        return [y[1], mu * (1 - y[0] ** 2) * y[1] - y[0]]
+
+    fine = solve_ivp(rate, (0, 2000), [2.0, 0.0], method="Radau", rtol=1e-10, atol=1e-12).y[0, -1]
+    scipy = solve_ivp(rate, (0, 2000), [2.0, 0.0], method="Radau", rtol=1e-4, atol=1e-4)
+    integration = controlled(equations, start_at(equations, np.array([2.0]), np.zeros(1)), 2000.0, 1e-4)
+    assert abs(integration.end.x[0] - fine) < 1e-4
+    assert integration.statistics.steps < len(scipy.t)
+    assert integration.statistics.jacobians < integration.statistics.steps
+
+
+def test_pieces_are_chained_over_a_jump() -> None:
+    # A force that goes from 1 to −1 at t = 1: parabolas, which collocation meets exactly, and no step is refused.
+    def pushed(force: float) -> MotionEquations:
+        return explicit(lambda t, x, v: np.full(1, force), lambda *_: np.zeros((1, 1)), lambda *_: np.zeros((1, 1)))
+
+    before = controlled(pushed(1.0), start_at(pushed(1.0), np.zeros(1), np.zeros(1)), 1.0, 1e-10)
+    middle = before.end
+    after = controlled(pushed(-1.0), start_at(pushed(-1.0), middle.x, middle.v, 1.0), 2.0, 1e-10)
+    assert_allclose(after.end.x, [1.0], rtol=0, atol=1e-14)
+    assert_allclose(after.end.v, [0.0], rtol=0, atol=1e-14)
+    assert before.statistics.rejected + after.statistics.rejected == 0
+
+
+def test_given_size_is_divided_evenly() -> None:
+    start = start_at(DUFFING, np.array([1.0]), np.array([0.3]))
+    integration = fixed(DUFFING, start, 1.0, radau(2), 0.3)
+    assert len(integration.steps) == 4
+    assert_allclose([step.size for step in integration.steps], 0.25, rtol=0, atol=0)
+    assert integration.end.time == 1.0
+    assert len(fixed(DUFFING, start, 1.0, radau(2), 0.1).steps) == 10
+
+
+def test_no_tiny_step_is_left_at_the_end() -> None:
+    start = start_at(DUFFING, np.array([1.0]), np.array([0.3]))
+    settings = StepSettings(np.full(1, 1e-2), first=0.099, longest=0.099)
+    integration = integrate(DUFFING, start, 1.0, radau(3), settings)
+    sizes = [step.size for step in integration.steps]
+    assert len(sizes) == 11
+    assert_allclose(sizes[-2:], (1.0 - 9 * 0.099) / 2, rtol=1e-12, atol=0)
+    assert_allclose(integration.next_size, 0.099, rtol=1e-15, atol=0)
+
+
+def test_tolerance_below_rounding_is_met_to_rounding() -> None:
+    x, v = pendulum_state(1.2, 0.4)
+    to_rounding = fixed(PENDULUM, start_at(PENDULUM, x, v), 2.0, radau(3), 0.1, error=1e-25).end
+    closely = fixed(PENDULUM, start_at(PENDULUM, x, v), 2.0, radau(3), 0.1, error=1e-13).end
+    assert_allclose(to_rounding.x[:2], closely.x[:2], rtol=0, atol=1e-12)
+
+
+def test_jacobian_that_grew_too_old_is_replaced() -> None:
+    # A spring that is a thousand times stiffer after t = 1, where a step ends: the Jacobian from before is no use.
+    def stiffness(t: float, jump: float) -> float:
+        return 1.0 if t < jump else 1000.0
+
+    spring = explicit(
+        lambda t, x, v: 1.0 - stiffness(t, 1.0 + 1e-9) * x,
+        lambda t, x, v: np.array([[-stiffness(t, 1.0 - 1e-9)]]),
+        lambda *_: np.zeros((1, 1)),
+    )
+    start = start_at(spring, np.ones(1), np.zeros(1))
+    integration = fixed(spring, start, 2.0, radau(3), 0.1, error=1e-10)
+    assert integration.statistics.jacobians == 2
+    assert integration.statistics.iterations > sum(step.iterations for step in integration.steps)
+
+
+def test_all_stages_may_be_evaluated_at_once() -> None:
+    def residuals(t: FloatArray, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        return a + np.sin(x)
+
+    at_once = MotionEquations(
+        PENDULUM_ANGLE.differential, PENDULUM_ANGLE.residual, PENDULUM_ANGLE.jacobians, residuals=residuals
+    )
+    start = start_at(PENDULUM_ANGLE, np.array([2.0]), np.array([0.3]))
+    one_by_one = controlled(PENDULUM_ANGLE, start, 2.0, 1e-6)
+    together = controlled(at_once, start, 2.0, 1e-6)
+    assert_allclose(together.end.x, one_by_one.end.x, rtol=0, atol=0)
+
+
+# What fails, and how it is told
+
+
+def test_motion_without_continuation_names_the_time() -> None:
+    # ẍ = 6 x² with x = 1/(1 − t)².
+    equations = explicit(lambda t, x, v: 6 * x**2, lambda t, x, v: np.diag(12 * x), lambda *_: np.zeros((1, 1)))
+    start = start_at(equations, np.ones(1), np.full(1, 2.0))
+    settings = StepSettings(np.full(1, 1e-4), shortest=1e-7)
+    integration = integrate(equations, start, 2.0, radau(3), settings)
+    assert integration.outcome is StepOutcome.STEP_TOO_SMALL
+    assert_allclose(integration.end.time, 1.0, rtol=0, atol=1e-3)
+    assert f"t = {integration.end.time:.9g} s" in integration.message
+    assert integration.next_size < 2e-7
+
+
+def test_region_without_numbers_ends_the_motion() -> None:
+    # √(1 − x) for x beyond 1, which x = t reaches at t = 1.
+    equations = explicit(lambda t, x, v: 0.0 * np.sqrt(1 - x), lambda *_: np.zeros((1, 1)), lambda *_: np.zeros((1, 1)))
+    start = start_at(equations, np.zeros(1), np.ones(1))
+    integration = integrate(equations, start, 2.0, radau(3), StepSettings(np.full(1, 1e-6)))
+    assert integration.outcome is StepOutcome.NOT_FINITE
+    assert_allclose(integration.end.time, 1.0, rtol=0, atol=1e-8)
+    given = integrate(equations, start, 2.0, radau(3), StepSettings(np.full(1, 1e-6), size=0.25))
+    assert given.outcome is StepOutcome.NOT_FINITE
+    assert given.end.time == 1.0
+
+
+@pytest.mark.parametrize("size", [None, 0.1])
+def test_constraint_given_twice_is_singular(size: float | None) -> None:
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        return np.array([a[0] + x[1] + x[2], x[0], x[0]])
+
+    stiffness = np.array([[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    mass = np.diag([1.0, 0.0, 0.0])
+    equations = MotionEquations(
+        np.array([True, False, False]), residual, lambda *_: (stiffness, np.zeros((3, 3)), mass)
+    )
+    start = Instant(0.0, np.zeros(3), np.zeros(3), np.zeros(3))
+    integration = integrate(equations, start, 1.0, radau(3), StepSettings(np.full(3, 1e-6), size=size))
+    assert integration.outcome is StepOutcome.SINGULAR
+    assert integration.steps == ()
+    assert integration.end is start
+
+
+def test_given_step_too_long_to_be_solved_is_told() -> None:
+    equations = explicit(lambda t, x, v: 6 * x**2, lambda t, x, v: np.diag(12 * x), lambda *_: np.zeros((1, 1)))
+    start = start_at(equations, np.ones(1), np.full(1, 2.0))
+    integration = integrate(equations, start, 2.0, radau(3), StepSettings(np.full(1, 1e-6), size=0.25))
+    assert integration.outcome is StepOutcome.NOT_SOLVED
+    assert "use smaller steps" in integration.message
+
+
+def test_interruption_keeps_what_was_computed() -> None:
+    reached: list[float] = []
+
+    def stop_after_half(time: float, size: float) -> None:
+        reached.append(time)
+        if time > 1.0:
+            raise KeyboardInterrupt
+
+    start = start_at(DUFFING, np.array([1.0]), np.array([0.3]))
+    settings = StepSettings(np.full(1, 1e-6))
+    integration = integrate(DUFFING, start, 2.0, radau(3), settings, stop_after_half)
+    assert integration.outcome is StepOutcome.INTERRUPTED
+    assert [step.end.time for step in integration.steps] == reached
+    assert integration.end.time == reached[-1]
+
+
+def test_bad_settings_are_refused_all_at_once() -> None:
+    start = Instant(1.0, np.zeros(3), np.zeros(3), np.zeros(3))
+    settings = StepSettings(np.array([1.0, 0.0, 0.0]))
+    with pytest.raises(ValueError, match=r"end: .*tolerance: .*size: .*method: "):
+        integrate(PENDULUM, start, 0.5, gauss(2), settings)
