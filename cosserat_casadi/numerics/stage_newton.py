@@ -1,8 +1,11 @@
-"""Simplified Newton's method for the stages of one step.
+"""Newton's method for the stages of one step, with one Jacobian and Broyden's updates of it.
 
-One Jacobian serves all stages and all iterations, and further steps while it contracts. What counts as converged is
-the error that is left in the positions, and in h times the velocities, as the contraction of the corrections foretells
-it. E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section IV.8.
+One Jacobian serves all stages and all iterations, and further steps while few iterations suffice. Secant updates make
+up for what changes of it within the step: where coordinates are anchored at the base of a rod, some motions move next
+to no mass, and along them a small turn of the rod changes the Jacobian by more than its own size. What counts as
+converged is the error that is left in the positions, and in h times the velocities, as the contraction of the
+corrections foretells it. E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996,
+section IV.8.
 """
 
 from __future__ import annotations
@@ -14,11 +17,18 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.secant_updates import SecantUpdates
 from cosserat_casadi.numerics.step import stages_of
 from cosserat_casadi.numerics.step_matrices import StepMatrices
 
 ROUNDING = 16.0 * float(np.finfo(np.float64).eps)
 """Change of position, relative to the largest, that is rounding and not a correction."""
+
+LEAST_CONTRACTION = 0.1
+"""Contraction that is counted on at best: a smaller one tells of the directions in which the Jacobian is good."""
+
+DIVERGING = 10.0
+"""Growth of a correction over the one before that secant updates do not make up for."""
 
 
 class StageOutcome(Enum):
@@ -80,6 +90,7 @@ def solve_stages(
         bounds: when to stop.
     """
     method = matrices.method
+    updates = SecantUpdates(method.matrix, bounds.weights)
     to_unknowns = np.where(equations.differential, matrices.step**-2, 1.0)
     rounding = ROUNDING * bounds.length(start.x)
     allowed = max(bounds.error, rounding)
@@ -90,7 +101,7 @@ def solve_stages(
         stages = stages_of(method, equations.differential, start, matrices.step, unknowns)
         residuals = equations.residual_of_stages(stages.times, stages.x, stages.v, stages.a)
         largest = float(np.max(np.abs(residuals), initial=0.0))
-        corrections = matrices.corrections(residuals)
+        corrections = updates.applied_to(matrices.corrections(residuals))
         # A h²a is h times the change of v; that of x, A² h²a, is never larger, as no row of |A| has a sum above one.
         length = bounds.length(method.matrix @ corrections)
         if not np.isfinite(length + largest):
@@ -98,33 +109,32 @@ def solve_stages(
         unknowns = unknowns + to_unknowns * corrections
         if iteration > 1:
             contraction = length / length_before
-        outcome = _outcome(length, contraction, allowed, bounds.iterations - iteration)
+        outcome = _outcome(length, contraction, allowed)
         if outcome is not None:
             return StageSolution(unknowns, outcome, iteration, contraction, largest)
+        updates.take(corrections)
         length_before = length
     return StageSolution(unknowns, StageOutcome.DIVERGED, bounds.iterations, contraction, largest)
 
 
-def _outcome(length: float, contraction: float, allowed: float, iterations_left: int) -> StageOutcome | None:
+def _outcome(length: float, contraction: float, allowed: float) -> StageOutcome | None:
     """How the iteration ends with a correction; None where another one is due.
 
     Args:
         length: of the correction, weighted.
         contraction: ratio to the one before; 0 for the first.
         allowed: weighted error that may be left.
-        iterations_left: corrections that may follow.
     """
     # Where corrections shrink, what is left after this one is shorter than it; where they do not, it is rounding.
     if length <= allowed:
         return StageOutcome.CONVERGED
-    if contraction >= 1.0:
+    if contraction >= DIVERGING:
         return StageOutcome.DIVERGED
-    if contraction == 0.0:
+    # Corrections may grow for once while the updates learn a direction; then, and at first, nothing is foretold.
+    if contraction == 0.0 or contraction >= 1.0:
         return None
-    left = length * contraction / (1.0 - contraction)
+    expected = max(contraction, LEAST_CONTRACTION)
+    left = length * expected / (1.0 - expected)
     if left <= allowed:
         return StageOutcome.CONVERGED
-    left_at_last = left * contraction**iterations_left
-    if left_at_last > allowed:
-        return StageOutcome.DIVERGED
     return None

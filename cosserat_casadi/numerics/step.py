@@ -74,7 +74,7 @@ class Step:
         if time == self.end.time:
             return self.end
         share = (time - self.start.time) / self.size
-        return motion_at(self, share, time)
+        return motion_at(self.method, self.differential, self.start, self.size, self.unknowns, share, time)
 
 
 def stages_of(
@@ -124,15 +124,30 @@ def end_of(
     return Instant(time, x, v, a)
 
 
-def motion_at(step: Step, share: float, time: float) -> Instant:
-    """The polynomial of a step at a share θ of it."""
-    method = step.method
-    differential = step.differential
-    start = step.start
-    accelerations = np.where(differential, step.unknowns, 0.0)
-    values = method.values_at(share) @ step.unknowns
-    displacement = share * step.size * start.v + step.size**2 * (method.double_integrals_at(share) @ accelerations)
-    velocity = start.v + step.size * (method.integrals_at(share) @ accelerations)
+def motion_at(
+    method: Collocation,
+    differential: npt.NDArray[np.bool_],
+    start: Instant,
+    size: float,
+    unknowns: FloatArray,
+    share: float,
+    time: float,
+) -> Instant:
+    """The polynomial of a step at a share θ of it.
+
+    Args:
+        method: the collocation method.
+        differential: which entries have accelerations, shape (n,).
+        start: where the step begins.
+        size: h, s.
+        unknowns: as in :class:`Step`, shape (s, n).
+        share: θ.
+        time: that belongs to it, s.
+    """
+    accelerations = np.where(differential, unknowns, 0.0)
+    values = method.values_at(share) @ unknowns
+    displacement = share * size * start.v + size**2 * (method.double_integrals_at(share) @ accelerations)
+    velocity = start.v + size * (method.integrals_at(share) @ accelerations)
     x = np.where(differential, start.x + displacement, values)
     v = np.where(differential, velocity, 0.0)
     a = np.where(differential, values, 0.0)

@@ -2,7 +2,7 @@
 
 Equations that jump or have a kink in time are integrated piece by piece: a step must not reach over a kink. See
 :mod:`step_control` for the error that decides the size of a step, and :mod:`stage_newton` for its equations. A Jacobian
-serves several steps while it contracts well.
+serves several steps while few iterations suffice.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated
+from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, StepControl, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
 
-KEEP_CONTRACTION = 0.1
-"""Contraction of Newton's method up to which its Jacobian serves the next step too."""
+FEW_ITERATIONS = 4
+"""Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
 ITERATIONS_OF_GIVEN_STEP = 40
 """Most Newton iterations of a step whose size is given: no shorter one may be tried."""
@@ -210,7 +210,7 @@ class _Run:
         size: of the step to be tried next, s.
         bounds: weights of an error, and when Newton's method stops.
         linearisation: the Jacobian in use; None where the next step needs a new one.
-        fresh: whether that Jacobian was evaluated at the last instant reached.
+        fresh: whether that Jacobian was evaluated after the last instant reached.
         matrices: the linear systems in use; None where there are none for the Jacobian.
         rejected: steps refused.
         iterations: Newton iterations.
@@ -259,7 +259,7 @@ class _Run:
         return Integration(self.start, tuple(self.steps), outcome, self.size, statistics)
 
     def renew_jacobian(self) -> None:
-        """Have the next step evaluate a Jacobian where it begins."""
+        """Have the next step evaluate a Jacobian of its own."""
         self.linearisation = None
         self.matrices = None
 
@@ -270,13 +270,16 @@ class _Run:
             # The Jacobian may be too old: the same step gets one of its own.
             self.renew_jacobian()
             solution = self._solve_with_jacobian()
+        if isinstance(solution, StepOutcome):
+            # A shorter step has its middle elsewhere.
+            self.renew_jacobian()
         return solution
 
     def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
         """Solve with the Jacobian in use, or a new one where there is none."""
         linearisation = self.linearisation
         if linearisation is None:
-            linearisation = self.equations.linearised(self.now)
+            linearisation = self.equations.linearised(self.predicted_middle())
             self.linearisation = linearisation
             self.jacobians += 1
             self.fresh = True
@@ -301,6 +304,11 @@ class _Run:
             return extrapolated(self.steps[-1], self.size)
         unknowns = np.where(self.equations.differential, self.start.a, self.start.x)
         return np.tile(unknowns, (self.method.stages, 1))
+
+    def predicted_middle(self) -> Instant:
+        """The middle of the step as the first iterate has it: a Jacobian there is nearest to those of all stages."""
+        time = self.now.time + self.size / 2.0
+        return motion_at(self.method, self.equations.differential, self.now, self.size, self.guess(), 0.5, time)
 
     def error_of(self, solution: StageSolution, after_a_jump: bool) -> float:
         """Estimated error over tolerance of the step that was solved last."""
@@ -327,7 +335,7 @@ class _Run:
         )
         self.steps.append(step)
         self.fresh = False
-        if solution.contraction > KEEP_CONTRACTION:
+        if solution.iterations > FEW_ITERATIONS:
             self.renew_jacobian()
 
 

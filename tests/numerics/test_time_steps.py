@@ -388,17 +388,21 @@ def test_tolerance_below_rounding_is_met_to_rounding() -> None:
 
 
 def test_jacobian_that_grew_too_old_is_replaced() -> None:
-    # A spring that is a thousand times stiffer after t = 1, where a step ends: the Jacobian from before is no use.
-    def stiffness(t: float, jump: float) -> float:
-        return 1.0 if t < jump else 1000.0
+    # Springs that are up to a million times stiffer after t = 1, where a step ends: the Jacobian from before is no
+    # use, and they are too many to be learnt by secant updates.
+    grown = np.geomspace(10.0, 1e6, 30)
 
-    spring = explicit(
+    def stiffness(t: float, jump: float) -> FloatArray:
+        return np.ones(30) if t < jump else grown
+
+    springs = explicit(
         lambda t, x, v: 1.0 - stiffness(t, 1.0 + 1e-9) * x,
-        lambda t, x, v: np.array([[-stiffness(t, 1.0 - 1e-9)]]),
-        lambda *_: np.zeros((1, 1)),
+        lambda t, x, v: np.diag(-stiffness(t, 1.0 - 1e-9)),
+        lambda *_: np.zeros((30, 30)),
+        size=30,
     )
-    start = start_at(spring, np.ones(1), np.zeros(1))
-    integration = fixed(spring, start, 2.0, radau(3), 0.1, error=1e-10)
+    start = start_at(springs, np.ones(30), np.zeros(30))
+    integration = fixed(springs, start, 2.0, radau(3), 0.1, error=1e-10)
     assert integration.statistics.jacobians == 2
     assert integration.statistics.iterations > sum(step.iterations for step in integration.steps)
 
