@@ -294,7 +294,7 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     model = level.simulator.model
     times = watched_times(level.history, duration)
-    x, _, _, _ = level.history.states(times)
+    x, _ = level.history.rough_positions(times)
     moved = np.abs(x).max(axis=0) * displacements(model)
     felt = {}
     for name, rod in model.discrete.rods.items():

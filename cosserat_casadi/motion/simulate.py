@@ -15,6 +15,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
@@ -62,6 +63,12 @@ FIRST_GAUSS_STEPS = 50
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
+
+NEWTON = 1e-3
+"""Error of Newton's method over the tolerance of a step."""
+
+CLOSED = 1e-10
+"""Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
 
 CONSISTENT = 1e-8
 """Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
@@ -118,7 +125,11 @@ class Simulator:
 
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
-        return self._integrated(StepSettings(tolerance=tolerance / displacements(self.model)))
+        newton = NEWTON
+        if not np.all(self.model.discrete.unknowns.differential):
+            # What Newton's method leaves is what supports and joints are open by.
+            newton = min(newton, CLOSED / tolerance)
+        return self._integrated(StepSettings(tolerance=tolerance / displacements(self.model), newton=newton))
 
     def stepped(self, size: float) -> History:
         """The motion with equal steps, s."""
@@ -289,6 +300,9 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         if rod.properties.linear_density is None:
             what = f"missing: {rod.properties.name!r} has no mass, and a motion needs one"
             problems.append(Problem(f"rods[{index}].material.density", what, "give the density, kg/m³"))
+    if model.scene.accuracy.rotation == "permuted":
+        what = "'permuted', the literal linear system, has no velocities"
+        problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
     if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
         what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("simulation.integrator", what, "use 'radau'"))
@@ -319,7 +333,7 @@ def unresolved(history: History, duration: float) -> bool:
     """Whether the rods bend too sharply for their nodes at some time."""
     model = history.model
     times = watched_times(history, duration)
-    x, _, _, inputs = history.states(times)
+    x, inputs = history.rough_positions(times)
     indices = model.resolution_index.map(len(times))(x.T, inputs.T).full()
     return bool(indices.max() > 1.0)
 
@@ -328,7 +342,19 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
         return str(outcome.value)
-    return f"{outcome.value} Reached: t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s."
+    reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
+    return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+
+
+def most_violent(history: History) -> str:
+    """The rod, or the body, whose accelerations displace it most where a motion ends."""
+    model = history.model
+    accelerations = np.nan_to_num(np.abs(history.end.a), nan=np.inf) * displacements(model)
+    largest = {}
+    for block, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.POSE):
+        kind = "rod " if block.kind is BlockKind.STRAIN else ""
+        largest[f"{kind}{block.owner}"] = float(accelerations[entries].max(initial=0.0))
+    return max(largest, key=lambda owner: largest[owner])
 
 
 def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:
@@ -336,17 +362,17 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
     model = simulator.model
     wanted = simulator.simulation.frame_times
     times = wanted[wanted <= history.end.time]
-    x, v, a, inputs = history.states(times)
+    states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
     return Motion(
         model=model,
         outcome=outcome,
         message=message,
         times=times,
-        x=x,
-        v=v,
-        a=a,
-        inputs=inputs,
+        x=np.array([state.x for state in states]),
+        v=np.array([state.v for state in states]),
+        a=np.array([state.a for state in states]),
+        inputs=np.array([state.inputs for state in states]),
         energy=energies_of(history, times, moving),
         error_estimate=error,
         statistics=history.statistics,
