@@ -9,6 +9,7 @@ from moving import (
     PENDULUM,
     PENDULUM_ANGLE,
     Top,
+    TurningPair,
     duffing_force,
     explicit,
     pendulum_force,
@@ -405,6 +406,18 @@ def test_jacobian_that_grew_too_old_is_replaced() -> None:
     integration = fixed(springs, start, 2.0, radau(3), 0.1, error=1e-10)
     assert integration.statistics.jacobians == 2
     assert integration.statistics.iterations > sum(step.iterations for step in integration.steps)
+
+
+def test_light_direction_that_turns_refuses_no_steps() -> None:
+    # One Jacobian alone contracts so badly that most steps, far shorter than their error asks for, are refused.
+    pair = TurningPair(light=1e-4)
+    x = np.array([0.0, 0.0, 0.0, 0.02, 0.01])
+    v = np.array([0.0, 0.0, 4.0, 0.0, 0.0])
+    exact = reference(pair.acceleration, x, v, 0.0, 0.3)
+    integration = controlled(pair.equations, start_at(pair.equations, x, v), 0.3, 1e-5)
+    assert_allclose(integration.end.x, exact[0], rtol=0, atol=1e-5)
+    assert integration.statistics.steps < 120
+    assert integration.statistics.rejected < 15
 
 
 def test_all_stages_may_be_evaluated_at_once() -> None:
