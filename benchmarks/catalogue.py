@@ -27,6 +27,7 @@ from tests.catalogue.checks import (  # noqa: E402
     solved,
     zero_near,
 )
+from tests.pose_errors import distance_between, pose_error  # noqa: E402
 from tests.reference.closed_forms import elastica, roll_up  # noqa: E402
 from tests.reference.shooting import solve_by_shooting  # noqa: E402
 
@@ -74,20 +75,20 @@ def bending() -> tuple[Any, list[Row]]:
         dead.plot(r[:, 0], r[:, 2], label=f"{load:g}")
         shortening, across, _ = elastica(load)
         dead.plot(across, 1 - shortening, "k.", markersize=5)
-        error = float(np.abs(found.tip().position[0] - [across, 0, 1 - shortening]).max())
+        error = distance_between(found.tip().position[0], [across, 0, 1 - shortening])
     rows.append(("(a) elastica, F L²/EI = 100", "elliptic integrals", error))
     for load in (5.0, 20.0, 40.0):
         found = solved(cases.table({}, cases.tip([load, 0, 0], frame="body")))
         r, (across, along) = shape(found), cases.follower_cantilever(load)
         follower.plot(r[:, 0], r[:, 2], label=f"{load:g}")
         follower.plot(across, along, "k.", markersize=5)
-        error = float(np.abs(found.tip().position[0] - [across, 0, along]).max())
+        error = distance_between(found.tip().position[0], [across, 0, along])
     rows.append(("(a) follower force, F L²/EI = 40", "pendulum, DOP853", error))
     for turns in (0.5, 1, 2, 5):
         found = solved(cases.table(cases.round_rod(1.0), cases.tip(moment=[0, 2 * np.pi * turns, 0])))
         r = shape(found)
         rolled.plot(r[:, 0], r[:, 2], label=f"{turns:g}")
-        error = float(np.abs(found.tip().position[0] - roll_up(turns)[0]).max())
+        error = distance_between(found.tip().position[0], roll_up(turns)[0])
     rows.append(("(b) roll-up into 5 circles", "closed form", error))
     titles = ("dead force, F L²/EI", "follower force, F L²/EI", "tip moment, turns")
     for panel, title in zip((dead, follower, rolled), titles, strict=True):
@@ -147,13 +148,10 @@ def column() -> tuple[Any, list[Row]]:
     near = path(1, 9.1)
     x, _, z = near.tip().position[-1]
     rows.append(("(d) Euler's load", "π² EI/4 L²", abs(9.1 * near.events[0].factor - 1)))
-    rows.append(("(d) buckled column at 9.1 P_c", "elliptic integrals", _apart([abs(x), z], cases.column_tip(9.1))))
+    distance = distance_between([abs(x), z], cases.column_tip(9.1))
+    rows.append(("(d) buckled column at 9.1 P_c", "elliptic integrals", distance))
     named(panel, "clamped column: P / P_c over the tip's way", "x of the tip / L", "P / P_c", equal=False)
     return figure, rows
-
-
-def _apart(one: Any, other: Any) -> float:
-    return float(np.abs(np.subtract(one, other)).max())
 
 
 # (f), (g)
@@ -250,7 +248,8 @@ def extremes() -> list[Row]:
     rows: list[Row] = []
     for name, tables in scenes.items():
         found, oracle = solved(tables).tip(), solve_by_shooting(tables)
-        error = max(_apart(found.position[0], oracle.tip_position), _apart(found.rotation[0], oracle.tip_rotation))
+        true = (oracle.tip_position, oracle.tip_rotation)
+        error = pose_error((found.position[0], found.rotation[0]), true, tables["rods"][0]["length"])
         rows.append((name, "shooting, DOP853", error))
     return rows
 
@@ -269,7 +268,7 @@ def order() -> tuple[Any, list[Row]]:
     errors, modes = [], [2, 4, 6, 8, 12, 16, 24, 32, 48, 64]
     for count in modes:
         found = solve(fine_model(cases.table({}, cases.tip([10.0, 0, 0])), count, 4 * count))
-        errors.append(_apart(found.tip().position[0], [across, 0, 1 - shortening]))
+        errors.append(distance_between(found.tip().position[0], [across, 0, 1 - shortening]))
     error.semilogy(modes, np.maximum(errors, 1e-17), ".-", color=BLUE, label="tip, elastica at 10")
     named(error, "error as the order grows", "modes; four times as many intervals", "error / L", equal=False)
     for panel in (condition, error):

@@ -28,12 +28,14 @@ from rows import append, read
 from cosserat_casadi import Solution, build, discretise, solve, solve_scene
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong
+from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
+from tests.pose_errors import pose_error
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
@@ -44,6 +46,9 @@ TRIED = 6
 """Most candidates of the brute force that are solved."""
 GRIDS = 4
 """Numbers of intervals looked at for each integrator, from the fewest that do."""
+
+Tip = tuple[np.ndarray, np.ndarray]
+"""Position over the length, and rotation matrix."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +139,7 @@ def run_scene(seed: int, cold: bool) -> list[Row]:
     ]
 
 
-def judged(row: Row, solution: Solution, truth: np.ndarray, followed: np.ndarray | None, reference: str) -> Row:
+def judged(row: Row, solution: Solution, truth: Tip, followed: Tip | None, reference: str) -> Row:
     pick = solution.model.discretisation[ROD]
     return replace(
         row,
@@ -146,7 +151,7 @@ def judged(row: Row, solution: Solution, truth: np.ndarray, followed: np.ndarray
     )
 
 
-def true_tip(near: Solution) -> tuple[np.ndarray, str]:
+def true_tip(near: Solution) -> tuple[Tip, str]:
     """Tip of shooting that starts at the clamp's wrench of a solution; that of a far finer solution where it fails."""
     basis, base = near.model.discrete.rods[ROD], near.base_wrench(ROD)
     values = load_values(near.model.scene, near.model.inputs, near.inputs)
@@ -154,7 +159,7 @@ def true_tip(near: Solution) -> tuple[np.ndarray, str]:
         state = shoot(near.model.scene, basis.properties, values, [1.0], np.concatenate([base.force, base.moment]))
     except ShootingError:
         return tip(far_finer(near)), "finer"
-    return np.concatenate([state.position[0] / state.length, state.rotation[0].ravel()]), "shooting"
+    return (state.position[0] / state.length, state.rotation[0]), "shooting"
 
 
 def far_finer(near: Solution) -> Solution:
@@ -172,21 +177,21 @@ def far_finer(near: Solution) -> Solution:
     return finer
 
 
-def tip(solution: Solution) -> np.ndarray:
+def tip(solution: Solution) -> Tip:
     pose, length = solution.tip(), solution.model.scene.rods[0].length
-    return np.concatenate([pose.position[0] / length, pose.rotation[0].ravel()])
+    return pose.position[0] / length, pose.rotation[0]
 
 
-def cold_tip(seed: int) -> np.ndarray | None:
+def cold_tip(seed: int) -> Tip | None:
     try:
         found = solve_by_shooting(tables(seed), samples=2)
     except NoEquilibriumError:
         return None
-    return np.concatenate([found.tip_position / tables(seed)["rods"][0]["length"], found.tip_rotation.ravel()])
+    return found.tip_position / tables(seed)["rods"][0]["length"], found.tip_rotation
 
 
-def distance(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.abs(a - b).max())
+def distance(a: Tip, b: Tip) -> float:
+    return pose_error(a, b, 1.0)
 
 
 def cost_of(solution: Solution, candidate: Discretisation) -> float:
@@ -218,7 +223,7 @@ def run_search(rows: list[dict[str, str]]) -> list[Cheapest]:
     return [search(finer, truth, row) for row in judged_rows]
 
 
-def search(finer: Solution, truth: np.ndarray, row: dict[str, str]) -> Cheapest:
+def search(finer: Solution, truth: Tip, row: dict[str, str]) -> Cheapest:
     """The cheapest that truly meets the tolerance; the pick where nothing cheaper does."""
     tolerance, cost = float(row["tolerance"]), float(row["cost"])
     meets = float(row["error"]) <= tolerance
@@ -256,7 +261,7 @@ class Brute:
 
     def grids(self) -> Iterator[tuple[str, int, np.ndarray]]:
         """Integrator, intervals and change of the tip that they make."""
-        enough = self.fewest_uniform(np.zeros_like(self.preview.tips))
+        enough = self.fewest_uniform(self.preview.no_shift)
         modes = {ROD: tuple(m + 1 for m in enough or self.near.modes)}
         x = self.preview.with_modes(modes)
         turning = len(self.preview.model.discrete.rods[ROD].properties.turning_axes)
@@ -265,7 +270,7 @@ class Brute:
             for nodes in range(2, self.near.nodes + 8):
                 grid = replace(self.near, nodes=nodes, transport=transport)
                 shift = self.preview.grid_shift(x, modes, {ROD: grid})
-                if np.abs(shift).max() <= 2 * self.tolerance:
+                if change_size(shift) <= 2 * self.tolerance:
                     yield transport, nodes, shift
                     met += 1
                 if met == GRIDS:
@@ -274,7 +279,7 @@ class Brute:
     def meets(self, modes: tuple[int, ...], shift: np.ndarray) -> bool:
         if modes not in self._shifts:
             self._shifts[modes] = self.preview.mode_shift({ROD: modes})
-        return float(np.abs(self._shifts[modes] + shift).max()) <= self.tolerance
+        return change_size(self._shifts[modes] + shift) <= self.tolerance
 
     def fewest_uniform(self, shift: np.ndarray) -> tuple[int, ...] | None:
         full = self.preview.model.discretisation[ROD].modes
@@ -286,7 +291,7 @@ class Brute:
             trials = [trial for trial in trials if self.meets(trial, shift)]
             if not trials:
                 return modes
-            modes = min(trials, key=lambda trial: float(np.abs(self._shifts[trial] + shift).max()))
+            modes = min(trials, key=lambda trial: change_size(self._shifts[trial] + shift))
 
     def in_turn(self, modes: tuple[int, ...], shift: np.ndarray, order: np.ndarray) -> tuple[int, ...]:
         for c in order:

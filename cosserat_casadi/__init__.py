@@ -2,6 +2,7 @@
 
 scene.toml ─ read_scene ─▶ Scene ─ build ─▶ Model {named casadi.Functions} ─ solve ─▶ Solution
 Scene ─ solve_scene ─▶ Solution on the cheapest discretisation within tolerance
+Scene ─ simulate_scene ─▶ Motion within tolerance in space and time
 """
 
 from importlib.metadata import version
@@ -18,11 +19,18 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.motion.linear_model import LinearModel, linearise
+from cosserat_casadi.motion.modes import Mode, Modes, modes_of, modes_of_scene
+from cosserat_casadi.motion.resolve import simulate_scene
+from cosserat_casadi.motion.simulate import simulate
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.paths.trace import PathOutcome
 from cosserat_casadi.results.inverse_file import inverse_result
+from cosserat_casadi.results.modes_file import modes_result
+from cosserat_casadi.results.motion_file import motion_result, write_motion
 from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -38,7 +46,12 @@ __all__ = [
     "EquilibriumPath",
     "ExportError",
     "Inverse",
+    "LinearModel",
+    "Mode",
     "Model",
+    "Modes",
+    "Motion",
+    "MotionOutcome",
     "Outcome",
     "PathEvent",
     "PathOutcome",
@@ -59,17 +72,25 @@ __all__ = [
     "inverse",
     "inverse_result",
     "inverse_scene",
+    "linearise",
     "load",
+    "modes_of",
+    "modes_of_scene",
+    "modes_result",
+    "motion_result",
     "parse_scene",
     "path_result",
     "read_scene",
     "read_sweep",
     "result",
     "scene_from_dict",
+    "simulate",
+    "simulate_scene",
     "solve",
     "solve_scene",
     "sweep_scene",
     "tune",
     "write_acados",
+    "write_motion",
     "write_result",
 ]

@@ -63,6 +63,23 @@ CONCEPTS = (
         ("solve_scene", "solve", "Solution", "Outcome", "SolveError", "tune", "Tuning"),
     ),
     Concept(
+        "motion",
+        "Motion",
+        "What moves: simulation to a tolerance, vibration modes, linear models; see [motion](../motion.md).",
+        (
+            "simulate_scene",
+            "simulate",
+            "Motion",
+            "MotionOutcome",
+            "modes_of_scene",
+            "modes_of",
+            "Modes",
+            "Mode",
+            "linearise",
+            "LinearModel",
+        ),
+    ),
+    Concept(
         "paths",
         "Paths",
         "Equilibria while one input grows; see [paths](../paths.md).",
@@ -97,8 +114,8 @@ CONCEPTS = (
     Concept(
         "results",
         "Results",
-        "Solutions, paths and inverse problems as plain data and as files.",
-        ("result", "write_result", "path_result", "inverse_result"),
+        "Solutions, motions, modes, paths and inverse problems as plain data and as files.",
+        ("result", "write_result", "motion_result", "write_motion", "modes_result", "path_result", "inverse_result"),
     ),
 )
 """All pages; every public name is on exactly one."""

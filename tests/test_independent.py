@@ -20,6 +20,7 @@ from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from tests.initial_value import integrate
+from tests.pose_errors import distance_between, pose_error
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 BASE = {"position": [0.1, -0.2, 0.3], "quaternion": [0.5, 0.5, -0.5, 0.5]}
@@ -81,8 +82,9 @@ def test_error_estimate_vs_initial_value_integration(name: str) -> None:
     wanted = SCENES[name].model_copy(update={"accuracy": SCENES[name].accuracy.model_copy(update={"tolerance": 1e-5})})
     solution = solve_scene(wanted)
     fine = solve(build(wanted, discretise(wanted, 13, 34, "magnus8")))
-    error = np.abs(solution.tip().position - fine.tip().position).max() / wanted.rods[0].length
-    error = max(error, np.abs(solution.tip().rotation - fine.tip().rotation).max())
+    tip, true = solution.tip(), fine.tip()
+    length = wanted.rods[0].length
+    error = pose_error((tip.position[0], tip.rotation[0]), (true.position[0], true.rotation[0]), length)
     assert solution.converged
     assert solution.error_estimate is not None
     assert error <= 10 * solution.error_estimate
@@ -221,7 +223,7 @@ def test_tip_error_falls_geometrically_to_rounding(transport: str) -> None:
     for modes in (2, 4, 6, 8, 10):
         nodes = 2 * modes + (40 if transport == "magnus6" else 14)
         tip = solve(build(wanted, discretise(wanted, modes, nodes, transport))).tip().position
-        errors.append(float(np.abs(tip - truth).max()) / 0.8)
+        errors.append(distance_between(tip, truth) / 0.8)
     for coarse, fine in pairwise(errors):
         assert fine < max(coarse / 20, 1e-11)
     assert errors[-1] < 1e-11

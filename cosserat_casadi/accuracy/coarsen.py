@@ -16,6 +16,7 @@ from math import ceil
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import foreseen_time, spread_on
+from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Modes, Preview
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -82,7 +83,7 @@ class Coarsening:
 
     Attributes:
         preview: the reference, and what it foresees.
-        bound: largest change of a tip pose: position over length, rotation entries.
+        bound: largest change of a tip pose: distance over length, angle in rad.
         wave_modes: modes that waves along a rod ask for, 0 where there are none: on fewer intervals a wave passes for
             a longer one, and the residual there is too far off to be foreseen.
     """
@@ -93,7 +94,7 @@ class Coarsening:
 
     def run(self) -> Coarsened:
         """The cheapest discretisation found."""
-        no_shift = np.zeros_like(self.preview.tips)
+        no_shift = self.preview.no_shift
         uniform_modes = self._uniform_modes()
         first_modes = self._drop_modes(uniform_modes, no_shift, MODES_SHARE * self.bound)
         grids, shift = self._coarsen_grids(first_modes)
@@ -143,7 +144,7 @@ class Coarsening:
         for ceiling in range(_most(best) - 1, 0, -1):
             trial = _below_ceiling(best, ceiling)
             shift = self.preview.mode_shift(trial)
-            if _size(shift) > MODES_SHARE * self.bound:
+            if change_size(shift) > MODES_SHARE * self.bound:
                 break
             best = trial
         return best
@@ -214,7 +215,7 @@ class Coarsening:
         """Largest change of the tips by modes alone, or by modes and grids together."""
         mode_shift = self.preview.mode_shift(modes)
         together = mode_shift + grid_shift
-        return max(_size(mode_shift), _size(together))
+        return max(change_size(mode_shift), change_size(together))
 
     def _mode_weight(self, name: str, component: int) -> float:
         """Weight of a mode: those of bending and torsion cost about twice those of shear and extension."""
@@ -229,7 +230,7 @@ class Coarsening:
         grids = {}
         for name, discretisation in self.preview.model.discretisation.items():
             grids[name] = replace(discretisation, modes=modes[name])
-        shift = np.zeros_like(self.preview.tips)
+        shift = self.preview.no_shift
         for names in self.alike:
             search = _GridSearch(self, modes, grids, names, shift)
             cheapest, shift = search.cheapest()
@@ -346,12 +347,12 @@ class _GridSearch:
         excess = self._excess(transport, nodes)
         # Grids alone too: a change that happens to cancel that of the modes would be luck.
         together = grid_shift + mode_shift
-        excess_together = _size(together) / self.coarsening.bound
+        excess_together = change_size(together) / self.coarsening.bound
         return max(excess, excess_together) <= 1
 
     def _excess(self, transport: str, nodes: int) -> float:
         """Change of the tips by grids alone over the bound; rounding apart, and bounded where nothing is resolved."""
-        excess = _size(self._shift(transport, nodes)) / self.coarsening.bound
+        excess = change_size(self._shift(transport, nodes)) / self.coarsening.bound
         if excess < UNBOUNDED:
             return max(excess, ROUNDING)
         return UNBOUNDED
@@ -420,8 +421,3 @@ def _below_ceiling(modes: Modes, ceiling: int) -> dict[str, tuple[int, ...]]:
 def _most(modes: Modes) -> int:
     most_of_rods = [max(counts) for counts in modes.values()]
     return max(most_of_rods)
-
-
-def _size(shift: FloatArray) -> float:
-    sizes = np.abs(shift)
-    return float(sizes.max())

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.preview import SAMPLES, relative_cable_lengths, watched
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -46,7 +47,10 @@ def with_estimate(
 
 
 def pose_distance(first: Solution, second: Solution, X: FloatArray | None = None) -> float:
-    """Largest difference of the poses over all rods: position over length, rotation entries.
+    """Largest pose error of one solution against the other, over all rods.
+
+    The pose error of a section is the larger of two: the distance of its positions over the length of its rod, and the
+    angle between its orientations, rad.
 
     Args:
         first: a solution.
@@ -107,11 +111,11 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
 
 
 def _distance(first: Pose, second: Pose, length: float) -> float:
-    position_change = np.abs(first.position - second.position)
-    rotation_change = np.abs(first.rotation - second.rotation)
-    position_distance = float(position_change.max()) / length
-    rotation_distance = float(rotation_change.max())
-    return max(position_distance, rotation_distance)
+    distances = np.linalg.norm(first.position - second.position, axis=1)
+    angles = rotation_angles(first.quaternion, second.quaternion)
+    largest_distance = float(distances.max()) / length
+    largest_angle = float(angles.max())
+    return max(largest_distance, largest_angle)
 
 
 def _element_turn(discrete_rod: DiscreteRod, solution: Solution) -> float:

@@ -20,7 +20,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.equilibrium.solution import Solution, rotations
+from cosserat_casadi.accuracy.pose_change import rotation_vectors
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
@@ -77,6 +78,29 @@ def relative_cable_lengths(model: Model, x: FloatArray, inputs: FloatArray) -> F
 
 
 @dataclass(frozen=True)
+class Watched:
+    """What is watched of an equilibrium.
+
+    Attributes:
+        positions: of the watched sections of all rods, over the lengths of their rods, shape (k, 3).
+        quaternions: world_Q_section, shape (k, 4).
+        cables: lengths of cables over those of their rods, shape (c,).
+    """
+
+    positions: FloatArray
+    quaternions: FloatArray
+    cables: FloatArray
+
+    def change_from(self, before: Watched) -> FloatArray:
+        """How far each is from where it was, shape (2k + c, 3), as in :mod:`cosserat_casadi.accuracy.pose_change`."""
+        displacements = self.positions - before.positions
+        rotations = rotation_vectors(before.quaternions, self.quaternions)
+        lengthening = np.zeros((len(self.cables), 3))
+        lengthening[:, 0] = self.cables - before.cables
+        return np.concatenate([displacements, rotations, lengthening])
+
+
+@dataclass(frozen=True)
 class Preview:
     """A reference solution that foresees what coarser discretisations would give.
 
@@ -110,9 +134,14 @@ class Preview:
         return np.asarray(self.jacobian + added)
 
     @cached_property
-    def tips(self) -> FloatArray:
-        """What is watched of the reference: positions over length, rotation entries, lengths of cables over length."""
+    def tips(self) -> Watched:
+        """What is watched of the reference."""
         return self._tips(self.reference.x)
+
+    @property
+    def no_shift(self) -> FloatArray:
+        """The change of what is watched where nothing moves."""
+        return self.tips.change_from(self.tips)
 
     def kept(self, modes: Modes) -> Mask:
         """Unknowns of the reference that exist with these modes, shape (n,); multipliers always do."""
@@ -149,19 +178,19 @@ class Preview:
         return x
 
     def mode_shift(self, modes: Modes) -> FloatArray:
-        """Change of the watched poses by having fewer modes, 12 entries for each section."""
+        """Change of what is watched by having fewer modes, shape (2k + c, 3)."""
         key = tuple(modes.items())
         if key not in self._shifts:
             # Held rods of too few modes may have no equilibrium near: whatever comes out then is beyond all bounds.
             with np.errstate(all="ignore"):
                 x = self.with_modes(modes)
-                shift = self._tips(x) - self.tips
+                shift = self._tips(x).change_from(self.tips)
             finite = np.isfinite(shift)
             self._shifts[key] = np.where(finite, shift, np.inf)
         return self._shifts[key]
 
     def grid_shift(self, x: FloatArray, modes: Modes, grids: Mapping[str, Discretisation]) -> FloatArray:
-        """Change of the watched poses from the reference's grid to others, 12 entries for each section.
+        """Change of what is watched from the reference's grid to others, shape (2k + c, 3).
 
         Args:
             x: equilibrium with the given modes on the reference's grid, from :meth:`with_modes`.
@@ -176,7 +205,9 @@ class Preview:
         corrected[kept] -= self._inverse_of_kept(kept) @ residual
         # The unknowns move by far less than the tips can tell apart on two grids: the reference's grid serves.
         tips = self._tips(x)
-        return self._tips_of(regridded) - tips + self._tips(corrected) - tips
+        by_grid = self._tips_of(regridded).change_from(tips)
+        by_unknowns = self._tips(corrected).change_from(tips)
+        return by_grid + by_unknowns
 
     def finer_shift(self, grids: Mapping[str, Discretisation]) -> FloatArray:
         """Change of what is watched by modes that the reference lacks, on a grid that resolves them.
@@ -207,7 +238,7 @@ class Preview:
             residual = _numbers(Equations(system(x)).residual)[:, 0]
             x[known] -= inverse @ residual[known]
             current = system(x)
-        return self._tips_of(current) - tips
+        return self._tips_of(current).change_from(tips)
 
     @property
     def _inputs(self) -> FloatArray:
@@ -228,9 +259,10 @@ class Preview:
         arguments = Arguments(ca.DM(x), ca.DM(self._inputs))
         return System(discrete, arguments)
 
-    def _tips(self, x: FloatArray) -> FloatArray:
-        """Watched poses on the reference's grid, by the model's functions."""
-        poses = []
+    def _tips(self, x: FloatArray) -> Watched:
+        """What is watched, on the reference's grid, by the model's functions."""
+        positions = []
+        quaternions = []
         for name, discrete_rod in self.model.discrete.rods.items():
             X = watched(self.model, name)
             # The tip alone costs a fraction of all fields.
@@ -241,12 +273,15 @@ class Preview:
                 interpolation = ca.DM(discrete_rod.grid.interpolation_matrix(X)).T
                 position = fields[0] @ interpolation
                 quaternion = fields[1] @ interpolation
-            poses.append(_entries(position, quaternion, discrete_rod.properties.length))
-        return np.concatenate([*poses, relative_cable_lengths(self.model, x, self._inputs)])
+            positions.append(_numbers(position).T / discrete_rod.properties.length)
+            quaternions.append(_unit(quaternion))
+        cables = relative_cable_lengths(self.model, x, self._inputs)
+        return Watched(np.concatenate(positions), np.concatenate(quaternions), cables)
 
-    def _tips_of(self, system: System) -> FloatArray:
-        """Watched poses of a system that has numbers for its arguments."""
-        poses = []
+    def _tips_of(self, system: System) -> Watched:
+        """What is watched of a system that has numbers for its arguments."""
+        positions = []
+        quaternions = []
         for name, discrete_rod in system.discrete.rods.items():
             X = watched(self.model, name)
             shape = system.rods[name].shape
@@ -263,12 +298,13 @@ class Preview:
             base_quaternion = ca.repmat(base.quaternion, 1, len(X))
             world_position = base_position + quaternion_to_matrix(base.quaternion) @ position
             world_quaternion = quaternion_product(base_quaternion, ca.densify(quaternion))
-            poses.append(_entries(world_position, world_quaternion, discrete_rod.properties.length))
-        lengths = []
+            positions.append(_numbers(world_position).T / discrete_rod.properties.length)
+            quaternions.append(_unit(world_quaternion))
+        cables = []
         for name, rod_length in watched_cables(self.model).items():
             _, cable_length, _ = system.actuator(name)
-            lengths.append(_numbers(cable_length)[0] / rod_length)
-        return np.concatenate([*poses, *lengths])
+            cables.append(float(_numbers(cable_length)[0, 0]) / rod_length)
+        return Watched(np.concatenate(positions), np.concatenate(quaternions), np.array(cables))
 
 
 def _known_unknowns(coarse: DiscreteScene, fine: DiscreteScene) -> Mask:
@@ -293,15 +329,12 @@ def _stiffness(discrete: DiscreteScene) -> FloatArray:
     return stiffness
 
 
-def _entries(position: Matrix, quaternion: Matrix, length: float) -> FloatArray:
-    """Positions over length and rotation entries of k sections, from 3×k and 4×k, stacked."""
+def _unit(quaternion: Matrix) -> FloatArray:
+    """Quaternions of k sections, from 4×k, shape (k, 4)."""
     quaternions = _numbers(quaternion).T
     # Interpolated quaternions are not of unit length.
-    norms = np.linalg.norm(quaternions, axis=1, keepdims=True)
-    matrices = rotations(quaternions / norms)
-    positions = _numbers(position).ravel() / length
-    entries: FloatArray = np.concatenate([positions, matrices.ravel()])
-    return entries
+    unit: FloatArray = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+    return unit
 
 
 def _inverse(matrix: FloatArray) -> FloatArray:

@@ -13,8 +13,8 @@ from math import ceil, log
 
 import numpy as np
 
+from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Preview
-from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.discretisation import Discretisation
 
 MODES_SAFETY = 2.0
@@ -44,7 +44,7 @@ CLOSING = 3
 
 @dataclass(frozen=True)
 class Resolution:
-    """Error of a solution's tips, position over length and rotation entries, in two parts.
+    """Pose error of a solution's tips, in two parts.
 
     Attributes:
         preview: the solution.
@@ -80,7 +80,7 @@ class Resolution:
         for name, discretisation in self._discretisation.items():
             modes = tuple(WAVES_FACTOR * m for m in discretisation.modes)
             finer[name] = replace(discretisation, modes=modes, nodes=WAVES_FACTOR * discretisation.nodes)
-        return HIDDEN_SAFETY * _size(self.preview.finer_shift(finer))
+        return HIDDEN_SAFETY * change_size(self.preview.finer_shift(finer))
 
     @cached_property
     def extrapolated_error(self) -> float:
@@ -99,7 +99,7 @@ class Resolution:
             modes[name] = discretisation.modes
             finer[name] = replace(discretisation, nodes=nodes + nodes // 3 + 2)
         shift = self.preview.grid_shift(self.preview.reference.x, modes, finer)
-        return GRID_SAFETY * _size(shift)
+        return GRID_SAFETY * change_size(shift)
 
     def missing_modes(self, bound: float) -> int:
         """Further modes per component after which the error of the modes should be below a bound."""
@@ -129,11 +129,4 @@ class Resolution:
             kept = [max(min(m, least), m - count) for m in discretisation.modes]
             fewer[name] = tuple(kept)
         shift = self.preview.mode_shift(fewer)
-        return _size(shift)
-
-
-def _size(shift: FloatArray) -> float:
-    """Largest change; infinite where a coarser model was so far off that it could not be foreseen."""
-    if not np.all(np.isfinite(shift)):
-        return float("inf")
-    return float(np.abs(shift).max())
+        return change_size(shift)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import asin
 
 import numpy as np
 
@@ -129,10 +130,12 @@ def _position_distance(truth: RodState, approximation: RodState) -> float:
 
 
 def _rotation_distance(truth: RodState, approximation: RodState) -> float:
-    """The chord 2 sin(θ/2), which keeps its digits for small angles: √2 less than the norm of the difference."""
+    """Largest angle between the sections, from the chord 2 sin(θ/2), which keeps its digits for small angles."""
     differences = truth.rotation - approximation.rotation
-    norms = np.linalg.norm(differences, axis=(1, 2))
-    return float(norms.max()) / 2**0.5
+    # The norm of the difference of two rotation matrices is √2 chords.
+    chords = np.linalg.norm(differences, axis=(1, 2)) / 2**0.5
+    half_sine = min(float(chords.max()) / 2, 1.0)
+    return 2 * asin(half_sine)
 
 
 def _wrench_distance(truth: RodState, approximation: RodState) -> float:

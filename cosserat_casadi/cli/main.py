@@ -15,6 +15,7 @@ from cosserat_casadi.cli.commands.bench import bench
 from cosserat_casadi.cli.commands.check import check
 from cosserat_casadi.cli.commands.export import export
 from cosserat_casadi.cli.commands.inverse import inverse
+from cosserat_casadi.cli.commands.modes import modes
 from cosserat_casadi.cli.commands.path import path
 from cosserat_casadi.cli.commands.simulate import simulate
 from cosserat_casadi.cli.commands.solve import solve
@@ -43,7 +44,7 @@ app = typer.Typer(
 )
 
 # In the order in which --help lists them.
-for command in (solve, path, simulate, inverse, sweep, check, export, tune, bench):
+for command in (solve, path, simulate, modes, inverse, sweep, check, export, tune, bench):
     app.command()(command)
 
 

@@ -8,14 +8,22 @@ its inputs is computed anew and judged like any other.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
-from cosserat_casadi.control.target_errors import Gap, length_of, model_error, target_errors, weighted_errors
+from cosserat_casadi.control.target_errors import (
+    POSE_ENTRIES,
+    Gap,
+    length_of,
+    model_error,
+    target_errors,
+    wanted_poses,
+    weighted_errors,
+)
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
@@ -70,7 +78,8 @@ class Inverse:
 
     Attributes:
         solution: equilibrium at the inputs found; its message says whether the targets are met.
-        gaps: how far each target is missed, in the order of the scene.
+        targets: what was to be where: those of the scene, or of a row of a table.
+        gaps: how far each target is missed, in their order.
         met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
             estimated the error of the model too; where a stable one was wanted, whether it is that as well.
         rounds: runs of the optimiser, from all starts together.
@@ -79,6 +88,7 @@ class Inverse:
     """
 
     solution: Solution
+    targets: tuple[scenes.Target, ...]
     gaps: tuple[Gap, ...]
     met: bool
     rounds: int
@@ -119,22 +129,65 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
-    return with_verdict(search(model, start, stable, starts), stable)
-
-
-def search(model: Model, start: Solution | None, stable: bool, starts: int) -> Inverse:
-    """The inverse problem of a model without a verdict on its targets; arguments and errors are those of inverse."""
-    if not model.scene.targets:
-        raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
-    variables = decision_variables(model)
+    check_targets(model.scene.targets)
     if start is None:
-        first_inputs = variables.clipped(model.pack())
-        start = solve(model, model.inputs.unpack(first_inputs))
+        start = first_solution(model)
+    problem = lifted_problem(model, model.scene.targets, start, stable)
+    return with_verdict(search(problem, start, stable, starts), stable)
+
+
+def check_targets(targets: tuple[scenes.Target, ...]) -> None:
+    """Refuse an inverse problem without targets.
+
+    Raises:
+        SceneError: there are none.
+    """
+    if not targets:
+        raise SceneError(Problem("targets", "missing", "say with [[targets]] where a rod or body is to be"))
+
+
+def first_solution(model: Model) -> Solution:
+    """The equilibrium at the scene's own inputs, brought into bounds: where a search starts."""
+    first_inputs = decision_variables(model).clipped(model.pack())
+    return solve(model, model.inputs.unpack(first_inputs))
+
+
+def lifted_problem(
+    model: Model,
+    targets: tuple[scenes.Target, ...],
+    start: Solution,
+    stable: bool,
+) -> LiftedProblem:
+    """The problem of a model, ready for searches.
+
+    Args:
+        model: as in :func:`inverse`.
+        targets: what is to be where.
+        start: the equilibrium whose inputs and sensitivities scale the problem.
+        stable: as in :func:`inverse`.
+
+    Raises:
+        SceneError: as there.
+    """
+    variables = decision_variables(model)
     if stable:
         check_potential(model, start.inputs)
-    origin = variables.clipped(start.inputs)
-    problem = _LiftedProblem(model, variables, scales(model, variables, start), origin)
-    result = _from_start(problem, start, np.zeros(len(problem.scale)), stable)
+    scale = scales(model, variables, start)
+    optimiser = _optimiser(model, targets, variables, scale)
+    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser)
+
+
+def search(problem: LiftedProblem, start: Solution, stable: bool, starts: int) -> Inverse:
+    """The inverse problem from a start, and from scattered ones, without a verdict on its targets.
+
+    Args:
+        problem: the problem.
+        start: equilibrium of its model to start from.
+        stable: as in :func:`inverse`.
+        starts: as there.
+    """
+    model = problem.model
+    result = _from_start(problem, start, problem.change(start.inputs), stable)
     for tried, change in enumerate(problem.scattered(starts), 1):
         if _satisfies(result, stable):
             break
@@ -147,7 +200,7 @@ def search(model: Model, start: Solution | None, stable: bool, starts: int) -> I
     return result
 
 
-def _from_start(problem: _LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
+def _from_start(problem: LiftedProblem, start: Solution, change: FloatArray, stable: bool) -> Inverse:
     """The search from one start.
 
     Args:
@@ -179,11 +232,12 @@ def _gap_left(result: Inverse) -> float:
     solution = result.solution
     if not solution.converged:
         return np.inf
-    errors = weighted_errors(solution.model, ca.DM(solution.x), ca.DM(solution.inputs))
+    wanted = ca.DM(wanted_poses(result.targets))
+    errors = weighted_errors(solution.model, result.targets, wanted, ca.DM(solution.x), ca.DM(solution.inputs))
     return float(np.linalg.norm(ca.evalf(ca.MX(errors)).full()))
 
 
-def _from_relaxed(problem: _LiftedProblem, result: Inverse) -> Inverse:
+def _from_relaxed(problem: LiftedProblem, result: Inverse) -> Inverse:
     """The search once more, from where the rod relaxes to; the first result where that leads to nothing stable."""
     relaxed = solve(problem.model, result.values, start=result.solution, stable=True)
     if not relaxed.stable:
@@ -204,9 +258,10 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
         stable: whether a stable equilibrium was wanted.
     """
     solution = result.solution
-    gaps = target_errors(solution)
-    met = solution.converged and all(_met(solution, gaps))
-    result = replace(result, gaps=gaps, met=met)
+    gaps = target_errors(solution, result.targets)
+    result = replace(result, gaps=gaps)
+    met = solution.converged and all(_met(result))
+    result = replace(result, met=met)
     message = solution.message
     if solution.converged:
         message += _targets_sentence(result)
@@ -223,15 +278,15 @@ def with_verdict(result: Inverse, stable: bool) -> Inverse:
 
 
 def _targets_sentence(result: Inverse) -> str:
-    verdicts = _reached(result.solution, result.gaps)
+    verdicts = _reached(result)
     missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
     if missed:
         misses = "; ".join(_words(gap) for gap in missed)
         sentence = f" The targets are not all met; the closest that was found misses {misses}."
         return sentence + _minimum_sentence(result)
-    if all(_met(result.solution, result.gaps)):
+    if all(_met(result)):
         return " The targets are met."
-    return _model_sentence(result.solution)
+    return _model_sentence(result)
 
 
 def _minimum_sentence(result: Inverse) -> str:
@@ -245,10 +300,10 @@ def _minimum_sentence(result: Inverse) -> str:
     return f" It is a local minimum {where}, the best of {starts}."
 
 
-def _model_sentence(solution: Solution) -> str:
+def _model_sentence(result: Inverse) -> str:
     """Why targets that the discrete model meets are not met by the rod, as far as is known."""
-    scene = solution.model.scene
-    errors = [model_error(solution, target) or 0.0 for target in scene.targets]
+    scene = result.solution.model.scene
+    errors = [model_error(result.solution, target) or 0.0 for target in result.targets]
     return (
         " The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
         f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "
@@ -263,40 +318,44 @@ def _words(gap: Gap) -> str:
     return f"{distance} and {gap.angle:.3g} rad"
 
 
-def _met(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+def _met(result: Inverse) -> list[bool]:
     """Whether each target is met: by the discrete model, and that within its error."""
-    tolerance = solution.model.scene.accuracy.tolerance
-    lengths = _lengths(solution.model)
-    return [gap.within(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+    tolerance = result.solution.model.scene.accuracy.tolerance
+    return [gap.within(length, tolerance) for gap, length in _gaps_and_lengths(result)]
 
 
-def _reached(solution: Solution, gaps: tuple[Gap, ...]) -> list[bool]:
+def _reached(result: Inverse) -> list[bool]:
     """Whether the discrete model meets each target, whatever its own error."""
-    tolerance = solution.model.scene.accuracy.tolerance
-    lengths = _lengths(solution.model)
-    return [gap.reached(length, tolerance) for gap, length in zip(gaps, lengths, strict=True)]
+    tolerance = result.solution.model.scene.accuracy.tolerance
+    return [gap.reached(length, tolerance) for gap, length in _gaps_and_lengths(result)]
 
 
-def _lengths(model: Model) -> list[float]:
-    """Length that each target is measured by, m."""
-    return [length_of(model, target) for target in model.scene.targets]
+def _gaps_and_lengths(result: Inverse) -> list[tuple[Gap, float]]:
+    """The gap of each target, and the length that it is measured by, m."""
+    lengths = [length_of(result.solution.model, target) for target in result.targets]
+    return list(zip(result.gaps, lengths, strict=True))
 
 
 @dataclass(frozen=True)
-class _LiftedProblem:
+class LiftedProblem:
     """Unknowns and n decision variables, these as changes in their scales from an origin.
 
     Attributes:
         model: the model.
+        targets: what is to be where.
         variables: the decision variables.
         scale: a change of each that matters, shape (n,).
-        origin: stacked inputs to start from.
+        origin: stacked inputs that changes count from.
+        optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
+            the same kinds share it.
     """
 
     model: Model
+    targets: tuple[scenes.Target, ...]
     variables: DecisionVariables
     scale: FloatArray
     origin: FloatArray
+    optimiser: ca.Function
 
     def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
         """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
@@ -308,7 +367,6 @@ class _LiftedProblem:
             x: unknowns to start from, shape (size,).
             change: decision variables to start from, as changes from the origin in their scales, shape (n,).
         """
-        optimiser = self._optimiser
         bounds = self._bounds()
         size = self.model.size
         centre = change
@@ -316,9 +374,9 @@ class _LiftedProblem:
         largest_change = np.inf
         while rounds < ROUNDS and largest_change > SETTLED:
             damping = DAMPING[min(rounds, len(DAMPING) - 1)]
-            result = optimiser(
+            result = self.optimiser(
                 x0=np.concatenate([x, centre]),
-                p=np.concatenate([centre, [damping]]),
+                p=self._parameters(centre, damping),
                 lbg=0.0,
                 ubg=0.0,
                 **bounds,
@@ -351,9 +409,9 @@ class _LiftedProblem:
         held_upper = np.where(at_lower, lower, upper)
         held = np.clip(change, held_lower, held_upper)
         unbounded = np.full(self.model.size, np.inf)
-        optimum = self._optimiser(
+        optimum = self.optimiser(
             x0=np.concatenate([x, held]),
-            p=np.concatenate([held, [DAMPING[-1]]]),
+            p=self._parameters(held, DAMPING[-1]),
             lbg=0.0,
             ubg=0.0,
             lbx=np.concatenate([-unbounded, held_lower]),
@@ -370,9 +428,15 @@ class _LiftedProblem:
         inputs = self.inputs(change)
         values = self.model.inputs.unpack(inputs)
         solution = solve(self.model, values, start=x)
-        errors = target_errors(solution)
-        met = solution.converged and all(_met(solution, errors))
-        return Inverse(solution, errors, met, rounds, at_bounds=self._at_bounds(inputs))
+        gaps = target_errors(solution, self.targets)
+        result = Inverse(solution, self.targets, gaps, False, rounds, at_bounds=self._at_bounds(inputs))
+        met = solution.converged and all(_met(result))
+        return replace(result, met=met)
+
+    def change(self, inputs: FloatArray) -> FloatArray:
+        """Decision variables of stacked inputs, brought into their ranges, as changes from the origin, shape (n,)."""
+        difference = self.variables.clipped(inputs) - self.origin
+        return np.asarray(difference[self.variables.indices] / self.scale)
 
     def inputs(self, change: FloatArray) -> FloatArray:
         """Stacked inputs for a change of the decision variables, shape (inputs,)."""
@@ -406,42 +470,9 @@ class _LiftedProblem:
         slices = self.model.inputs.slices.items()
         return tuple(name for name, entries in slices if stacked & set(range(entries.start, entries.stop)))
 
-    @cached_property
-    def _optimiser(self) -> ca.Function:
-        """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
-        count = len(self.scale)
-        x = ca.MX.sym("x", self.model.size)
-        change = ca.MX.sym("change", count)
-        parameters = ca.MX.sym("centre_and_damping", count + 1)
-        centre = parameters[:-1]
-        damping = parameters[-1]
-        inputs = ca.DM(self.origin) + self._scatter() @ change
-        errors = weighted_errors(self.model, x, inputs)
-        damped = damping * ca.sumsqr(change - centre)
-        problem = {
-            "x": ca.vertcat(x, change),
-            "p": parameters,
-            "f": (ca.sumsqr(errors) + damped) / 2,
-            "g": self.model.residual(x, inputs),
-        }
-        options = {
-            "print_time": False,
-            "error_on_fail": False,
-            "show_eval_warnings": False,
-            "ipopt": IPOPT,
-        }
-        return ca.nlpsol("inverse", "ipopt", problem, options)
-
-    def _scatter(self) -> ca.DM:
-        """Matrix from changes of the decision variables to changes of the stacked inputs, shape (inputs, n)."""
-        count = len(self.scale)
-        return ca.DM.triplet(
-            self.variables.indices.tolist(),
-            list(range(count)),
-            ca.DM(self.scale),
-            self.model.inputs.size,
-            count,
-        )
+    def _parameters(self, centre: FloatArray, damping: float) -> FloatArray:
+        """Parameters of the optimiser."""
+        return np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)])
 
     def _ranges(self) -> tuple[FloatArray, FloatArray]:
         """Least and largest changes of the decision variables, each of shape (n,)."""
@@ -458,3 +489,47 @@ class _LiftedProblem:
             "lbx": np.concatenate([-unbounded, lower]),
             "ubx": np.concatenate([unbounded, upper]),
         }
+
+
+def _optimiser(
+    model: Model,
+    targets: tuple[scenes.Target, ...],
+    variables: DecisionVariables,
+    scale: FloatArray,
+) -> ca.Function:
+    """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
+    count = len(scale)
+    x = ca.MX.sym("x", model.size)
+    change = ca.MX.sym("change", count)
+    centre = ca.MX.sym("centre", count)
+    damping = ca.MX.sym("damping")
+    origin = ca.MX.sym("origin", model.inputs.size)
+    wanted = ca.MX.sym("wanted", POSE_ENTRIES * len(targets))
+    inputs = origin + _scatter(variables, scale, model.inputs.size) @ change
+    errors = weighted_errors(model, targets, wanted, x, inputs)
+    damped = damping * ca.sumsqr(change - centre)
+    problem = {
+        "x": ca.vertcat(x, change),
+        "p": ca.vertcat(centre, damping, origin, wanted),
+        "f": (ca.sumsqr(errors) + damped) / 2,
+        "g": model.residual(x, inputs),
+    }
+    options = {
+        "print_time": False,
+        "error_on_fail": False,
+        "show_eval_warnings": False,
+        "ipopt": IPOPT,
+    }
+    return ca.nlpsol("inverse", "ipopt", problem, options)
+
+
+def _scatter(variables: DecisionVariables, scale: FloatArray, size: int) -> ca.DM:
+    """Matrix from n changes of the decision variables to changes of the stacked inputs, shape (size, n)."""
+    count = len(scale)
+    return ca.DM.triplet(
+        variables.indices.tolist(),
+        list(range(count)),
+        ca.DM(scale),
+        size,
+        count,
+    )

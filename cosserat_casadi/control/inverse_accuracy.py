@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
+from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import STARTS, Inverse, search, with_verdict
-from cosserat_casadi.control.target_errors import model_error, target_errors
+from cosserat_casadi.control.inverse import (
+    STARTS,
+    Inverse,
+    check_targets,
+    first_solution,
+    lifted_problem,
+    search,
+    with_verdict,
+)
+from cosserat_casadi.control.target_errors import POSE_ENTRIES, Gap, length_of, model_error, target_errors, wanted_poses
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -21,6 +33,12 @@ FINER_MODES = 4
 
 Report = Callable[[str], None]
 """Told the discretisation."""
+
+Progress = Callable[[int, int], None]
+"""Told how many of how many rows are settled."""
+
+Targets = tuple[scenes.Target, ...]
+"""What is to be where at once."""
 
 
 def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report | None = None) -> Inverse:
@@ -38,35 +56,148 @@ def inverse_scene(scene: scenes.Scene, *, stable: bool = False, report: Report |
     Raises:
         SceneError: as in :func:`inverse`.
     """
+    (found,) = inverse_rows(scene, [scene.targets], stable=stable, report=report)
+    return found
+
+
+def inverse_rows(
+    scene: scenes.Scene,
+    rows: Sequence[Targets],
+    *,
+    stable: bool = False,
+    report: Report | None = None,
+    progress: Progress | None = None,
+) -> list[Inverse]:
+    """Inputs for each of many sets of targets, every model built once for all rows that need it.
+
+    A row starts from the nearest one that has met its targets, the first from the scene's own inputs; the order is
+    that of nearness. Modes and nodes are chosen as in :func:`inverse_scene`, for each row.
+
+    Args:
+        scene: a validated scene.
+        rows: sets of targets, at least one; of the same kinds and for the same sections and bodies in every row.
+        stable: as in :func:`inverse`.
+        report: told the discretisation.
+        progress: told how many rows are settled, and of how many.
+
+    Raises:
+        SceneError: as in :func:`inverse`.
+    """
+    for targets in rows:
+        check_targets(targets)
     accuracy = scene.accuracy
     levels = seeing_modes(scene)
     model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)
-    start: Solution | None = None
-    tried = 1
+    settled: dict[int, Inverse] = {}
+    pending: dict[int, Inverse] = {}
+    starts: dict[int, Solution] = {}
     for modes in levels[1:]:
         _report(model, report)
-        # Scattered on the first discretisation alone: the next ones start from its end.
-        scattered_starts = STARTS if start is None else 0
-        result = search(model, start, stable, scattered_starts)
-        tried = max(tried, result.starts)
-        result = replace(result, starts=tried)
-        solution = result.solution
-        if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
-            return with_verdict(result, stable)
+        if starts:
+            pending = _refined(model, pending, starts, stable)
+        else:
+            pending = _searched(model, rows, stable, progress)
+        for row, result in list(pending.items()):
+            solution = result.solution
+            if not solution.converged and solution.outcome is not Outcome.UNRESOLVED:
+                settled[row] = with_verdict(pending.pop(row), stable)
+        if not pending:
+            break
         finer_modes = modes
         if accuracy.fixed:
             finer_modes = max(modes, _most_modes(model) + FINER_MODES)
-        finer = verified_model(scene, finer_modes, largest_turn(solution))
-        # One solve at the same inputs tells what the modes leave, and is where a next search would start.
-        reference = solve(finer, result.values, start=prolong(solution, finer))
-        judged = _with_estimate(result, reference)
-        if accuracy.fixed:
-            return _fixed_verdict(judged, stable)
-        if _error_within(judged.solution):
-            return with_verdict(judged, stable)
+        turn = max(largest_turn(result.solution) for result in pending.values())
+        finer = verified_model(scene, finer_modes, turn)
+        starts = {}
+        for row, result in list(pending.items()):
+            # One solve at the same inputs tells what the modes leave, and is where a next search would start.
+            reference = solve(finer, result.values, start=prolong(result.solution, finer))
+            judged = _with_estimate(result, reference)
+            if accuracy.fixed:
+                settled[row] = _fixed_verdict(judged, stable)
+            elif _error_within(judged):
+                settled[row] = with_verdict(judged, stable)
+            else:
+                starts[row] = reference
+        if not starts:
+            break
         model = finer
-        start = reference
-    return _unresolved(result)
+    for row in starts:
+        settled[row] = _unresolved(pending[row])
+    return [settled[row] for row in range(len(rows))]
+
+
+def _searched(model: Model, rows: Sequence[Targets], stable: bool, progress: Progress | None) -> dict[int, Inverse]:
+    """The search of every row on the first discretisation, each from its nearest neighbour that is met."""
+    first = first_solution(model)
+    problem = lifted_problem(model, rows[0], first, stable)
+    lengths = np.array([length_of(model, target) for target in rows[0]])
+    wanted = np.array([wanted_poses(targets).reshape(-1, POSE_ENTRIES) for targets in rows])
+    starts = [first] * len(rows)
+    # The nearest to where the rods are anyway comes first.
+    distances = np.array([_distance(target_errors(first, targets), lengths) for targets in rows])
+    found: dict[int, Inverse] = {}
+    remaining = set(range(len(rows)))
+    while remaining:
+        if progress is not None:
+            progress(len(found), len(rows))
+        row = min(remaining, key=lambda candidate: (distances[candidate], candidate))
+        remaining.discard(row)
+        result = search(replace(problem, targets=rows[row]), starts[row], stable, STARTS)
+        found[row] = result
+        if not result.met:
+            continue
+        from_here = _distances(wanted, wanted[row], lengths)
+        for other in remaining:
+            if from_here[other] < distances[other]:
+                distances[other] = from_here[other]
+                starts[other] = result.solution
+    return found
+
+
+def _refined(
+    model: Model, before: Mapping[int, Inverse], starts: Mapping[int, Solution], stable: bool
+) -> dict[int, Inverse]:
+    """The search of rows on a finer discretisation, each from its own end on the coarser one."""
+    first_row, first_start = next(iter(starts.items()))
+    problem = lifted_problem(model, before[first_row].targets, first_start, stable)
+    found = {}
+    for row, start in starts.items():
+        origin = problem.variables.clipped(start.inputs)
+        of_row = replace(problem, targets=before[row].targets, origin=origin)
+        # Scattered on the first discretisation alone: the next ones start from its end.
+        result = search(of_row, start, stable, 0)
+        found[row] = replace(result, starts=max(before[row].starts, result.starts))
+    return found
+
+
+def _distance(gaps: Sequence[Gap], lengths: FloatArray) -> float:
+    """How far a solution is from targets: the largest of distances over the lengths of their rods, and angles."""
+    distances = [0.0]
+    for gap, length in zip(gaps, lengths, strict=True):
+        distances += [gap.position / length, gap.angle or 0.0]
+    return max(distances)
+
+
+def _distances(wanted: FloatArray, here: FloatArray, lengths: FloatArray) -> FloatArray:
+    """The same between the poses that rows want and those of one row.
+
+    Args:
+        wanted: as in :func:`wanted_poses`, shape (rows, targets, 7).
+        here: those of one row, shape (targets, 7).
+        lengths: of the rods, shape (targets,), m.
+
+    Returns:
+        shape (rows,).
+    """
+    distances = np.linalg.norm(wanted[:, :, :3] - here[:, :3], axis=2) / lengths
+    largest = distances.max(axis=1)
+    for i, pose in enumerate(here):
+        quaternions = np.broadcast_to(pose[3:], (len(wanted), 4))
+        # Free orientations are zeros, which are no angle apart.
+        angles = rotation_angles(quaternions, wanted[:, i, 3:])
+        largest = np.maximum(largest, angles)
+    return np.asarray(largest)
 
 
 def _fixed_verdict(judged: Inverse, stable: bool) -> Inverse:
@@ -78,12 +209,13 @@ def _fixed_verdict(judged: Inverse, stable: bool) -> Inverse:
     return with_verdict(judged, stable)
 
 
-def _error_within(solution: Solution) -> bool:
+def _error_within(result: Inverse) -> bool:
     """Whether the estimated error is within the tolerance: of the tips, and where the targets are."""
-    scene = solution.model.scene
-    at_targets = [model_error(solution, target) for target in scene.targets]
+    solution = result.solution
+    tolerance = solution.model.scene.accuracy.tolerance
+    at_targets = [model_error(solution, target) for target in result.targets]
     errors = [solution.error_estimate, *at_targets]
-    return all(error is not None and error <= scene.accuracy.tolerance for error in errors)
+    return all(error is not None and error <= tolerance for error in errors)
 
 
 def _report(model: Model, report: Report | None) -> None:
@@ -113,4 +245,4 @@ def _unresolved(result: Inverse) -> Inverse:
     if result.solution.shape_error_estimate is not None:
         message += f" The estimated error is {result.solution.shape_error_estimate:.2g} of the length."
     solution = replace(result.solution, outcome=outcome, message=message, stable=None)
-    return replace(result, solution=solution, gaps=target_errors(solution), met=False)
+    return replace(result, solution=solution, gaps=target_errors(solution, result.targets), met=False)

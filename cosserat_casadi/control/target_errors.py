@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.maths.rotation import quaternion_product
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+
+POSE_ENTRIES = 7
+"""Numbers of a wanted pose: three of its position, four of its quaternion."""
 
 
 @dataclass(frozen=True)
@@ -52,24 +57,49 @@ def length_of(model: Model, target: scenes.Target) -> float:
     return lengths[target.rod]
 
 
-def weighted_errors(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
-    """Weighted errors of all targets, without unit; half their sum of squares is what an optimiser lessens.
+def wanted_poses(targets: Sequence[scenes.Target]) -> FloatArray:
+    """Positions and quaternions that targets ask for, 7 numbers for each; zeros for what a target leaves free."""
+    poses = np.zeros((len(targets), POSE_ENTRIES))
+    for pose, target in zip(poses, targets, strict=True):
+        if not isinstance(target, scenes.CurveTarget):
+            pose[:3] = target.position
+        if isinstance(target, scenes.PoseTarget):
+            pose[3:] = target.quaternion
+    return poses.ravel()
+
+
+def weighted_errors(
+    model: Model,
+    targets: Sequence[scenes.Target],
+    wanted: Matrix,
+    x: Matrix,
+    inputs: Matrix,
+) -> Matrix:
+    """Weighted errors of targets, without unit; half their sum of squares is what an optimiser lessens.
 
     Positions count relative to the rod's length. Orientations by the chord 2 sin(θ/2) of the angle θ between them,
     which is smooth at every angle. The points of a curve count together as much as one point.
+
+    Args:
+        model: the model.
+        targets: what is to be where; their positions and orientations are not read, but for the points of curves.
+        wanted: these, as in :func:`wanted_poses`.
+        x: unknowns.
+        inputs: stacked inputs.
     """
     errors = []
-    for target in model.scene.targets:
-        error = _error(model, target, x, inputs)
+    for i, target in enumerate(targets):
+        pose = wanted[POSE_ENTRIES * i : POSE_ENTRIES * (i + 1)]
+        error = _error(model, target, pose, x, inputs)
         errors.append(np.sqrt(target.weight) * error)
     stacked: Matrix = ca.vertcat(*errors)
     return stacked
 
 
-def target_errors(solution: Solution) -> tuple[Gap, ...]:
-    """How far a solution is from each of the targets of its scene, and how far the model itself may be off there."""
+def target_errors(solution: Solution, targets: Sequence[scenes.Target]) -> tuple[Gap, ...]:
+    """How far a solution is from each of the targets, and how far the model itself may be off there."""
     gaps = []
-    for target in solution.model.scene.targets:
+    for target in targets:
         gap = _gap(solution, target)
         error = model_error(solution, target)
         if error is not None:
@@ -92,7 +122,7 @@ def model_error(solution: Solution, target: scenes.Target) -> float | None:
     return solution.error_estimate
 
 
-def _error(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> Matrix:
+def _error(model: Model, target: scenes.Target, wanted: Matrix, x: Matrix, inputs: Matrix) -> Matrix:
     """Error of one target without its weight: 3 numbers, 6 with an orientation, 3k for k points of a curve."""
     length = length_of(model, target)
     if isinstance(target, scenes.CurveTarget):
@@ -100,10 +130,10 @@ def _error(model: Model, target: scenes.Target, x: Matrix, inputs: Matrix) -> Ma
         scaled: Matrix = error / (length * np.sqrt(len(target.at)))
         return scaled
     position, quaternion = _pose(model, target, x, inputs)
-    position_error = (position - ca.DM(target.position)) / length
+    position_error = (position - wanted[:3]) / length
     if isinstance(target, scenes.PositionTarget):
         return position_error
-    return ca.vertcat(position_error, 2 * _half_rotation(target, quaternion))
+    return ca.vertcat(position_error, 2 * _half_rotation(wanted[3:], quaternion))
 
 
 def _curve_error(model: Model, target: scenes.CurveTarget, x: Matrix, inputs: Matrix) -> Matrix:
@@ -134,10 +164,9 @@ def _pose(
     return list(outputs[:2])
 
 
-def _half_rotation(target: scenes.PoseTarget, quaternion: Matrix) -> Matrix:
-    """Vector part of the rotation from the target's orientation to the actual one: sin(θ/2) times its axis."""
-    w, x, y, z = target.quaternion
-    conjugate = ca.MX(ca.DM([w, -x, -y, -z]))
+def _half_rotation(wanted: Matrix, quaternion: Matrix) -> Matrix:
+    """Vector part of the rotation from the wanted orientation to the actual one: sin(θ/2) times its axis."""
+    conjugate = quaternion_conjugate(ca.MX(wanted))
     # A planar rod leaves entries of its quaternion structurally zero.
     actual = ca.densify(ca.MX(quaternion))
     difference = quaternion_product(conjugate, actual)
@@ -158,8 +187,8 @@ def _gap(solution: Solution, target: scenes.Target) -> Gap:
     distance = float(np.linalg.norm(difference))
     if isinstance(target, scenes.PositionTarget):
         return Gap(what, distance, None)
-    angle = _angle(np.array(target.quaternion), pose.quaternion[0])
-    return Gap(what, distance, angle)
+    angles = rotation_angles(np.array([target.quaternion]), pose.quaternion)
+    return Gap(what, distance, float(angles[0]))
 
 
 def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
@@ -168,15 +197,3 @@ def _curve_gap(solution: Solution, target: scenes.CurveTarget) -> Gap:
     distances = np.linalg.norm(differences, axis=1)
     what = f"{len(target.at)} points along {target.rod}"
     return Gap(what, float(distances.max()), None)
-
-
-def _angle(first: FloatArray, second: FloatArray) -> float:
-    """Angle of the rotation between two unit quaternions, rad, in [0, π]."""
-    scalar = first @ second
-    # The conjugate of the first times the second.
-    vector = first[0] * second[1:] - second[0] * first[1:]
-    vector = vector - np.cross(first[1:], second[1:])
-    # The arc tangent is exact near 0 and near π, where arc cosine and arc sine are not; q and −q are one rotation.
-    sine = np.linalg.norm(vector)
-    half_angle = np.arctan2(sine, abs(scalar))
-    return float(2 * half_angle)

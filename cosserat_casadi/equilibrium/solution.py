@@ -60,8 +60,9 @@ class Solution:
         load_factor: share of the loads that was reached, 1 unless the load stalled.
         smallest_eigenvalue: of the second variation, in units of EI/ℓ; None where loads have no potential.
         stable: whether every admissible variation costs energy; None where that has no meaning.
-        error_estimate: estimated error of the poses of the tips and of the lengths of cables, relative to the rod
-            length, of held rods at sections between the ends too; None if not estimated.
+        error_estimate: estimated error of the poses of the tips, as distance over the rod length and as angle in rad,
+            and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
+            estimated.
         shape_error_estimate: the same over all sections, those between nodes included.
     """
 

@@ -4,7 +4,7 @@
 values are stacked component by component (report (3.4)), points from base to tip within each component. The
 permutation then takes the known point first, and after it the other points from base to tip, each with its
 m components together. (Report (3.9) prints the rows of one point exchanged; this order makes A_NN block
-diagonal with the blocks A(X_j) themselves.) The corrections are in docs/theory.md, section 12.
+diagonal with the blocks A(X_j) themselves.) The corrections are in docs/theory.md, section 13.
 """
 
 from __future__ import annotations

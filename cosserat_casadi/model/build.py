@@ -91,17 +91,23 @@ class Model(functions.ModelFunctions, MotionFunctions):
         return np.zeros(self.size)
 
 
-def build(scene: scenes.Scene, discretisation: Mapping[str, Discretisation] | None = None) -> Model:
+def build(
+    scene: scenes.Scene,
+    discretisation: Mapping[str, Discretisation] | None = None,
+    *,
+    moving: bool = False,
+) -> Model:
     """The model of a scene.
 
     Args:
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
             :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
+        moving: whether it is for a motion, in which rods may be free and bodies may turn freely.
 
     Raises:
-        SceneError: joints over-constrain, or leave a body free to turn.
+        SceneError: joints over-constrain; or at rest nothing holds a rod, or a body is free to turn.
     """
-    check_constraints(scene)
+    check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     return Model(discrete_scene(scene, input_layout(scene), chosen))

@@ -407,8 +407,8 @@ def _turns_about_one_axis(discrete: DiscreteScene, rod: str) -> bool:
 
 def is_dead_force(discrete: DiscreteScene, load: scenes.Load) -> bool:
     """Whether a load is a force of fixed direction and no moment, whatever its inputs: it has the energy −Σ f·r."""
-    # Ones, since an input that is zero in the scene may be given another value.
-    values = {field: ca.DM.ones(*scene_value(load, field).shape) for field in load.inputs}
+    # Ones, since what the inputs may change need not stay zero; a moment that they may not change stores nothing.
+    values = input_values(discrete.layout, load, ca.DM.ones(discrete.layout.size, 1))
     return all(_is_dead_force(kernel, values) for kernel in _kernels(discrete, load, values))
 
 

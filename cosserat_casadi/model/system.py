@@ -177,7 +177,7 @@ class System:
         inertias = {}
         for name, frame_motion in self.frame_motions.items():
             body = frame_motion.frame.body
-            if body is None or body.mass == 0.0:
+            if body is None or (body.mass == 0.0 and not body.inertia_matrix.any()):
                 continue
             inertias[name] = BodyInertia(
                 mass=body.mass,

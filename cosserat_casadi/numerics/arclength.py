@@ -2,7 +2,7 @@
 
 The unknowns x and the load factor λ are one vector y = (x, λ); g(y) = 0 is a curve in n + 1 dimensions, and a fold in
 λ is a point like any other: H. B. Keller, *Numerical solution of bifurcation and nonlinear eigenvalue problems*, in
-P. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press 1977. See docs/theory.md, section 11.
+P. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press 1977. See docs/theory.md, section 12.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The crossing branch leaves along a null vector of ∂g/∂y across the curve. A point at a small distance along it is
 corrected onto the branch in the plane across that vector: E. L. Allgower, K. Georg, *Introduction to Numerical
-Continuation Methods*, SIAM 2003, chapter 8. See docs/theory.md, section 11.
+Continuation Methods*, SIAM 2003, chapter 8. See docs/theory.md, section 12.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 A limit point is a zero of dλ/ds. At a bifurcation a number of the monitor changes sign: for loads with a potential an
 eigenvalue of the second variation, which sees multiple ones too; otherwise the smallest singular value of the bordered
 matrix with the sign of its determinant, which a limit point leaves alone. R. Seydel, *Practical Bifurcation and
-Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5. See docs/theory.md, section 11.
+Stability Analysis*, 3rd ed., Springer 2010, chapters 4 and 5. See docs/theory.md, section 12.
 """
 
 from __future__ import annotations

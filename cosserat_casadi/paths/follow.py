@@ -1,6 +1,6 @@
 """Equilibrium paths of a model: one input grows from zero, the equilibrium is followed through folds and branches.
 
-See docs/theory.md, section 11.
+See docs/theory.md, section 12.
 """
 
 from __future__ import annotations

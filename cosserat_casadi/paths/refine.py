@@ -1,6 +1,6 @@
 """A path on a discretisation that is fine enough: refined until the events and the end stay where they are.
 
-See docs/theory.md, section 11, "Modes".
+See docs/theory.md, section 12, "Modes".
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def path_distance(coarse: EquilibriumPath, fine: EquilibriumPath) -> float:
 
 
 def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -> list[float]:
-    """Distances of a rod's tips at events and at factor 1, the largest component over the length."""
+    """Distances of a rod's tips at events and at factor 1, over the length."""
     pairs = []
     for coarse_event, fine_event in zip(coarse.events, fine.events, strict=True):
         coarse_tip = coarse.event_tip(coarse_event, rod)
@@ -140,8 +140,8 @@ def _tip_differences(coarse: EquilibriumPath, fine: EquilibriumPath, rod: str) -
     length = coarse.model.discrete.rods[rod].properties.length
     differences = []
     for coarse_position, fine_position in pairs:
-        change = np.abs(coarse_position - fine_position)
-        differences.append(float(change.max()) / length)
+        distance = np.linalg.norm(coarse_position - fine_position)
+        differences.append(float(distance) / length)
     return differences
 
 

@@ -1,6 +1,6 @@
 """A curve of equilibria from load factor 0 to 1: steps, their control, the events on the way, the end.
 
-See docs/theory.md, section 11.
+See docs/theory.md, section 12.
 """
 
 from __future__ import annotations

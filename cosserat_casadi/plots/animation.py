@@ -1,4 +1,4 @@
-"""The animation of a motion: rods, bodies and the paths of tips in axes that hold the whole motion.
+"""The animation of a motion, or of a mode: rods, bodies and the paths of tips in axes that hold the whole motion.
 
 matplotlib is an extra and is imported inside functions only.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import tempfile
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,9 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.poses import section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour
@@ -39,6 +42,12 @@ DPI = 100
 
 MARGIN = 0.08
 """Free room around the motion, relative to its extent."""
+
+TURNING = np.linspace(0.0, 1.0, 11)
+"""Abscissae of the sections whose axes are drawn."""
+
+AXIS_LENGTH = 0.25
+"""Length of such an axis relative to the extent of the motion."""
 
 TITLE_LETTERS = 70
 """Letters of a title in one line."""
@@ -119,21 +128,78 @@ def save_animation(
         AnimationFailedError: ffmpeg gives up, as where it was built without H.264.
         WriteError: the file cannot be written, as on a full disk.
     """
+    save_frames(motion_frames(motion, frame_times(motion, speed), speed), file, progress=progress)
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What an animation shows, frame by frame.
+
+    Attributes:
+        model: the model.
+        x: unknowns, shape (frames, model.size).
+        inputs: stacked inputs, shape (frames, model.inputs.size).
+        words: over each frame.
+        colour: of the words.
+        interval: time from frame to frame, s.
+        section_axes: whether lines show the x axes of sections: of a rod that only turns nothing else moves.
+    """
+
+    model: Model
+    x: FloatArray
+    inputs: FloatArray
+    words: Sequence[str]
+    colour: str
+    interval: float
+    section_axes: bool = False
+
+
+def save_frames(frames: Frames, file: str | Path, *, progress: Callable[[float], None] | None = None) -> None:
+    """Draw an animation into a file, whole or not at all; arguments and errors as of :func:`save_animation`."""
     check_animation_path(file)
     path = Path(file)
-    times = frame_times(motion, speed)
-    film = _Film(motion, times, speed)
-    shown_seconds = (times[-1] - times[0]) / speed
-    # A motion that stopped at its start is one picture, for any time.
-    seconds_a_frame = shown_seconds / (len(times) - 1) or 1 / FRAME_RATE
-    with write_errors(path), _writer_of(film.figure, path.suffix.lower(), seconds_a_frame) as (writer, drawn):
-        for index in range(len(times)):
+    film = _Film(frames)
+    count = len(frames.words)
+    with write_errors(path), _writer_of(film.figure, path.suffix.lower(), frames.interval) as (writer, drawn):
+        for index in range(count):
             film.show(index)
             writer.grab_frame()
             if progress is not None:
-                progress((index + 1) / len(times))
+                progress((index + 1) / count)
         _finish(writer)
         write_atomically(path, drawn.read_bytes())
+
+
+def motion_frames(motion: Motion, times: FloatArray, speed: float) -> Frames:
+    """Frames of a motion at times, shape (frames,), s, shown at a speed relative to its own."""
+    states = [motion.at(float(time)) for time in times]
+    shown_seconds = (times[-1] - times[0]) / speed
+    colour = PLAIN_TEXT
+    if not motion.converged:
+        colour = FAILURE
+    return Frames(
+        model=motion.model,
+        x=np.array([state.x for state in states]),
+        inputs=np.array([state.inputs for state in states]),
+        words=_time_words(motion, times, speed),
+        colour=colour,
+        # A motion that stopped at its start is one picture, for any time.
+        interval=shown_seconds / (len(times) - 1) or 1 / FRAME_RATE,
+    )
+
+
+def _time_words(motion: Motion, times: FloatArray, speed: float) -> list[str]:
+    """The time of each frame, with as many digits as tell it from the next, and the speed where it is not real."""
+    interval = times[-1] / max(1, len(times) - 1)
+    digits = 1
+    if interval > 0:
+        digits = max(1, int(np.ceil(-np.log10(interval))))
+    remark = ""
+    if speed != 1.0:
+        remark += f", at {speed:g} of its speed"
+    if not motion.converged:
+        remark += ", not converged"
+    return [f"t = {time:.{digits}f} s{remark}" for time in times]
 
 
 def _finish(writer: Any) -> None:
@@ -204,25 +270,25 @@ class _Film:
         figure: matplotlib.figure.Figure, of the first time.
     """
 
-    def __init__(self, motion: Motion, times: FloatArray, speed: float) -> None:
-        states = [motion.at(float(time)) for time in times]
-        x = np.array([state.x for state in states])
-        inputs = np.array([state.inputs for state in states])
-        shapes = moving_shapes(motion.model, times, x, inputs)
+    def __init__(self, frames: Frames) -> None:
+        shapes = moving_shapes(frames.model, np.arange(len(frames.x), dtype=float), frames.x, frames.inputs)
+        plane = shapes.plane
+        if frames.section_axes:
+            plane = None
         projection = None
-        if shapes.plane is None:
+        if plane is None:
             projection = "3d"
 
         self.figure = figure_class()(figsize=(6.4, 4.8), layout="constrained")
-        title = textwrap.fill(motion.model.scene.title or "Untitled scene", TITLE_LETTERS)
+        title = textwrap.fill(frames.model.scene.title or "Untitled scene", TITLE_LETTERS)
         self.figure.suptitle(title, fontsize=11, fontweight="bold")
         axes = self.figure.add_subplot(projection=projection)
-        self._times = times
-        self._speed = speed
-        self._converged = motion.converged
-        self._canvas = Canvas(axes, shapes.plane, shapes.size)
-        self._lines = self._draw(motion, shapes)
-        draw_supports(self._canvas, motion.model.scene)
+        self._frames = frames
+        self._canvas = Canvas(axes, plane, shapes.size)
+        self._lines = self._draw(frames.model, shapes)
+        if frames.section_axes:
+            self._lines += self._draw_section_axes(frames, shapes)
+        draw_supports(self._canvas, frames.model.scene)
         self._set_limits(shapes)
         handles, labels = axes.get_legend_handles_labels()
         # One rod needs no name.
@@ -234,15 +300,13 @@ class _Film:
         self.figure.set_layout_engine("none")
 
     def show(self, index: int) -> None:
-        """Lead all lines to a frame, and write its time over them."""
+        """Lead all lines to a frame, and write its words over them."""
         for moving in self._lines:
             self._canvas.move(moving.line, moving.at(index))
-        colour = PLAIN_TEXT
-        if not self._converged:
-            colour = FAILURE
-        self._canvas.axes.set_title(self._time_words(index), fontsize=10, color=colour)
+        words = self._frames.words[index]
+        self._canvas.axes.set_title(words, fontsize=10, color=self._frames.colour)
 
-    def _draw(self, motion: Motion, shapes: MovingShapes) -> list[_Moving]:
+    def _draw(self, model: Model, shapes: MovingShapes) -> list[_Moving]:
         """Draw all that moves; returns it."""
         canvas = self._canvas
         lines = []
@@ -255,9 +319,23 @@ class _Film:
         for index, (name, centre_lines) in enumerate(shapes.rods.items()):
             rod = canvas.line(centre_lines[0], color=rod_colour(index), linewidth=3.5, label=name)
             lines.append(_Moving(rod, centre_lines))
-            if motion.model.discrete.unloaded.floating_base(name) is None:
+            if model.discrete.unloaded.floating_base(name) is None:
                 bases = centre_lines[:, :1]
                 lines.append(_Moving(canvas.markers(bases[0], **CLAMP), bases))
+        return lines
+
+    def _draw_section_axes(self, frames: Frames, shapes: MovingShapes) -> list[_Moving]:
+        """Draw the x axes of a few sections of each rod; returns them."""
+        lines = []
+        for index, name in enumerate(shapes.rods):
+            poses = section_poses(frames.model, name, TURNING, frames.x, frames.inputs)
+            for starts, quaternions in zip(
+                np.moveaxis(poses.position, 1, 0), np.moveaxis(poses.quaternion, 1, 0), strict=True
+            ):
+                ends = starts + AXIS_LENGTH * shapes.size * rotations(quaternions)[:, :, 0]
+                axes = np.stack([starts, ends], axis=1)
+                line = self._canvas.line(axes[0], color=rod_colour(index), linewidth=2.0)
+                lines.append(_Moving(line, axes))
         return lines
 
     def _set_limits(self, shapes: MovingShapes) -> None:
@@ -277,16 +355,3 @@ class _Film:
         canvas.axes.set(xlim=limits[0], ylim=limits[1])
         canvas.axes.set_aspect("equal", adjustable="box")
         canvas.axes.grid(alpha=0.3)
-
-    def _time_words(self, index: int) -> str:
-        """The time of a frame, with as many digits as tell it from the next, and the speed where it is not real."""
-        interval = self._times[-1] / max(1, len(self._times) - 1)
-        digits = 1
-        if interval > 0:
-            digits = max(1, int(np.ceil(-np.log10(interval))))
-        words = f"t = {self._times[index]:.{digits}f} s"
-        if self._speed != 1.0:
-            words += f", at {self._speed:g} of its speed"
-        if not self._converged:
-            words += ", not converged"
-        return words

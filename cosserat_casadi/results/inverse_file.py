@@ -12,7 +12,7 @@ from cosserat_casadi.results.solution_file import result
 def inverse_result(inverse: Inverse) -> dict[str, Any]:
     """An inverse problem's end as the plain data of its file; a number that is not finite becomes null."""
     targets = []
-    for target, gap in zip(inverse.solution.model.scene.targets, inverse.gaps, strict=True):
+    for target, gap in zip(inverse.targets, inverse.gaps, strict=True):
         entry = {
             "kind": target.kind,
             "what": gap.what,

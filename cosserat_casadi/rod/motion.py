@@ -1,4 +1,4 @@
-"""Forward sweeps of a motion: velocities and accelerations of the sections, chapter 2 of the report.
+"""Forward sweeps of a motion: velocities and accelerations of the sections.
 
 Both are the exact time derivatives of the discrete rotations and positions of kinematics.py. All vectors are those of
 the motion in the world, with coordinates in the axes that the base has at the instant: a rate is never the rate of a

@@ -26,7 +26,9 @@ shape = true
 """
 
     tolerance: Annotated[Number, Field(ge=1e-12, le=1e-1)] = Field(
-        1e-6, description="wanted error of poses and of lengths of cables, relative to the rod length, without unit"
+        1e-6,
+        description="wanted error of poses (distance over the rod length, angle in rad) and of lengths of cables "
+        "over the rod length, without unit",
     )
     shape: StrictBool = Field(False, description="whether the tolerance binds all sections, not the tip alone")
     modes: ModesChoice | None = Field(

@@ -14,7 +14,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Table
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.records import Entry, Record, refusal
-from cosserat_casadi.scene.values import Component, Name, NotNegative, Number, Positive, Share, listed
+from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, PowerComponent, Share, listed
 
 
 class ActuatorRecord(Entry):
@@ -40,7 +40,7 @@ def _base_side_first(value: tuple[float, float]) -> tuple[float, float]:
     return value
 
 
-Offset = Annotated[tuple[Component, Component], listed(2, "2 components, x and y")]
+Offset = Annotated[tuple[PowerComponent, PowerComponent], listed(2, "2 components, x and y")]
 Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_base_side_first)]
 
 

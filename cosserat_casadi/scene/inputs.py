@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from cosserat_casadi.scene.profiles import coefficient_count
+
 AXES = {1: ("",), 3: ("x", "y", "z"), 4: ("w", "x", "y", "z")}
 """Names of the entries of a number, a vector and a quaternion."""
 
@@ -44,8 +46,7 @@ class InputField:
         coefficients = 1
         # Components share the highest degree that one of them has; the others are filled up with zeros.
         for component in value:
-            if isinstance(component, list | tuple):
-                coefficients = max(coefficients, len(component))
+            coefficients = max(coefficients, coefficient_count(component))
         return self.components * coefficients
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.values import TABLE_TITLES
 
 COMMITTED = Path(__file__).with_name("scene.schema.json")
 """The copy that editors are pointed at."""
@@ -20,7 +21,27 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 def scene_json_schema() -> dict[str, Any]:
     """The schema of a scene file, JSON Schema 2020-12."""
     schema = Scene.model_json_schema(by_alias=True)
-    return {"$schema": DIALECT, **schema}
+    tables: dict[str, Any] = {}
+    referring = _with_references(schema, tables)
+    referring["$defs"].update(tables)
+    return {"$schema": DIALECT, **referring}
+
+
+def _with_references(node: Any, tables: dict[str, Any]) -> Any:
+    """A part of the schema that refers to the tables of what varies, which stand in it once for each key.
+
+    Args:
+        node: the part.
+        tables: receives their schemas by title.
+    """
+    if isinstance(node, list):
+        return [_with_references(entry, tables) for entry in node]
+    if not isinstance(node, dict):
+        return node
+    if node.get("title") in TABLE_TITLES:
+        tables[node["title"]] = node
+        return {"$ref": f"#/$defs/{node['title']}"}
+    return {key: _with_references(entry, tables) for key, entry in node.items()}
 
 
 def schema_text() -> str:

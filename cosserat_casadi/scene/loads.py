@@ -153,7 +153,7 @@ class DistributedWrench(SectionWrench):
 name = "wind"
 kind = "distributed_wrench"
 rod = "finger"
-force = [[0.2, 0.2], 0, 0]     # 0 at the base, 0.4 N/m at the tip
+force = [{ base = 0.0, tip = 0.4 }, 0, 0]     # N/m
 """
 
     inputs: ClassVar[Mapping[str, InputField]] = {

@@ -71,6 +71,18 @@ def scene_from_dict(mapping: Mapping[str, Any], overrides: Sequence[str] = ()) -
     return _scene(mapping, overrides, Path())
 
 
+def written_tables(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> dict[str, Any]:
+    """The tables of a scene as its file writes them, with overrides.
+
+    Args:
+        path: the file of a valid scene.
+        overrides: as in `read_scene`, valid too.
+    """
+    tables = parsed(file_text(Path(path)))
+    apply_overrides(tables, overrides, SCENE_KEYS)
+    return tables
+
+
 def override_path(mapping: Mapping[str, Any], key: str) -> FaultPath:
     """Path of what an override with this key sets: two keys of one path set the same.
 

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from pydantic.fields import FieldInfo
+
 from cosserat_casadi.scene.families import Family, contents_of
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
@@ -33,11 +35,27 @@ with where, what, and what to do.
 * Units are SI. `world` axes are right-handed; the local z axis of a section is the rod's tangent.
 * X is the abscissa along a rod relative to its length: 0 at the base, 1 at the tip.
 * A quaternion is w, x, y, z, of norm 1; it turns local coordinates into those of the axes that it is given in.
-* **Number, or 2 numbers**: constant along the rod, or linear from base to tip.
-* **3 components**: each is a number, or a list of coefficients that make it a polynomial along the rod; the meaning
-  says of which polynomials.
+* **3 components**: each is a number, or varies along the rod by itself.
 * **Inputs** are what may stay free at run time: arguments of the model's functions and of the exported C. `inputs`
   names them `name.key`; without it, they are all those of loads and actuators that the scene gives.
+
+## Along a rod
+
+What may vary along a rod is a number, where it is constant, or a table that says how it varies; the table means the
+same under every key. `cosserat check` prints the values of all of them at base and tip.
+
+| table | meaning |
+|---|---|
+| `{ base = 8e-3, tip = 4e-3 }` | values at X = 0 and X = 1, linear between them |
+| `{ powers = [8e-3, -4e-3] }` | 8e-3 − 4e-3 X: coefficients of 1, X, X², … |
+| `{ legendre = [6e-3, -2e-3] }` | 6e-3 − 2e-3 (2X − 1): coefficients of the Legendre polynomials in 2X − 1 |
+
+All three say the same here. Sizes and stiffnesses are linear: they take two coefficients at most. All else takes more.
+
+**A plain list** means one of the three, by its key: a size goes from base to tip, an offset is of powers of X, strains
+and spread loads are of Legendre polynomials. In an offset `[8e-3, 4e-3]` is therefore 8e-3 + 4e-3 X, 12 mm at the tip.
+A table becomes the list of its key as it is read, in another notation up to ten coefficients; an input that varies has
+Legendre coefficients, however the scene writes it.
 """
 
 UNITS = (
@@ -170,6 +188,12 @@ def _key_table(record: type[Record], path: str, keys: Sequence[str]) -> str:
     return _block(lines)
 
 
+def unit_of(field: FieldInfo) -> str:
+    """The unit that the description of a field gives, "1" without unit, "–" where it gives none."""
+    unit, _ = _unit_and_meaning(field.description or "")
+    return unit
+
+
 def _anchor(path: str, key: str) -> str:
     """The link to the section of an inner table: its heading without signs."""
     return f"{path}{key}".replace(".", "")
@@ -200,8 +224,14 @@ def _default(node: Mapping[str, Any]) -> str:
 TABLE = "table"
 """The value of a key that holds an inner table."""
 
-COMPONENT = "number, or list of numbers"
-"""The value of a component that may be a polynomial."""
+ALONG = "[table](#along-a-rod)"
+"""The value of a table that says how something varies along a rod."""
+
+ONE_OR_SEVERAL = "number, or list of numbers"
+"""The value that is a number, or several."""
+
+COMPONENT = f"{ONE_OR_SEVERAL}, or {ALONG}"
+"""The value of a component that may vary along a rod."""
 
 
 def _value(node: Mapping[str, Any]) -> str:
@@ -211,6 +241,9 @@ def _value(node: Mapping[str, Any]) -> str:
     if "enum" in node:
         *first, last = (_word(word) for word in node["enum"])
         return f"{', '.join(first)} or {last}"
+    # Records are referred to: what is an object here is the table of what varies.
+    if node.get("type") == "object":
+        return ALONG
     choices = node.get("oneOf") or node.get("anyOf")
     if choices:
         return _choice(choices)
@@ -262,7 +295,7 @@ def _range(node: Mapping[str, Any]) -> str:
 def _list(node: Mapping[str, Any]) -> str:
     if "prefixItems" not in node:
         entry = _value(node["items"])
-        if entry == COMPONENT:
+        if entry == ONE_OR_SEVERAL:
             return "list of numbers, or of lists of numbers"
         return f"list of {_plural(entry)}"
     entries = node["prefixItems"]

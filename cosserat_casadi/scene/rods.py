@@ -13,6 +13,7 @@ from pydantic import AfterValidator, Field, StrictBool
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
 from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.profiles import ends_of
 from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.values import (
     ABOVE_BASE,
@@ -98,7 +99,7 @@ class Circle(SectionRecord):
     """A solid circular cross-section."""
 
     example: ClassVar[str] = """\
-section = { shape = "circle", radius = [2.0e-3, 1.0e-3] }     # tapered
+section = { shape = "circle", radius = { base = 2.0e-3, tip = 1.0e-3 } }     # tapered
 """
 
     shape: Literal["circle"] = Field(description="solid circle")
@@ -120,8 +121,8 @@ section = { shape = "annulus", outer_radius = 2.0e-3, inner_radius = 1.5e-3 }
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """The bore fits into the tube at both ends."""
-        outer = _base_and_tip(given.get("outer_radius"))
-        inner = _base_and_tip(given.get("inner_radius"))
+        outer = ends_of(given.get("outer_radius"))
+        inner = ends_of(given.get("inner_radius"))
         # Both are linear in X: what holds at both ends holds between them.
         for bore, wall in zip(inner, outer, strict=False):
             if bore >= wall:
@@ -144,20 +145,6 @@ section = { shape = "rectangle", width = 1.0e-2, height = 1.0e-3 }
 
 
 Section = Annotated[Circle | Annulus | Rectangle, SECTIONS]
-
-
-def _base_and_tip(size: Any) -> tuple[float, ...]:
-    """Values of a size at base and tip; none where it is faulty."""
-    ends: tuple[Any, ...] = (size, size)
-    if isinstance(size, list | tuple):
-        ends = tuple(size)
-    if len(ends) != 2:
-        return ()
-    # Truth values are integers in Python.
-    for end in ends:
-        if isinstance(end, bool) or not isinstance(end, int | float):
-            return ()
-    return ends
 
 
 class Stiffness(Record):
@@ -211,7 +198,7 @@ class Intrinsic(Record):
     """Strains of the unloaded rod, ξ⁰."""
 
     example: ClassVar[str] = """\
-intrinsic = { curvature = [0, [5.0, 1.0], 0] }     # bent about y, more so towards the tip
+intrinsic = { curvature = [0, { base = 4.0, tip = 6.0 }, 0] }     # bent about y, more so towards the tip
 """
 
     curvature: Polynomials = Field(

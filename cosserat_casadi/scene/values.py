@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any
 
 from pydantic import (
@@ -15,11 +15,14 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     Tag,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
 )
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from cosserat_casadi.scene.faults import Fault, Path, shown
+from cosserat_casadi.scene.profiles import ENDS, SERIES, Notation, Profile, RefusedProfile, read_profile
 from cosserat_casadi.scene.records import refusal
 
 ROUNDING = 1e-15
@@ -78,6 +81,91 @@ def _single_or_several(value: Any) -> str:
 
 BY_LENGTH = Discriminator(_single_or_several)
 """Takes the choice marked `SEVERAL` for a list, the one marked `SINGLE` for anything else."""
+
+
+# What varies along X
+
+
+TABLE_TITLES = ("PositiveAlongRod", "NotNegativeAlongRod", "AlongRod")
+"""Titles of the tables of what varies: values > 0, values ≥ 0, any values."""
+
+
+class Varying:
+    """Admit a table for what varies along X, beside a number and a plain list; it is read as the list of its key.
+
+    Attributes:
+        notation: what the numbers of a plain list are.
+    """
+
+    def __init__(self, notation: Notation) -> None:
+        self.notation = notation
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_wrap_validator_function(self._read, handler(source))
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core)
+        # A number, whose range is that of the table's values too, and a list.
+        number, plain_list = schema["oneOf"]
+        return {**schema, "oneOf": [number, plain_list, self._table_schema(number)]}
+
+    def _read(self, value: Any, read_list: ValidatorFunctionWrapHandler) -> Any:
+        if not isinstance(value, Mapping):
+            return read_list(value)
+        try:
+            written = read_profile(value)
+            stored = written.converted(self.notation)
+        except RefusedProfile as refused:
+            raise refusal(refused.faults) from None
+        try:
+            return read_list(stored.numbers)
+        except ValidationError as error:
+            raise refusal(_range_faults(error, written, stored)) from None
+
+    def _table_schema(self, number: JsonSchemaValue) -> JsonSchemaValue:
+        """The JSON schema of a table; the range of the numbers holds at base and tip."""
+        coefficients: JsonSchemaValue = {"type": "array", "items": {"type": "number"}, "minItems": 1}
+        if self.notation is Notation.ENDS:
+            coefficients["maxItems"] = 2
+        values = {
+            "base": {**number, "description": "value at X = 0"},
+            "tip": {**number, "description": "value at X = 1; linear between them"},
+            "legendre": {**coefficients, "description": "coefficients of Legendre polynomials in 2X − 1"},
+            "powers": {**coefficients, "description": "coefficients of powers of X"},
+        }
+        positive, not_negative, any_values = TABLE_TITLES
+        title = any_values
+        if "minimum" in number:
+            title = not_negative
+        if "exclusiveMinimum" in number:
+            title = positive
+        return {
+            "title": title,
+            "type": "object",
+            "properties": values,
+            "additionalProperties": False,
+            "dependentRequired": {"base": ["tip"], "tip": ["base"]},
+            "oneOf": [{"required": list(ENDS)}, *({"required": [key]} for key in SERIES)],
+        }
+
+
+def _range_faults(error: ValidationError, written: Profile, stored: Profile) -> Iterator[Fault]:
+    """Faults of the numbers that a table stands for, at the keys that the file gives."""
+    for details in error.errors(include_url=False):
+        index = details["loc"][-1]
+        got = shown(details["input"])
+        context = details.get("ctx", {})
+        wanted = "finite"
+        for bound, sign in (("gt", ">"), ("ge", ">=")):
+            if bound in context:
+                wanted = f"{sign} {context[bound]:g}"
+        # Coefficients of other polynomials have no key in the file.
+        if stored.notation is not Notation.ENDS or not isinstance(index, int):
+            yield Fault((), f"must be {wanted}, got {got}")
+        elif written.notation is Notation.ENDS:
+            yield Fault((ENDS[index],), f"must be {wanted}, got {got}")
+        else:
+            yield Fault((), f"must be {wanted} along X, got {got} at the {ENDS[index]}")
 
 
 # Checks
@@ -184,19 +272,27 @@ Quaternion = Annotated[tuple[Number, Number, Number, Number], listed(4, "4 numbe
 Size = Annotated[
     Annotated[Positive, SINGLE] | Annotated[tuple[Positive, Positive], listed(2, "2 numbers, base and tip"), SEVERAL],
     BY_LENGTH,
+    Varying(Notation.ENDS),
 ]
-"""A number > 0, or two that it changes between, linearly from base to tip."""
+"""A number > 0, or what varies linearly along the rod: a plain list is of its values at base and tip."""
 
 SizeOrZero = Annotated[
     Annotated[NotNegative, SINGLE]
     | Annotated[tuple[NotNegative, NotNegative], listed(2, "2 numbers, base and tip"), SEVERAL],
     BY_LENGTH,
+    Varying(Notation.ENDS),
 ]
 
 Component = Annotated[
     Annotated[Number, SINGLE] | Annotated[tuple[Number, ...], NotEmpty(), SEVERAL],
     BY_LENGTH,
 ]
-"""A number, or the coefficients of a polynomial along the rod."""
+"""A number, or several."""
 
-Polynomials = Annotated[tuple[Component, Component, Component], listed(3, "3 components")]
+LegendreComponent = Annotated[Component, Varying(Notation.LEGENDRE)]
+"""A number, or what varies along the rod: a plain list is of Legendre coefficients in 2X − 1."""
+
+PowerComponent = Annotated[Component, Varying(Notation.POWERS)]
+"""A number, or what varies along the rod: a plain list is of coefficients of powers of X."""
+
+Polynomials = Annotated[tuple[LegendreComponent, LegendreComponent, LegendreComponent], listed(3, "3 components")]

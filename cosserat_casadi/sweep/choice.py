@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed
 from cosserat_casadi.codegen.rows import JUDGED, POSE
@@ -162,18 +163,15 @@ def check(
 
 
 def pose_difference(row: FloatArray, solution: Solution) -> float:
-    """Largest difference of poses between a row of results and a solution: position over length, quaternion."""
+    """Largest pose error of a row of results against a solution: distance over length, angle in rad."""
     scene = solution.model.scene
     length = max(rod.length for rod in scene.rods)
     count = len(scene.rods) + len(scene.bodies)
     swept = _poses(row, count)
     solved = _poses(result_row(solution, len(row)), count)
-    position_difference = np.abs(swept[:, :3] - solved[:, :3]).max() / length
-    # Both signs of a quaternion are the same rotation.
-    same_sign = np.abs(swept[:, 3:] - solved[:, 3:]).max(axis=1)
-    other_sign = np.abs(swept[:, 3:] + solved[:, 3:]).max(axis=1)
-    rotation_difference = np.minimum(same_sign, other_sign).max()
-    return float(max(position_difference, rotation_difference))
+    distances = np.linalg.norm(swept[:, :3] - solved[:, :3], axis=1)
+    angles = rotation_angles(swept[:, 3:], solved[:, 3:])
+    return float(max(distances.max() / length, angles.max()))
 
 
 def _poses(row: FloatArray, count: int) -> FloatArray:

@@ -21,17 +21,17 @@ int precurved_tube_k_residual(const casadi_real** arg, casadi_real** res, casadi
 #define precurved_tube_k_residual_SZ_ARG 8
 #define precurved_tube_k_residual_SZ_RES 4
 #define precurved_tube_k_residual_SZ_IW 0
-#define precurved_tube_k_residual_SZ_W 62
+#define precurved_tube_k_residual_SZ_W 50
 int precurved_tube_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_jacobian_SZ_ARG 8
 #define precurved_tube_k_jacobian_SZ_RES 4
 #define precurved_tube_k_jacobian_SZ_IW 0
-#define precurved_tube_k_jacobian_SZ_W 190
+#define precurved_tube_k_jacobian_SZ_W 96
 int precurved_tube_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_rate_SZ_ARG 16
 #define precurved_tube_k_rate_SZ_RES 4
 #define precurved_tube_k_rate_SZ_IW 0
-#define precurved_tube_k_rate_SZ_W 115
+#define precurved_tube_k_rate_SZ_W 92
 int precurved_tube_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tangent_SZ_ARG 1
 #define precurved_tube_k_tangent_SZ_RES 1
@@ -46,22 +46,22 @@ int precurved_tube_k_igm(const casadi_real** arg, casadi_real** res, casadi_int*
 #define precurved_tube_k_igm_SZ_ARG 9
 #define precurved_tube_k_igm_SZ_RES 6
 #define precurved_tube_k_igm_SZ_IW 0
-#define precurved_tube_k_igm_SZ_W 62
+#define precurved_tube_k_igm_SZ_W 50
 int precurved_tube_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_SZ_ARG 3
 #define precurved_tube_k_tip_SZ_RES 5
 #define precurved_tube_k_tip_SZ_IW 0
-#define precurved_tube_k_tip_SZ_W 38
+#define precurved_tube_k_tip_SZ_W 30
 int precurved_tube_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_tip_jacobian_SZ_ARG 7
 #define precurved_tube_k_tip_jacobian_SZ_RES 5
 #define precurved_tube_k_tip_jacobian_SZ_IW 0
-#define precurved_tube_k_tip_jacobian_SZ_W 190
+#define precurved_tube_k_tip_jacobian_SZ_W 96
 int precurved_tube_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define precurved_tube_k_shape_SZ_ARG 4
 #define precurved_tube_k_shape_SZ_RES 5
 #define precurved_tube_k_shape_SZ_IW 0
-#define precurved_tube_k_shape_SZ_W 38
+#define precurved_tube_k_shape_SZ_W 30
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

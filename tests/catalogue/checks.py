@@ -10,6 +10,7 @@ from cosserat_casadi import Model, Scene, Solution, build, discretise, scene_fro
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from tests.catalogue.cases import Table, twisted_column, twisted_ring
 from tests.initial_value import integrate
+from tests.pose_errors import pose_error
 
 BRACKET = 1e-6
 """Relative distance, to both sides of a reference, at which an eigenvalue is looked at.
@@ -31,14 +32,15 @@ def solved(tables: Table, tolerance: float = 1e-9) -> Solution:
 
 
 def initial_value_error(solution: Solution) -> float:
-    """Distance of the tip, over length and in rotation entries, to the rod integrated from the clamp's wrench.
+    """Pose error of the tip against the rod integrated from the clamp's wrench.
 
     Of a free tip the wrench left there counts too, relative to EI/L and EI/L²: what is not an equilibrium shows.
     """
     (rod,) = solution.model.discrete.rods.values()
     base, reached = solution.base_wrench(), integrate(solution.model.scene, *_wrench(solution))
-    error = float(np.abs(reached.position - solution.tip().position[0]).max()) / rod.properties.length
-    error = max(error, float(np.abs(reached.rotation - solution.tip().rotation[0]).max()))
+    tip = solution.tip()
+    claimed = (tip.position[0], tip.rotation[0])
+    error = pose_error(claimed, (reached.position, reached.rotation), rod.properties.length)
     if solution.model.scene.supports:
         return error
     size = rod.energy_unit + np.abs(base.moment).max() + rod.properties.length * np.abs(base.force).max()

@@ -104,6 +104,21 @@ def test_check_prices_the_scene(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
+def test_check_says_how_lists_were_read(wire: Path) -> None:
+    """The offset widens where the user may have meant that it converges: the note shows it."""
+    cable = '[[actuators]]\nname = "cable"\nkind = "tendon"\nrod = "wire"\ntension = 1.0\noffset = [[8e-3, 4e-3], 0]\n'
+    (wire / "wire.toml").write_text(SCENE + cable)
+    taper = "wire.section.radius={ base = 1e-3, tip = 0.5e-3 }"
+    done = cosserat("check", "wire.toml", "--set", taper, cwd=wire)
+    assert done.returncode == 0
+    said = " ".join(done.stdout.split())
+    read_as = "Note: the list of cable.offset[0] was read as powers of X; "
+    assert read_as + "{ base = 0.008, tip = 0.012 } says the same." in said
+    assert "│ cable.offset[0] │ powers of X │ 0.008 m │ 0.012 m │" in said
+    assert "│ wire.section.radius │ base and tip │ 0.001 m │ 0.0005 m │" in said
+    assert said.count("Note:") == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

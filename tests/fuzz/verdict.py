@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import SceneError, Solution, result, scene_from_dict, solve_scene
+from tests.pose_errors import distance_between
 from tests.reference.rods import rod_of
 from tests.reference.weak_form import Claim, Violation, violation
 
@@ -66,7 +67,7 @@ def verdict(tables: dict[str, Any]) -> Verdict:
 
 def _judged(tables: dict[str, Any], solution: Solution, written: Any, seconds: float) -> Verdict:
     found, length = evaluate(tables, solution), tables["rods"][0]["length"]
-    gap = float(np.abs(found.position - solution.tip().position[0]).max() / length)
+    gap = distance_between(found.position, solution.tip().position[0]) / length
     shape = _estimate(solution)
     faults = []
     if not _finite(written):

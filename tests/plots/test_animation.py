@@ -72,7 +72,7 @@ def test_rate_survives_the_writer_that_cuts_off(hundredths: int) -> None:
 def test_frames_lie_on_the_dense_output_in_fixed_axes() -> None:
     motion = two_rods_on_a_platform(duration=0.4, frames=2)
     times = frame_times(motion)
-    drawn = animation._Film(motion, times, 1.0)
+    drawn = animation._Film(animation.motion_frames(motion, times, 1.0))
     axes = drawn.figure.axes[0]
     limits = [axes.get_xlim(), axes.get_ylim(), axes.get_zlim()]
     left = next(line for line in axes.get_lines() if line.get_label() == "left")
@@ -89,7 +89,7 @@ def test_frames_lie_on_the_dense_output_in_fixed_axes() -> None:
 
 def test_trails_grow_with_the_motion(short: Motion) -> None:
     times = frame_times(short)
-    drawn = animation._Film(short, times, 0.5)
+    drawn = animation._Film(animation.motion_frames(short, times, 0.5))
     trail = drawn.figure.axes[0].get_lines()[0]
     for index in (0, 3, 10):
         drawn.show(index)
@@ -98,7 +98,7 @@ def test_trails_grow_with_the_motion(short: Motion) -> None:
 
 
 def test_planar_axes_hold_the_motion(short: Motion) -> None:
-    drawn = animation._Film(short, frame_times(short), 1.0)
+    drawn = animation._Film(animation.motion_frames(short, frame_times(short), 1.0))
     axes = drawn.figure.axes[0]
     points = short.section(None, np.linspace(0, 1, 21)).position.reshape(-1, 3)
     for limits, axis in ((axes.get_xlim(), 0), (axes.get_ylim(), 2)):
@@ -107,7 +107,9 @@ def test_planar_axes_hold_the_motion(short: Motion) -> None:
 
 
 def test_a_motion_that_ended_early_says_so(short: Motion) -> None:
-    drawn = animation._Film(replace(short, outcome=MotionOutcome.NOT_FINITE), frame_times(short), 1.0)
+    drawn = animation._Film(
+        animation.motion_frames(replace(short, outcome=MotionOutcome.NOT_FINITE), frame_times(short), 1.0)
+    )
     assert drawn.figure.axes[0].get_title() == "t = 0.00 s, not converged"
 
 

@@ -18,6 +18,7 @@ from scipy.integrate import solve_ivp
 
 from cosserat_casadi import Scene, Solution
 from cosserat_casadi.model.rods import rod_properties
+from tests.pose_errors import pose_error
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Table = dict[str, Any]
@@ -147,10 +148,9 @@ def miss(scene: Scene, solution: Solution) -> Miss:
     truth = _Integrator(scene, tensions).equilibrium(solution)
     length = scene.rods[0].length
     tip = solution.tip()
-    position = np.abs(tip.position[0] - truth.position).max() / length
-    rotation = np.abs(tip.rotation[0] - truth.rotation).max()
+    error = pose_error((tip.position[0], tip.rotation[0]), (truth.position, truth.rotation), length)
     cables = [abs(float(solution.actuator(name)["length"]) - L) / length for name, L in truth.lengths.items()]
-    return Miss(float(max(position, rotation)), max(cables, default=0.0))
+    return Miss(error, max(cables, default=0.0))
 
 
 class _Integrator:

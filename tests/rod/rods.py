@@ -5,6 +5,8 @@ Strains are evaluated by numpy.polynomial, poses and internal wrenches are integ
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
@@ -13,6 +15,7 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.motion import FrameMotion, StrainRates
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
@@ -178,3 +181,76 @@ def reference_wrench(basis, q, wrenches, rotation=None):
         states.append(solution.y.T[::-1])
         R, wrench = solution.y[:9, -1].reshape(3, 3), solution.y[9:, -1]
     return np.concatenate(states[::-1])[:, 9:]
+
+
+# In motion
+
+
+def massive(properties, *, rotary=True, damped=False):
+    """The same rod with a mass that varies along it, unequal second moments, and damping."""
+    return replace(
+        properties,
+        linear_density=lambda X: 0.9 * (1 - 0.3 * X),
+        rotary_inertia=(lambda X: np.outer(1 - 0.3 * X, [0.02, 0.03, 0.045])) if rotary else None,
+        damping=(lambda X: np.outer(1 - 0.2 * X, [0.1, 0.2, 0.05, 3.0, 2.0, 4.0])) if damped else None,
+    )
+
+
+def drawn_motion(basis, seed=0, size=1.0, *, ratio=False, moving=True):
+    """Seeded strain rates and the seeded motion of a base, as numbers."""
+    draw = np.random.default_rng(seed).uniform
+    velocity, acceleration = draw(-size, size, (2, basis.size))
+    base = draw(-size, size, (4, 3)) if moving else np.zeros((4, 3))
+    ratios = [ca.DM(0.4 * size), ca.DM(-0.7 * size)] if ratio else [None, None]
+    rates = StrainRates(ca.DM(velocity), ca.DM(acceleration), *ratios)
+    return rates, FrameMotion(*map(ca.DM, base))
+
+
+def reference_motion(basis, q, rates, base, ratio=1.0):
+    """Velocity, angular velocity, acceleration, angular acceleration at the nodes, (M, 3) each, and the kinetic energy.
+
+    Body twists η = [Ω; V] by DOP853: η' = −ad_ξ η + ξ̇ and η̇' = −ad_ξ η̇ − ad_ξ̇ η + ξ̈ with ξ per reference length. All
+    in the axes of the base. The energy is that of the continuous rod: ½ ∫ ρA V·V + Ω·J Ω, one more state.
+    """
+    length, rod = basis.properties.length, basis.properties
+    ratio_rates = [0.0 if r is None else float(r) for r in (rates.ratio_rate, rates.ratio_acceleration)]
+    factors = [ratio, *ratio_rates]
+    coordinates_of = [q, rates.velocity.full().ravel(), rates.acceleration.full().ravel()]
+    omega, alpha = base.angular_velocity.full().ravel(), base.angular_acceleration.full().ravel()
+    speed = base.velocity.full().ravel()
+    relative = base.acceleration.full().ravel() - np.cross(omega, speed)
+    state = np.concatenate([np.eye(3).ravel(), omega, speed, alpha, relative, [0.0]])
+    states = []
+    for e, X in enumerate(basis.grid.nodes.reshape(basis.grid.elements, -1)):
+        still = element_strain(basis, np.zeros(basis.size), e)
+        moved = [element_strain(basis, c, e) for c in coordinates_of]
+
+        def rate(x, y, still=still, moved=moved):
+            unloaded = still(x)
+            strains = [f * unloaded + m(x) - unloaded for f, m in zip(factors, moved, strict=True)]
+            xi, xi_rate = (_little_adjoint(s) for s in strains[:2])
+            R, eta, eta_rate = y[:9].reshape(3, 3), y[9:15], y[15:21]
+            first = strains[1] - xi @ eta
+            second = strains[2] - xi @ eta_rate - xi_rate @ eta
+            at = np.array([x])
+            energy = 0.0
+            if rod.linear_density is not None:
+                energy = rod.linear_density(at)[0] * eta[3:] @ eta[3:]
+            if rod.rotary_inertia is not None:
+                energy = energy + rod.rotary_inertia(at)[0] @ eta[:3] ** 2
+            return length * np.concatenate([(R @ hat(strains[0][:3])).ravel(), first, second, [ratio * energy / 2]])
+
+        solution = solve_ivp(rate, (X[0], X[-1]), state, t_eval=X, **_TOLERANCES)
+        states.append(solution.y.T)
+        state = solution.y[:, -1]
+    stacked = np.concatenate(states)
+    R = stacked[:, :9].reshape(-1, 3, 3)
+    spin, speed, spin_rate, speed_rate = (stacked[:, k : k + 3] for k in (9, 12, 15, 18))
+    along = [speed, spin, speed_rate + np.cross(spin, speed), spin_rate]
+    return [np.einsum("kij,kj->ki", R, v) for v in along], stacked[-1, -1]
+
+
+def _little_adjoint(twist):
+    """ad_ξ = [K^, 0; Γ^, K^]."""
+    K, Gamma = hat(twist[:3]), hat(twist[3:])
+    return np.block([[K, np.zeros((3, 3))], [Gamma, K]])

@@ -70,8 +70,19 @@ def test_every_key_is_described():
     assert [name for name, entry in properties(json_schema.scene_json_schema()) if not entry.get("description")] == []
 
 
-def test_a_good_scene_validates():
-    VALIDATOR.validate(tomllib.loads(GOOD))
+@pytest.mark.parametrize(
+    ("written", "table"),
+    [
+        ("[2.0e-3, 1.0e-3]", "{ base = 2.0e-3, tip = 1.0e-3 }"),
+        ("[2.0e-3, 1.0e-3]", "{ powers = [2.0e-3, -1.0e-3] }"),
+        ("[0, 1]", "{ base = -1, tip = 1.0 }"),
+        ("[0, 1]", "{ legendre = [0, 1, 2] }"),
+        ("[0, 1]", "[0, 1]"),
+    ],
+)
+def test_a_good_scene_validates(written, table):
+    assert written in GOOD
+    VALIDATOR.validate(tomllib.loads(GOOD.replace(written, table)))
 
 
 @pytest.mark.parametrize(
@@ -87,6 +98,13 @@ def test_a_good_scene_validates():
         ("at = 0.5", "at = 1.5"),
         ("force = [0.1, 0, 0]", "force = [0.1, 0]"),
         ('"pinned"', '"clamped"'),
+        ("[2.0e-3, 1.0e-3]", "{ base = 2.0e-3 }"),
+        ("[2.0e-3, 1.0e-3]", "{ base = 2.0e-3, tip = 0.0 }"),
+        ("[2.0e-3, 1.0e-3]", "{ powers = [2.0e-3, 1.0e-3, 1.0] }"),
+        ("[0, 1]", "{ powers = [1.0], legendre = [1.0] }"),
+        ("[0, 1]", "{ powers = [] }"),
+        ("[0, 1]", "{ power = [1.0] }"),
+        ("[0, 1]", "{}"),
     ],
 )
 def test_a_bad_scene_does_not_validate(good, bad):

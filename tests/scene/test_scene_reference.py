@@ -145,7 +145,8 @@ def test_every_number_has_a_unit_or_has_none_by_nature() -> None:
 
 
 def test_links_lead_to_headings() -> None:
-    headings = [re.sub(r"[^\w -]", "", line.lstrip("# ")) for line in PAGE.splitlines() if line.startswith("#")]
+    titles = [re.sub(r"[^\w -]", "", line.lstrip("# ")) for line in PAGE.splitlines() if line.startswith("#")]
+    headings = [title.lower().replace(" ", "-") for title in titles]
     for anchor in re.findall(r"\]\(#([^)]+)\)", PAGE):
         assert headings.count(anchor) == 1, anchor
     for path in re.findall(r"\]\(([^)#]+)\)", PAGE):

@@ -19,17 +19,22 @@ FINE = {"row": 0, "error_estimate": 2e-5, "difference": 1e-12, "stable": True}
 
 
 def test_difference_of_a_row_from_a_solution() -> None:
-    """Positions count over the length, 0.8 m; a quaternion and its negative are one rotation."""
+    """Distances count over the length, 0.8 m; a quaternion and its negative are one rotation."""
     solution = solve(build(PLANAR), raise_on_failure=True)
     row = result_row(solution, len(row_results(PLANAR)))
     position, quaternion = slice(len(JUDGED), len(JUDGED) + 3), slice(len(JUDGED) + 3, len(JUDGED) + 7)
-    for place, change, expected in ((position, 0.004, 0.005), (quaternion, 0.02, 0.02), (position, 0.0, 0.0)):
-        other = row.copy()
-        other[place.start + 1] += change
-        assert_allclose(pose_difference(other, solution), expected, rtol=1e-12, atol=1e-15)
+    moved = row.copy()
+    moved[position] += [0.004, 0.0, 0.003]
+    assert_allclose(pose_difference(moved, solution), 0.005 / 0.8, rtol=1e-12, atol=0)
+    w, x, y, z = row[quaternion]
     turned = row.copy()
+    # Turned on by 0.02 rad about the axis y of the section.
+    c, s = np.cos(0.01), np.sin(0.01)
+    turned[quaternion] = [c * w - s * y, c * x - s * z, c * y + s * w, c * z + s * x]
+    assert_allclose(pose_difference(turned, solution), 0.02, rtol=1e-12, atol=0)
     turned[quaternion] *= -1
-    assert pose_difference(turned, solution) == 0.0
+    assert_allclose(pose_difference(turned, solution), 0.02, rtol=1e-12, atol=0)
+    assert pose_difference(row, solution) == 0.0
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,8 @@ from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.reading import written_tables
+from cosserat_casadi.scene.varying import VaryingValue, varying_values
 
 
 def check(
@@ -22,11 +24,16 @@ def check(
     timed: Annotated[bool, typer.Option("--time", help="Price each effect in compiled microseconds too.")] = False,
 ) -> None:
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
-    checked_scene = read_scene(scene, tuple(settings or ()))
+    overrides = tuple(settings or ())
+    checked_scene = read_scene(scene, overrides)
     if timed:
         # A compiler that is missing is reported before anything is printed.
         find_compiler()
-    print_check(Console(), build(checked_scene))
+    varying: list[VaryingValue] = []
+    # A pipe cannot be read again.
+    if scene.is_file():
+        varying = varying_values(checked_scene, written_tables(scene, overrides))
+    print_check(Console(), build(checked_scene), varying)
     if timed:
         _print_times(checked_scene)
 

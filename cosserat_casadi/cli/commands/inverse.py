@@ -12,11 +12,14 @@ from cosserat_casadi.cli.commands.solving import draw_solution
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
 from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.inverse_table import print_inverse_table
 from cosserat_casadi.cli.reports.solution import print_inverse, print_unstable_inverse
-from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.control.inverse_accuracy import inverse_rows, inverse_scene
+from cosserat_casadi.control.target_table import read_targets
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.inverse_file import inverse_text
+from cosserat_casadi.results.inverse_table import MET, row_outcome, table_text
 from cosserat_casadi.scene import read_scene
 
 
@@ -24,6 +27,10 @@ def inverse(
     scene: SceneFile,
     settings: Settings = None,
     output: Annotated[Path | None, typer.Option(help="Write the result at the inputs found (JSON) here.")] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option(help="Targets one after the other: CSV with x, y, z and qw, qx, qy, qz; --output is CSV then."),
+    ] = None,
     plot: Annotated[Path | None, typer.Option(help="Draw a figure here: .png, .pdf or .svg.")] = None,
     stable: Annotated[
         bool, typer.Option("--stable", help="Find a stable equilibrium: from an unstable one let the rod settle.")
@@ -35,11 +42,16 @@ def inverse(
     """Find inputs that bring rods and bodies to the targets of a scene.
 
     Where the scene has [[bounds]], only the inputs that it bounds change. Exit codes: 0 targets met, 2 refused, 3 not
-    met, unstable, or no equilibrium found; the files show the closest pose then.
+    met, unstable, or no equilibrium found; the files show the closest pose then. With --table every row is a target
+    of its own, and 3 says that one of them or more is not met.
     """
     if stable and unstable:
         raise SceneError(Problem("--unstable", "stands beside --stable", "leave one of them out"))
     check_outputs(output, plot)
+    if table is not None:
+        _check_table(output, plot)
+        _inverse_of_table(scene, settings, table, output, stable, unstable)
+        return
     with solve_display("Finding inputs") as display:
         # Read inside: building the problem is part of what the bar shows, and may be interrupted.
         given_scene = read_scene(scene, tuple(settings or ()))
@@ -54,4 +66,40 @@ def inverse(
     # The files hold the closest pose then.
     refused = solved.unstable and not unstable
     if refused or not solved.met:
+        raise typer.Exit(NOT_FOUND)
+
+
+def _check_table(output: Path | None, plot: Path | None) -> None:
+    """Refuse options that a table has no use for, or needs."""
+    problems = []
+    if output is None:
+        problems.append(Problem("--output", "missing", "name the CSV file for what is found for the table"))
+    if plot is not None:
+        problems.append(Problem("--plot", "stands beside --table", "draw one row: leave out --table"))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _inverse_of_table(
+    scene: Path,
+    settings: list[str] | None,
+    table: Path,
+    output: Path | None,
+    stable: bool,
+    unstable: bool,
+) -> None:
+    """Find inputs for every row of a table of targets, and write them as a table."""
+    assert output is not None
+    with solve_display("Finding inputs") as display:
+        given_scene = read_scene(scene, tuple(settings or ()))
+        targets = read_targets(table, given_scene)
+
+        def show_rows(done: int, total: int) -> None:
+            display.show_stage(f"row {done + 1} of {total}")
+
+        found = inverse_rows(given_scene, targets.rows, stable=stable, report=display.show_stage, progress=show_rows)
+    write_atomically(output, table_text(targets, found, unstable).encode())
+    outcomes = [row_outcome(inverse, unstable) for inverse in found]
+    print_inverse_table(Console(), targets, found, outcomes, output)
+    if any(outcome != MET for outcome in outcomes):
         raise typer.Exit(NOT_FOUND)

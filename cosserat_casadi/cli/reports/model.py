@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -15,15 +16,17 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.price import price, price_of_load
+from cosserat_casadi.scene.varying import VaryingValue
 
 
-def print_check(console: Console, model: Model) -> None:
-    """Print what a valid scene holds, and what its model costs."""
+def print_check(console: Console, model: Model, varying: Sequence[VaryingValue]) -> None:
+    """Print what a valid scene holds, what in it varies along the rods, and what its model costs."""
     scene = model.scene
     print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
     if scene.causes:
         console.print(_load_table(model))
+    _print_varying(console, varying)
     if scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in scene.supports))
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
@@ -79,6 +82,32 @@ def _tuning_verdict(tuning: Tuning, count: int) -> str:
     if tuning.met:
         return f"[bold green]All {count} load cases are within {tolerance:g}.[/]"
     return f"[bold red]The tolerance {tolerance:g} is not met at every load case.[/]"
+
+
+def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
+    """Print base and tip of what varies along a rod, and how each plain list was read."""
+    if not varying:
+        return
+    table = Table()
+    table.add_column("along a rod", overflow="fold")
+    table.add_column("given by")
+    table.add_column("at the base", justify="right")
+    table.add_column("at the tip", justify="right")
+    for value in varying:
+        base, tip = value.profile.ends
+        notation = value.profile.notation.value
+        table.add_row(escape(value.key), notation, _with_unit(base, value.unit), _with_unit(tip, value.unit))
+    console.print(table)
+    for value in varying:
+        if value.plain:
+            read_as = f"the list of {escape(value.key)} was read as {value.profile.notation.value}"
+            print_plain(console, f"Note: {read_as}; {escape(value.profile.table)} says the same.")
+
+
+def _with_unit(number: float, unit: str) -> str:
+    if unit == "1":
+        return f"{number:.6g}"
+    return f"{number:.6g} {unit}"
 
 
 def _print_price(console: Console, model: Model) -> None:

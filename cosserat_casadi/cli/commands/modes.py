@@ -1,0 +1,102 @@
+"""``cosserat modes``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.modes import print_modes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.motion.modes import DEFAULT_COUNT, Modes, modes_of_scene
+from cosserat_casadi.results.modes_file import modes_text
+from cosserat_casadi.scene import Scene, read_scene
+
+
+def modes(
+    scene: SceneFile,
+    count: Annotated[int, typer.Option(help="How many modes, those of lowest frequency.")] = DEFAULT_COUNT,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write the modes (JSON) here.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the modes here: .png, .pdf or .svg.")] = None,
+    animation: Annotated[Path | None, typer.Option(help="Draw one mode as it swings here: .gif or .mp4.")] = None,
+    mode: Annotated[int, typer.Option(metavar="NUMBER", help="Of the mode that --animation shows.")] = 1,
+) -> None:
+    """Find frequencies, damping and shapes of small vibrations about the equilibrium, and whether it is stable.
+
+    Exit codes: 0 found to the tolerance, 2 refused, 3 no equilibrium, or frequencies not to the tolerance.
+    """
+    problems: list[Problem] = []
+    _check_numbers(count, mode, problems)
+    _check_files(output, plot, animation, problems)
+    checked_scene: Scene | None = None
+    with collect_problems(problems):
+        checked_scene = read_scene(scene, tuple(settings or ()))
+    if problems or checked_scene is None:
+        raise SceneError(*problems)
+
+    with solve_display("Finding modes") as display:
+        found = modes_of_scene(checked_scene, count=count, progress=display.show_share, report=display.show_stage)
+    _check_mode_is_there(found, animation, mode)
+    if output is not None:
+        write_atomically(output, modes_text(found).encode())
+    drawn = _draw(found, plot, animation, mode)
+    print_modes(Console(), found, given_files(output, *drawn))
+    if not found.converged:
+        raise typer.Exit(NOT_FOUND)
+
+
+def _check_numbers(count: int, mode: int, problems: list[Problem]) -> None:
+    if count < 1:
+        problems.append(Problem("--count", f"must be 1 or more, got {count}"))
+    elif not 1 <= mode <= count:
+        problems.append(Problem("--mode", f"must be from 1 to {count}, got {mode}", "ask for more modes with --count"))
+
+
+def _check_mode_is_there(found: Modes, animation: Path | None, number: int) -> None:
+    """Refuse to draw a mode that the scene does not have: with little mass it has fewer than were asked for.
+
+    Raises:
+        SceneError: there are modes, but not this one.
+    """
+    count = len(found.modes)
+    if animation is not None and 0 < count < number:
+        raise SceneError(Problem("--mode", f"must be from 1 to {count}: the scene has no more modes; got {number}"))
+
+
+def _check_files(output: Path | None, plot: Path | None, animation: Path | None, problems: list[Problem]) -> None:
+    for file, figure in ((output, None), (None, plot)):
+        with collect_problems(problems):
+            check_outputs(file, figure)
+    if animation is None:
+        return
+    # Imported here, because matplotlib is an extra and takes long to load.
+    from cosserat_casadi.plots.animation import check_animation_path
+
+    with collect_problems(problems):
+        check_writable(animation, "--animation")
+    with collect_problems(problems):
+        check_animation_path(animation)
+
+
+def _draw(found: Modes, plot: Path | None, animation: Path | None, number: int) -> list[Path]:
+    """Draw the figure and the animation that are asked for; returns the files that were written."""
+    if plot is None and animation is None:
+        return []
+    from cosserat_casadi.plots.modes_plot import save_mode_animation, save_modes_plot
+
+    written = []
+    if plot is not None:
+        save_modes_plot(found, plot)
+        written.append(plot)
+    # Where there is no equilibrium nothing swings.
+    if animation is not None and found.modes:
+        save_mode_animation(found, number - 1, animation)
+        written.append(animation)
+    return written

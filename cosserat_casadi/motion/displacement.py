@@ -1,0 +1,52 @@
+"""How far unknowns move the sections of a scene: what turns a tolerance on paths into one on unknowns."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.igm import InverseGeometricModel
+from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.statics import Statics
+from cosserat_casadi.rod.strain import DiscreteRod
+from cosserat_casadi.rod.tangent import Tangent
+
+LEVER = 0.1
+"""Arm, relative to the length, at which a turn of a section counts: a bent rod swings by its torsion."""
+
+QUATERNION = 2.0
+"""Turn of a frame by a unit of its quaternion, rad, on an arm of one length."""
+
+
+def displacements(model: Model) -> FloatArray:
+    """Largest displacement over the length that a unit of each unknown makes, shape (size,); 1 of algebraic ones.
+
+    Of strain coordinates at the unloaded rod, which a rod that moves is at times as good as any.
+    """
+    sizes = np.ones(model.size)
+    unknowns = model.discrete.unknowns
+    for name, rod in model.discrete.rods.items():
+        sizes[unknowns.strain(name)] = _of_strains(rod)
+    for _, entries in unknowns.of_kind(BlockKind.POSE):
+        sizes[entries][3:] = QUATERNION
+    return sizes
+
+
+def _of_strains(rod: DiscreteRod) -> FloatArray:
+    """Largest displacement over the length by a unit of each strain coordinate, shape (n,)."""
+    unloaded = shape(rod, ca.MX.zeros(rod.size))
+    tangent = Tangent(InverseGeometricModel(Statics(unloaded, [])))
+    variation = ca.evalf(ca.densify(ca.MX(tangent.tangent))).full()
+    turns = ca.evalf(ca.densify(ca.MX(tangent.rotation))).full()
+    points = rod.grid.size
+    # Stacked component by component: the first axis is that of the components.
+    of_tangents = variation.reshape(3, points, rod.size)
+    of_positions = np.einsum("ij,cjn->cin", rod.grid.integration_matrix, of_tangents)
+    moved = np.linalg.norm(of_positions, axis=0).max(axis=0) / rod.length
+    turned = np.zeros(rod.size)
+    turned[: turns.shape[1]] = np.linalg.norm(turns.reshape(3, points, -1), axis=0).max(axis=0, initial=0.0)
+    sizes: FloatArray = np.maximum(moved, LEVER * turned)
+    return sizes

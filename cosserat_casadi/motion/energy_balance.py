@@ -1,0 +1,112 @@
+"""The balance of energy along a motion: what is there, what went in, what was dissipated, and what is left over.
+
+Powers are integrated with the quadrature of the steps themselves, so that the balance is as exact as the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.history import History, Leg
+from cosserat_casadi.motion.trajectory import Energies
+from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.step import Step, stages_of
+
+Place = tuple[Leg, Instant]
+"""An instant of a motion, and the piece of the inputs that it belongs to."""
+
+
+def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> Energies:
+    """Energies of a motion at given times.
+
+    Args:
+        history: the motion.
+        times: those to tell, reached by the motion, ascending, shape (T,), s.
+        moving: names of the inputs that move: a dead force that changes does work, and has no energy of its own.
+    """
+    model = history.model
+    places = [history.locate(float(time)) for time in times]
+    kinetic, elastic, of_loads, dead = _called(model.energies, places, accelerations=False)
+    conserved = dead[:, :1] * _still(model, moving)[:, None]
+    potential = (conserved.T @ of_loads)[0]
+    dissipated, work = _integrals(history, times, 1.0 - conserved[:, 0])
+
+    stored = kinetic[0] + elastic[0] + potential
+    left_over = stored - stored[:1] + dissipated - work
+    parts = np.stack([kinetic[0], elastic[0], potential - potential[:1], dissipated, work])
+    largest = float(np.abs(parts).max(initial=0.0))
+    # Nothing moves and nothing is stored: nothing is missing either.
+    if largest > 0.0:
+        left_over = left_over / largest
+    return Energies(kinetic[0], elastic[0], potential, dissipated, work, left_over)
+
+
+def _still(model: Model, moving: frozenset[str]) -> FloatArray:
+    """One for each load that no moving input changes, else zero, shape (loads,)."""
+    lengths = {entry.name for entry, _ in model.inputs if entry.of_rod and entry.field == "length"}
+    # A rod that grows is weighed by more and more of it.
+    if lengths & moving:
+        return np.zeros(len(model.scene.loads))
+    owners = {entry.owner for entry, _ in model.inputs if entry.name in moving and not entry.of_rod}
+    return np.array([float(load.name not in owners) for load in model.scene.loads])
+
+
+def _integrals(history: History, times: FloatArray, working: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Energy that was dissipated, and work that was done, up to each time, shape (T,) each, J.
+
+    Args:
+        history: the motion.
+        times: shape (T,), s.
+        working: one for each load whose work counts, shape (loads,).
+    """
+    if not history.steps:
+        nothing = np.zeros(len(times))
+        return nothing, nothing
+    places = [place for leg, step in history.steps for place in _stage_places(leg, step)]
+    dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, places, accelerations=True)
+    put_in = working @ of_loads + of_actuators.sum(axis=0) + of_bases[0]
+    powers = np.stack([dissipated[0], put_in])
+    stages = history.steps[0][1].method.stages
+    by_step = powers.reshape(2, len(history.steps), stages)
+    return _up_to(history, times, by_step)
+
+
+def _up_to(history: History, times: FloatArray, powers: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Integrals of two powers, given at the stages of the steps, shape (2, steps, stages), up to each time."""
+    method = history.steps[0][1].method
+    sizes = np.array([step.size for _, step in history.steps])
+    of_steps = (powers @ method.weights) * sizes
+    before = np.cumsum(of_steps, axis=1) - of_steps
+    results = np.zeros((2, len(times)))
+    for row, time in enumerate(times):
+        number = history.number_at(float(time))
+        _, step = history.steps[number]
+        share = (time - step.start.time) / step.size
+        within = step.size * (powers[:, number] @ method.integrals_at(share))
+        results[:, row] = before[:, number] + within
+    return results[0], results[1]
+
+
+def _stage_places(leg: Leg, step: Step) -> list[Place]:
+    stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
+    rows = zip(stages.times, stages.x, stages.v, stages.a, strict=True)
+    return [(leg, Instant(float(time), x, v, a)) for time, x, v, a in rows]
+
+
+def _called(function: ca.Function, places: Sequence[Place], *, accelerations: bool) -> list[FloatArray]:
+    """Results of a function of the motion at all places, one a column: shape (entries, places) each."""
+    columns: list[list[FloatArray]] = []
+    for leg, instant in places:
+        inputs = leg.piece.at(instant.time)
+        given = [instant.x, instant.v, inputs.value, inputs.rate]
+        if accelerations:
+            given = [instant.x, instant.v, instant.a, *inputs]
+        columns.append(given)
+    arguments = [np.stack(argument, axis=1) for argument in zip(*columns, strict=True)]
+    results = function.map(len(places)).call(arguments)
+    return [np.asarray(result.full()) for result in results]

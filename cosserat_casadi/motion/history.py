@@ -1,0 +1,175 @@
+"""A model integrated in time: its equations over each smooth piece of its inputs, and the steps one after the other."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
+from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.step import Step
+from cosserat_casadi.numerics.time_steps import AfterStep, Integration, StepOutcome, StepSettings, integrate
+
+DIFFERENTIATED = 0.01
+"""Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
+
+
+def equations_of(model: Model, piece: Piece) -> MotionEquations:
+    """The equations of motion of a model while its inputs follow one piece of their paths."""
+
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        return np.asarray(model.inverse_dynamics(x, v, a, *piece.at(t)).full()[:, 0])
+
+    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *piece.at(t))
+        return stiffness.full(), damping.full(), mass.full()
+
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The steps over one piece.
+
+    Attributes:
+        piece: the inputs.
+        start: how the piece begins.
+        integration: the steps.
+    """
+
+    piece: Piece
+    start: ConsistentStart
+    integration: Integration
+
+
+@dataclass(frozen=True)
+class History:
+    """The motion of a model in time.
+
+    Attributes:
+        model: the model.
+        legs: one for each piece that was begun.
+    """
+
+    model: Model
+    legs: tuple[Leg, ...]
+
+    @property
+    def outcome(self) -> StepOutcome:
+        """How the last piece ended."""
+        return self.legs[-1].integration.outcome
+
+    @property
+    def completed(self) -> bool:
+        """Whether all pieces were integrated to their ends."""
+        return self.outcome is StepOutcome.COMPLETED
+
+    @property
+    def end(self) -> Instant:
+        """The last instant that was reached."""
+        return self.legs[-1].integration.end
+
+    @property
+    def next_size(self) -> float:
+        """Size of the step that would come next, or that failed, s."""
+        return self.legs[-1].integration.next_size
+
+    @cached_property
+    def steps(self) -> list[tuple[Leg, Step]]:
+        """All steps in their order, with the pieces that they belong to."""
+        return [(leg, step) for leg in self.legs for step in leg.integration.steps]
+
+    @cached_property
+    def statistics(self) -> StepStatistics:
+        """What the steps took."""
+        sizes = [step.size for _, step in self.steps]
+        counts = [leg.integration.statistics for leg in self.legs]
+        return StepStatistics(
+            steps=sum(count.steps for count in counts),
+            rejected=sum(count.rejected for count in counts),
+            iterations=sum(count.iterations for count in counts),
+            jacobians=sum(count.jacobians for count in counts),
+            smallest_step=min(sizes, default=float("nan")),
+            largest_step=max(sizes, default=float("nan")),
+        )
+
+    def at(self, time: float) -> MotionState:
+        """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
+        leg, instant = self.locate(time)
+        inputs = leg.piece.at(instant.time).value
+        return MotionState(instant.x, instant.v, instant.a, inputs)
+
+    def locate(self, time: float) -> tuple[Leg, Instant]:
+        """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
+        if not self.steps:
+            leg = self.legs[0]
+            return leg, leg.start.instant
+        leg, step = self.steps[self.number_at(time)]
+        return leg, step.at(time)
+
+    def number_at(self, time: float) -> int:
+        """Number of the step that holds a time; at the end of a step, that one."""
+        return min(bisect_left(self._ends, time), len(self.steps) - 1)
+
+    def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Unknowns, rates, second derivatives and inputs at T times, shapes (T, size) and (T, inputs)."""
+        states = [self.at(float(time)) for time in times]
+        x, v, a, inputs = (np.array([getattr(state, name) for state in states]) for name in ("x", "v", "a", "inputs"))
+        return x, v, a, inputs
+
+    @cached_property
+    def _ends(self) -> list[float]:
+        return [step.end.time for _, step in self.steps]
+
+
+def integrated(
+    model: Model,
+    pieces: Sequence[Piece],
+    x: FloatArray,
+    v: FloatArray,
+    method: Collocation,
+    settings: StepSettings,
+    after_step: AfterStep | None = None,
+) -> History:
+    """Integrate a model over all pieces of its inputs, or until one ends early.
+
+    Args:
+        model: the model.
+        pieces: of its inputs, one after the other.
+        x: unknowns at the start, shape (size,); multipliers and tensions are a guess.
+        v: their rates, shape (size,), 1/s.
+        method: the collocation method.
+        settings: how to step.
+        after_step: told of every step.
+    """
+    legs: list[Leg] = []
+    for piece in pieces:
+        equations = equations_of(model, piece)
+        interval = DIFFERENTIATED * (piece.end - piece.start)
+        # Accelerations and multipliers jump where an input or its rates do.
+        start = consistent_start(equations, piece.start, x, v, interval)
+        integration = integrate(equations, start.instant, piece.end, method, settings, after_step)
+        legs.append(Leg(piece, start, integration))
+        if integration.outcome is not StepOutcome.COMPLETED:
+            break
+        x = integration.end.x
+        v = integration.end.v
+        # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
+        settings = replace(settings, first=min(integration.next_size, piece_length(pieces, len(legs))))
+    return History(model, tuple(legs))
+
+
+def piece_length(pieces: Sequence[Piece], number: int) -> float:
+    """Length of a piece, s; infinite where there is none."""
+    if number >= len(pieces):
+        return float("inf")
+    return pieces[number].end - pieces[number].start

@@ -1,0 +1,342 @@
+"""Simulate a scene to a tolerance in space and time together: modes and nodes are chosen for the motion.
+
+The motion is computed on one set of modes after the other. The distance of the paths of two of them, and how it falls
+from one to the next, tell what the last one leaves; a strain that does not move keeps one mode, one whose last
+coefficients are not felt keeps what it has. The steps are as exact as the first set of modes asks, and are checked on
+the last. See docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi.accuracy.levels import SPARE_NODES, seeing_modes
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.paths import path_distance, watched_times
+from cosserat_casadi.motion.simulate import (
+    OUTCOMES,
+    TELL,
+    Simulator,
+    TimedHistory,
+    check_simulation,
+    message_of,
+    motion_of,
+    not_started,
+    started,
+    tolerance_of,
+    unresolved,
+)
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.numerics.time_steps import StepOutcome
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.simulation import Simulation
+
+TIME_SHARE = 0.3
+"""Share of the tolerance that the steps may use up."""
+
+SPACE_SHARE = 0.7
+"""Share of the tolerance that the modes and nodes may use up."""
+
+UNKNOWN_RATIO = 0.6
+"""Share of the distance to the next set of modes that is left after it, before two distances tell."""
+
+FASTEST = 0.1
+"""Smallest such share that is believed."""
+
+SLOWEST = 0.9
+"""Largest such share: beyond it nothing converges."""
+
+SAFETY = 1.5
+"""Factor on the error that is extrapolated from it."""
+
+FELT = 0.02
+"""Displacement by a coefficient, over the tolerance, from which it counts."""
+
+LAST = 3
+"""One of so many coefficients counts as one of the last."""
+
+LARGEST_ERROR = 0.1
+"""Error, over the length, above which modes or a step that the user fixed are reported as not resolving the rod."""
+
+FINER_MODES = 4
+"""Modes that are added to those of the user to estimate their error."""
+
+
+@dataclass(frozen=True)
+class _Level:
+    """A motion on one set of modes.
+
+    Attributes:
+        simulator: that computed it.
+        history: the motion.
+        paths: what is compared, shape (T, points, 3).
+    """
+
+    simulator: Simulator
+    history: History
+    paths: FloatArray
+
+
+@dataclass
+class _Search:
+    """The way from one set of modes to the next.
+
+    Attributes:
+        scene: with the inputs of its motions free.
+        simulation: what is asked for.
+        start: an equilibrium to start from; None for what the simulation says.
+        tell: is told of every step.
+        tolerance: of the paths, over the length.
+        levels: the motions so far.
+        distances: between each and the next.
+        step_tolerance: of a step, over the length; nan for steps of given size.
+        time_error: error of the steps on the first level.
+    """
+
+    scene: Scene
+    simulation: Simulation
+    start: Solution | None
+    tell: TELL | None
+    tolerance: float
+    levels: list[_Level]
+    distances: list[float]
+    step_tolerance: float = float("nan")
+    time_error: float = float("nan")
+
+    @property
+    def last(self) -> _Level:
+        """The finest motion so far."""
+        return self.levels[-1]
+
+    @property
+    def ratio(self) -> float:
+        """Share of the distance between two levels that is left after the finer one."""
+        if len(self.distances) < 2 or self.distances[-2] == 0.0:
+            return UNKNOWN_RATIO
+        return float(np.clip(self.distances[-1] / self.distances[-2], FASTEST, SLOWEST))
+
+    @property
+    def space_error(self) -> float:
+        """Error of the paths that the modes of the last level leave: the rest of a geometric series."""
+        if not self.distances:
+            return float("inf")
+        return SAFETY * self.distances[-1] * self.ratio / (1.0 - self.ratio)
+
+
+def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: TELL | None = None) -> Motion:
+    """Motion of a scene to its tolerance, on modes, nodes and steps that are chosen for it.
+
+    Where the scene fixes modes or nodes they are used as they are, and their error is estimated; where it fixes the
+    step, likewise.
+
+    Args:
+        scene: a validated scene with a table ``[simulation]``.
+        start: an equilibrium of the scene to start from at rest; by default what the simulation says.
+        progress: told of every step.
+
+    Raises:
+        SceneError: the scene cannot be simulated.
+    """
+    moving_scene = scene.with_motion_inputs()
+    coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)
+    simulation = scene.simulation
+    check_simulation(coarsest, simulation)
+    assert simulation is not None, "checked"
+    search = _Search(moving_scene, simulation, start, progress, tolerance_of(coarsest, simulation), [], [])
+    try:
+        if scene.accuracy.fixed:
+            return _with_fixed(search)
+        return _with_tolerance(search)
+    except KeyboardInterrupt:
+        # A motion that was computed to its end, if less exactly than asked, is what whoever stopped it wants to see.
+        if not search.levels:
+            raise
+        return _interrupted(search)
+
+
+def _with_fixed(search: _Search) -> Motion:
+    """The motion on the modes and nodes of the user, with an error from a few modes more."""
+    scene = search.scene
+    model = build(scene, discretise(scene), moving=True)
+    simulator = _simulator(search, model, "on the scene's own modes")
+    if not simulator.start.found:
+        return not_started(model, simulator.start)
+    timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
+    if not timed.history.completed:
+        return _ended_early(simulator, timed.history)
+    level = _Level(simulator, timed.history, simulator.paths(timed.history))
+    search.levels.append(level)
+
+    finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
+    witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
+    space_error = float("inf")
+    if witness.start.found:
+        history = _like(witness, timed.history, timed.tolerance)
+        if history.outcome is StepOutcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        if history.completed:
+            space_error = SAFETY * path_distance(level.paths, witness.paths(history))
+    return _judged(search, level, space_error + timed.error)
+
+
+def _finer(discretisation: Discretisation) -> Discretisation:
+    modes = tuple(count + FINER_MODES for count in discretisation.modes)
+    return replace(discretisation, modes=modes, nodes=discretisation.nodes + 2 * FINER_MODES)
+
+
+def _with_tolerance(search: _Search) -> Motion:
+    """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
+    ladder = seeing_modes(search.scene)
+    modes = ladder[0]
+    chosen = _uniform(search.scene, modes)
+    for number, modes in enumerate(ladder):
+        if number:
+            chosen = _next_modes(search, modes)
+        model = build(search.scene, chosen, moving=True)
+        simulator = _simulator(search, model, f"with up to {modes} modes")
+        if not simulator.start.found:
+            return not_started(model, simulator.start)
+        history = _on_level(search, simulator)
+        if history.outcome is StepOutcome.INTERRUPTED and search.levels:
+            raise KeyboardInterrupt
+        if not history.completed:
+            return _ended_early(simulator, history)
+        level = _Level(simulator, history, simulator.paths(history))
+        if search.levels:
+            search.distances.append(path_distance(search.last.paths, level.paths))
+        search.levels.append(level)
+        if search.space_error <= SPACE_SHARE * search.tolerance:
+            break
+        if _hopeless(search, len(ladder) - 1 - number):
+            break
+    timed = _timed(search)
+    if timed.history.outcome is StepOutcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    finest = replace(search.last, history=timed.history)
+    return _judged(search, finest, search.space_error + timed.error)
+
+
+def _on_level(search: _Search, simulator: Simulator) -> History:
+    """The motion on one level: the first one settles how exact the steps have to be."""
+    if not search.levels:
+        timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
+        search.step_tolerance = timed.sufficient
+        search.time_error = timed.error
+        return timed.history
+    return _like(simulator, search.last.history, search.step_tolerance)
+
+
+def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
+    """The motion with steps of a tolerance; where it is no number, with steps of the size of another motion."""
+    if np.isfinite(step_tolerance):
+        return simulator.controlled(step_tolerance)
+    # Pieces are divided evenly: the longest step is the one that was asked for, or next to it.
+    return simulator.stepped(history.statistics.largest_step)
+
+
+def _timed(search: _Search) -> TimedHistory:
+    """The motion of the last level with steps as exact as the tolerance asks for, and their error."""
+    level = search.last
+    if not np.isfinite(search.step_tolerance):
+        return TimedHistory(level.history, search.time_error)
+    return level.simulator.tightened(level.history, search.step_tolerance, TIME_SHARE * search.tolerance)
+
+
+def _hopeless(search: _Search, left: int) -> bool:
+    """Whether the levels that are left would not meet the tolerance, as far as can be foreseen."""
+    if len(search.distances) < 2:
+        return False
+    foreseen = search.space_error * search.ratio**left
+    return bool(foreseen > search.tolerance)
+
+
+def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
+    began = started(model, search.simulation, search.start)
+    return Simulator(model, search.simulation, began, stage, search.tell)
+
+
+def _uniform(scene: Scene, modes: int) -> dict[str, Discretisation]:
+    """So many modes of every strain."""
+    return discretise(scene, modes, nodes_for(modes) + SPARE_NODES)
+
+
+def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
+    """Modes of the next level: as many as it has, but of strains that do not need them."""
+    chosen = {}
+    felt = _felt(search.last, search.simulation.duration)
+    for name, discretisation in _uniform(search.scene, modes).items():
+        counts = []
+        coarse = search.last.simulator.model.discretisation[name]
+        for strain, count in enumerate(discretisation.modes):
+            moved = felt[name][strain]
+            kept = coarse.modes[strain]
+            # The coefficients of a polynomial of each element, by their degree.
+            last = moved[-max(1, len(moved) // LAST) :]
+            if moved.max() < FELT * search.tolerance:
+                counts.append(1)
+            elif last.max() < FELT * search.tolerance:
+                counts.append(kept)
+            else:
+                counts.append(count)
+        chosen[name] = replace(discretisation, modes=tuple(counts))
+    return chosen
+
+
+def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
+    """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
+    model = level.simulator.model
+    times = watched_times(level.history, duration)
+    x, _, _, _ = level.history.states(times)
+    moved = np.abs(x).max(axis=0) * displacements(model)
+    felt = {}
+    for name, rod in model.discrete.rods.items():
+        of_rod = moved[model.discrete.unknowns.strain(name)]
+        by_degree = []
+        for columns in rod.columns.values():
+            by_element = of_rod[columns].reshape(rod.grid.elements, -1)
+            by_degree.append(by_element.max(axis=0))
+        felt[name] = by_degree
+    return felt
+
+
+def _judged(search: _Search, level: _Level, error: float) -> Motion:
+    """The motion of a level that was computed to its end, with its error."""
+    outcome = MotionOutcome.COMPLETED
+    message = message_of(level.history, outcome)
+    bound = search.tolerance
+    if search.scene.accuracy.fixed or search.simulation.step is not None:
+        bound = LARGEST_ERROR
+    if unresolved(level.history, search.simulation.duration):
+        outcome = MotionOutcome.UNRESOLVED
+        message = message_of(level.history, outcome)
+    elif not error <= bound:
+        outcome = MotionOutcome.UNRESOLVED
+        message = f"{outcome.value} The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."
+    return motion_of(level.simulator, level.history, outcome, error, message)
+
+
+def _ended_early(simulator: Simulator, history: History) -> Motion:
+    outcome = OUTCOMES[history.outcome]
+    return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
+
+
+def _interrupted(search: _Search) -> Motion:
+    """The finest motion that was computed to its end when the search was stopped."""
+    level = search.last
+    error = search.space_error + search.time_error
+    message = (
+        f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but not as exact as was asked: its estimated error is "
+        f"{error:.2g} of the length."
+    )
+    if not np.isfinite(error):
+        error = float("nan")
+        message = f"{MotionOutcome.INTERRUPTED.value} The motion is whole, but its error is not known."
+    return motion_of(level.simulator, level.history, MotionOutcome.INTERRUPTED, error, message)

@@ -1,0 +1,390 @@
+"""Simulate: the motion of a model in time, with steps chosen for a tolerance, or given.
+
+The error of the steps is not foreseen from one of them: the motion is computed twice, the second time ten times as
+exactly, and the distance of the paths of the tips tells what is left. See docs/theory.md, section 11.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.energy_balance import energies_of
+from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.motion.paths import path_distance, paths, watched_times
+from cosserat_casadi.motion.start import Start, equilibrium_start, given_start, unloaded_start
+from cosserat_casadi.motion.trajectory import (
+    Energies,
+    Motion,
+    MotionOutcome,
+    MotionProgress,
+    MotionState,
+    StepStatistics,
+)
+from cosserat_casadi.numerics.collocation import gauss, radau
+from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
+from cosserat_casadi.scene.simulation import Simulation
+
+TELL = Callable[[MotionProgress], None]
+"""What is told of every step."""
+
+STAGES = 3
+"""Stages of the methods: order 5 of Radau IIA, 6 of Gauss."""
+
+TIGHTER = 10.0
+"""Factor between the tolerances of a step of two motions that are compared."""
+
+LEFT_BY_TIGHTER = 0.5
+"""Error of the more exact of the two over their distance: a tenth of the tolerance leaves a third of the error."""
+
+SLOPE = 0.8
+"""Power of a step's tolerance that the error of the paths goes with, at least."""
+
+HALVED = 4.0 / 3.0
+"""Error of a motion over its distance to one of half the step: half a step leaves a quarter of the error."""
+
+LEFT_BY_HALF = 1.0 / 3.0
+"""Error of the motion with the shorter steps over that distance."""
+
+MOST_TIGHTENINGS = 6
+"""Motions, each more exactly computed than the last, before a tolerance is given up."""
+
+FIRST_GAUSS_STEPS = 50
+"""Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
+
+EXACT = 1e-13
+"""Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
+
+CONSISTENT = 1e-8
+"""Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
+
+OUTCOMES = {
+    StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
+    StepOutcome.STEP_TOO_SMALL: MotionOutcome.STEP_TOO_SMALL,
+    StepOutcome.NOT_SOLVED: MotionOutcome.NOT_SOLVED,
+    StepOutcome.NOT_FINITE: MotionOutcome.NOT_FINITE,
+    StepOutcome.SINGULAR: MotionOutcome.SINGULAR_CONSTRAINT,
+    StepOutcome.INTERRUPTED: MotionOutcome.INTERRUPTED,
+}
+
+
+@dataclass(frozen=True)
+class TimedHistory:
+    """A motion with the error of its steps.
+
+    Attributes:
+        history: the motion.
+        error: estimated error of the paths that the steps leave, over the length; nan where none was made.
+        tolerance: of a step, over the length, that the motion was computed with; nan for steps of given size.
+        sufficient: tolerance of a step that would do for motions on other modes; nan for steps of given size.
+    """
+
+    history: History
+    error: float
+    tolerance: float = float("nan")
+    sufficient: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """The motion of one model, computed as exactly as asked.
+
+    Attributes:
+        model: the model, built for a motion.
+        simulation: what is asked for.
+        start: how the motion begins.
+        stage: what the user is told that is being done.
+        tell: is told of every step.
+    """
+
+    model: Model
+    simulation: Simulation
+    start: Start
+    stage: str = "simulating"
+    tell: TELL | None = None
+
+    @property
+    def moving(self) -> MovingInputs:
+        """The inputs over time."""
+        return moving_inputs(self.model)
+
+    def controlled(self, tolerance: float) -> History:
+        """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
+        return self._integrated(StepSettings(tolerance=tolerance / displacements(self.model)))
+
+    def stepped(self, size: float) -> History:
+        """The motion with equal steps, s."""
+        tolerance = EXACT / displacements(self.model)
+        return self._integrated(StepSettings(tolerance=tolerance, size=size, newton=1.0))
+
+    def paths(self, history: History) -> FloatArray:
+        """What two motions are compared by, shape (T, points, 3)."""
+        return paths(history, watched_times(history, self.simulation.duration))
+
+    def to_tolerance(self, tolerance: float, first: float) -> TimedHistory:
+        """The motion on this model to an error of its steps.
+
+        Args:
+            tolerance: of the paths, over the length.
+            first: tolerance of a step to begin with, where steps are controlled.
+        """
+        if self.simulation.step is not None:
+            return self._with_given_step(self.simulation.step)
+        if self.simulation.integrator == "gauss":
+            return self._with_halved_steps(tolerance)
+        return self.tightened(self.controlled(first), first, tolerance)
+
+    def tightened(self, coarse: History, first: float, tolerance: float) -> TimedHistory:
+        """The motion with ever more exact steps, until the paths of two motions agree to a tolerance.
+
+        Args:
+            coarse: the motion to begin with.
+            first: tolerance of a step, over the length, that it was computed with.
+            tolerance: of the paths, over the length.
+        """
+        coarse_paths = self.paths(coarse)
+        timed = TimedHistory(coarse, float("nan"), first, first)
+        for _ in range(MOST_TIGHTENINGS):
+            if not timed.history.completed:
+                break
+            tighter = timed.tolerance / TIGHTER
+            fine = self.controlled(tighter)
+            fine_paths = self.paths(fine)
+            distance = path_distance(coarse_paths, fine_paths)
+            error = LEFT_BY_TIGHTER * distance
+            timed = TimedHistory(fine, error, tighter, _sufficient(timed.tolerance, distance, tolerance))
+            coarse_paths = fine_paths
+            if error <= tolerance:
+                break
+        return timed
+
+    def _with_given_step(self, size: float) -> TimedHistory:
+        history = self.stepped(size)
+        if not history.completed:
+            return TimedHistory(history, float("nan"))
+        shorter = self.stepped(size / 2.0)
+        distance = path_distance(self.paths(history), self.paths(shorter))
+        error = HALVED * distance if shorter.completed else float("nan")
+        return TimedHistory(history, error)
+
+    def _with_halved_steps(self, tolerance: float) -> TimedHistory:
+        size = self.simulation.duration / FIRST_GAUSS_STEPS
+        history = self.stepped(size)
+        history_paths = self.paths(history)
+        error = float("nan")
+        for _ in range(4 * MOST_TIGHTENINGS):
+            size = size / 2.0
+            shorter = self.stepped(size)
+            # Steps too long for their equations to be solved say nothing of shorter ones.
+            if shorter.outcome is StepOutcome.INTERRUPTED:
+                return TimedHistory(shorter, float("nan"))
+            shorter_paths = self.paths(shorter)
+            if history.completed and shorter.completed:
+                error = LEFT_BY_HALF * path_distance(history_paths, shorter_paths)
+            history = shorter
+            history_paths = shorter_paths
+            if error <= tolerance:
+                break
+        return TimedHistory(history, error)
+
+    def _integrated(self, settings: StepSettings) -> History:
+        method = radau(STAGES)
+        if self.simulation.integrator == "gauss":
+            method = gauss(STAGES)
+        pieces = self.moving.pieces(self.simulation.duration)
+        still = np.zeros(self.model.size)
+        history = integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
+        _check_start(history, self.simulation)
+        return history
+
+    def _after_step(self, time: float, size: float) -> None:
+        if self.tell is not None:
+            self.tell(MotionProgress(self.stage, time, self.simulation.duration, size))
+
+
+def _sufficient(coarse: float, distance: float, wanted: float) -> float:
+    """Tolerance of a step that leaves a wanted error of the paths.
+
+    Args:
+        coarse: a tolerance of a step.
+        distance: error of the paths that it leaves.
+        wanted: error of the paths.
+    """
+    if distance <= wanted:
+        return coarse
+    # Not below the tenth of it that was tried: that one leaves what it leaves.
+    share = float((wanted / distance) ** (1.0 / SLOPE))
+    return coarse * max(share, 1.0 / TIGHTER)
+
+
+def simulate(
+    model: Model, *, start: Solution | None = None, simulation: Simulation | None = None, progress: TELL | None = None
+) -> Motion:
+    """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
+
+    Args:
+        model: of a scene with motions, built with ``build(scene.with_motion_inputs(), …, moving=True)``.
+        start: an equilibrium of the scene to start from at rest; by default what the simulation says.
+        simulation: duration, frames, tolerance; by default the scene's.
+        progress: told of every step.
+
+    Raises:
+        SceneError: the scene says nothing of a simulation, or cannot be simulated so.
+    """
+    asked = simulation or model.scene.simulation
+    check_simulation(model, asked)
+    assert asked is not None, "checked"
+    began = started(model, asked, start)
+    if not began.found:
+        return not_started(model, began)
+    simulator = Simulator(model, asked, began, tell=progress)
+    tolerance = tolerance_of(model, asked)
+    timed = simulator.to_tolerance(tolerance, first=tolerance)
+    outcome = OUTCOMES[timed.history.outcome]
+    if outcome is MotionOutcome.COMPLETED and unresolved(timed.history, asked.duration):
+        outcome = MotionOutcome.UNRESOLVED
+    return motion_of(simulator, timed.history, outcome, timed.error, message_of(timed.history, outcome))
+
+
+def tolerance_of(model: Model, simulation: Simulation) -> float:
+    """Wanted error of the paths over the length."""
+    if simulation.tolerance is not None:
+        return simulation.tolerance
+    return model.scene.motion_tolerance
+
+
+def moving_inputs(model: Model) -> MovingInputs:
+    """The inputs of a model over time."""
+    return MovingInputs(model.inputs, model.scene.motions, model.pack())
+
+
+def started(model: Model, simulation: Simulation, solution: Solution | None) -> Start:
+    """How the motion of a model begins."""
+    if solution is not None:
+        return given_start(model, solution)
+    if simulation.start == "unloaded":
+        return unloaded_start(model)
+    return equilibrium_start(model, moving_inputs(model).at(0.0).value)
+
+
+def check_simulation(model: Model, simulation: Simulation | None) -> None:
+    """Refuse what cannot be simulated.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = []
+    if simulation is None:
+        remedy = "add a table [simulation] with duration = 1.0 (s)"
+        problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+    for index, rod in enumerate(model.discrete.rods.values()):
+        if rod.properties.linear_density is None:
+            what = f"missing: {rod.properties.name!r} has no mass, and a motion needs one"
+            problems.append(Problem(f"rods[{index}].material.density", what, "give the density, kg/m³"))
+    if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
+        what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
+        problems.append(Problem("simulation.integrator", what, "use 'radau'"))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _check_start(history: History, simulation: Simulation) -> None:
+    """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
+
+    Raises:
+        SceneError: supports or joints are not closed, or would be torn open at once.
+    """
+    start = history.legs[0].start
+    problems = []
+    if start.position_error > CONSISTENT:
+        what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
+        problems.append(Problem("simulation.start", what, "start from an equilibrium"))
+    if start.velocity_error * simulation.duration > CONSISTENT:
+        what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
+        remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
+        problems.append(Problem("motions", what, remedy))
+    if problems:
+        raise SceneError(*problems)
+
+
+def unresolved(history: History, duration: float) -> bool:
+    """Whether the rods bend too sharply for their nodes at some time."""
+    model = history.model
+    times = watched_times(history, duration)
+    x, _, _, inputs = history.states(times)
+    indices = model.resolution_index.map(len(times))(x.T, inputs.T).full()
+    return bool(indices.max() > 1.0)
+
+
+def message_of(history: History, outcome: MotionOutcome) -> str:
+    """The sentence of the outcome, with time and size of the step where the motion ended early."""
+    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
+        return str(outcome.value)
+    return f"{outcome.value} Reached: t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s."
+
+
+def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:
+    """The record of a motion: its rows at the times asked for, as far as it reached them."""
+    model = simulator.model
+    wanted = simulator.simulation.frame_times
+    times = wanted[wanted <= history.end.time]
+    x, v, a, inputs = history.states(times)
+    moving = frozenset(motion.input for motion in model.scene.motions)
+    return Motion(
+        model=model,
+        outcome=outcome,
+        message=message,
+        times=times,
+        x=x,
+        v=v,
+        a=a,
+        inputs=inputs,
+        energy=energies_of(history, times, moving),
+        error_estimate=error,
+        statistics=history.statistics,
+        start=simulator.start.sentence,
+        interpolant=history.at,
+        warnings=tuple(warnings(simulator)),
+    )
+
+
+def warnings(simulator: Simulator) -> list[str]:
+    """Sentences on what limits the accuracy of a motion: loads that come suddenly."""
+    jumps = simulator.moving.jumps(simulator.simulation.duration)
+    return [
+        f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, which modes resolve slowly."
+        for jump in jumps
+    ]
+
+
+def not_started(model: Model, start: Start) -> Motion:
+    """The record of a motion that has no state to begin with."""
+    none = np.zeros(0)
+    no_state = np.zeros((0, model.size))
+
+    def nowhere(time: float) -> MotionState:
+        raise ValueError(f"the motion was not started: it has no state at {time:g} s")
+
+    return Motion(
+        model=model,
+        outcome=MotionOutcome.NO_START,
+        message=f"{MotionOutcome.NO_START.value} {start.sentence}",
+        times=none,
+        x=no_state,
+        v=no_state,
+        a=no_state,
+        inputs=np.zeros((0, model.inputs.size)),
+        energy=Energies(none, none, none, none, none, none),
+        error_estimate=float("nan"),
+        statistics=StepStatistics(0, 0, 0, 0, float("nan"), float("nan")),
+        start=start.sentence,
+        interpolant=nowhere,
+    )

@@ -1,0 +1,152 @@
+"""Small motions about an equilibrium, M δẍ + C δẋ + K δx = 0, on the coordinates that constraints leave free.
+
+Multipliers and tensions have no inertia. A cable that yields, since it is slack or nearly so, is eliminated with its
+tension. All other constraints are kept by what varies in the null space of their gradients G: with the columns of Z an
+orthonormal basis of it, δx = Z z and Zᵀ (M Z z̈ + C Z ż + K Z z) = 0, as their wrenches do no work on Z.
+
+Each row counts in its own unit of energy and each coordinate in the root of it, so that K and M are symmetric where
+the loads have a potential, whatever the rods are made of.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+
+DEPENDENT = 1e-9
+"""Share of the largest singular value of G below which a constraint asks nothing, or repeats others.
+
+A straight rod that cannot stretch is not held along its axis to first order: what is left of that row is rounding.
+"""
+
+TAUT = 1e9
+"""Stiffness of a cable, relative to that of the rods, above which it counts as one that does not yield."""
+
+
+@dataclass(frozen=True)
+class SmallMotions:
+    """The equations of small motions, linear in δx and its rates.
+
+    Attributes:
+        stiffness: K = ∂ residual/∂x of all unknowns, shape (size, size), no unit.
+        damping: C = ∂ residual/∂v, shape (size, size), s.
+        mass: M = ∂ residual/∂a, shape (size, size), s².
+        units: energy that each row is divided by, shape (size,), J.
+        differential: whether an unknown is a coordinate that moves, shape (size,).
+        unseen: directions of the unknowns that move nothing, such as the norms of quaternions, shape (j, size).
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    mass: FloatArray
+    units: FloatArray
+    differential: npt.NDArray[np.bool_]
+    unseen: FloatArray
+
+    @cached_property
+    def moving(self) -> npt.NDArray[np.int64]:
+        """Indices of the n coordinates that move."""
+        return np.flatnonzero(self.differential)
+
+    @cached_property
+    def algebraic(self) -> npt.NDArray[np.int64]:
+        """Indices of the multipliers and tensions."""
+        return np.flatnonzero(~self.differential)
+
+    @cached_property
+    def roots(self) -> FloatArray:
+        """Root of the energy of each moving coordinate, relative to the largest, shape (n,)."""
+        units = self.units[self.moving]
+        largest = units.max(initial=0.0)
+        return np.asarray(np.sqrt(units / largest))
+
+    @cached_property
+    def yielding(self) -> npt.NDArray[np.int64]:
+        """Indices of the tensions of cables that yield, so that their length follows from the tension."""
+        chosen = []
+        for index in self.algebraic:
+            own = abs(self.stiffness[index, index])
+            gradient = self.stiffness[index, self.moving] / self.roots
+            pull = self.stiffness[self.moving, index] * self.roots
+            stiffest = TAUT * own
+            if own > 0.0 and np.linalg.norm(gradient) * np.linalg.norm(pull) <= stiffest:
+                chosen.append(index)
+        return np.array(chosen, dtype=np.int64)
+
+    @cached_property
+    def holding(self) -> npt.NDArray[np.int64]:
+        """Indices of all other multipliers and tensions: their rows are the constraints."""
+        return np.setdiff1d(self.algebraic, self.yielding)
+
+    def moving_rows(self, columns: FloatArray) -> FloatArray:
+        """Rows of the moving coordinates after the elimination of yielding cables.
+
+        Args:
+            columns: derivatives of all rows of the residual with k arguments, shape (size, k).
+
+        Returns:
+            shape (n, k), no unit but for that of the columns.
+        """
+        rows = columns[self.moving]
+        if not self.yielding.size:
+            return rows
+        compliance = self.stiffness[np.ix_(self.yielding, self.yielding)]
+        pull = self.stiffness[np.ix_(self.moving, self.yielding)]
+        tension = -np.linalg.solve(compliance, columns[self.yielding])
+        return np.asarray(rows + pull @ tension)
+
+    @cached_property
+    def constraints(self) -> FloatArray:
+        """Gradients G of the constraints with the scaled coordinates, one a row, shape (m, n).
+
+        What moves nothing is held too: it has equations of its own, which are none of mechanics.
+        """
+        held = self.stiffness[np.ix_(self.holding, self.moving)]
+        gradients = np.vstack([held, self.unseen[:, self.moving]])
+        return np.asarray(gradients / self.roots)
+
+    @cached_property
+    def basis(self) -> FloatArray:
+        """Z: orthonormal basis of the motions that the constraints admit, scaled coordinates, shape (n, k)."""
+        if not len(self.constraints):
+            return np.eye(self.moving.size)
+        _, singular, rows = np.linalg.svd(self.constraints)
+        independent = singular > DEPENDENT * singular.max(initial=0.0)
+        rank = int(np.sum(independent))
+        return np.asarray(rows[rank:].T)
+
+    def projected(self, rows: FloatArray) -> FloatArray:
+        """What rows of the moving coordinates, shape (n, j), do on the free coordinates z, shape (k, j)."""
+        return np.asarray(self.basis.T @ (self.roots[:, None] * rows))
+
+    def displacement(self, free: npt.NDArray[np.inexact]) -> npt.NDArray[np.inexact]:
+        """δx of all unknowns from the free coordinates z, shapes (size, j) and (k, j); zero for the algebraic ones."""
+        unknowns = np.zeros((self.units.size, free.shape[1]), dtype=free.dtype)
+        unknowns[self.moving] = self.basis @ free / self.roots[:, None]
+        return unknowns
+
+    @cached_property
+    def free_stiffness(self) -> FloatArray:
+        """K on the free coordinates, shape (k, k), no unit."""
+        return self._free(self.stiffness)
+
+    @cached_property
+    def free_damping(self) -> FloatArray:
+        """C on the free coordinates, shape (k, k), s."""
+        return self._free(self.damping)
+
+    @cached_property
+    def free_mass(self) -> FloatArray:
+        """M on the free coordinates, shape (k, k), s²; symmetric, positive semidefinite."""
+        mass = self._free(self.mass)
+        return (mass + mass.T) / 2
+
+    def _free(self, matrix: FloatArray) -> FloatArray:
+        rows = self.moving_rows(matrix)[:, self.moving]
+        scaled = rows / self.roots
+        return self.projected(scaled @ self.basis)

@@ -1,0 +1,82 @@
+"""How a motion begins: at rest, in an equilibrium or in the unloaded shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.accuracy.metrics import prolong
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+
+UNLOADED = "At rest in the unloaded shape."
+EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
+HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
+GIVEN = "At rest in the equilibrium that was given."
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a motion begins.
+
+    Attributes:
+        x: unknowns, shape (size,); multipliers and tensions are a guess.
+        sentence: what the user is told; of a start that failed, why.
+        found: whether there is a state to start from.
+    """
+
+    x: FloatArray
+    sentence: str
+    found: bool = True
+
+
+def unloaded_start(model: Model) -> Start:
+    """At rest in the unloaded shape."""
+    return Start(model.unloaded(), UNLOADED)
+
+
+def equilibrium_start(model: Model, inputs: FloatArray) -> Start:
+    """At rest in the equilibrium of the inputs, free bases held where the scene puts them.
+
+    Args:
+        model: of the scene in motion.
+        inputs: at the start, shape (model.inputs.size,).
+    """
+    held = _held(model)
+    sentence = EQUILIBRIUM if held.size == model.size else HELD
+    return _started(model, solve(held, held.pack(model.inputs.unpack(inputs))), sentence)
+
+
+def given_start(model: Model, solution: Solution) -> Start:
+    """At rest in an equilibrium of the same scene, at the inputs that it was solved for.
+
+    Args:
+        model: of the scene in motion.
+        solution: on any discretisation with the same elements; free bases were held.
+    """
+    held = _held(model)
+    names = set(held.inputs.names)
+    given = solution.model.inputs.unpack(solution.inputs)
+    values = {name: value for name, value in given.items() if name in names}
+    guess = prolong(solution, held)
+    return _started(model, solve(held, values, start=guess), GIVEN)
+
+
+def _held(model: Model) -> Model:
+    """The model of statics on the same discretisation: free bases are clamped, and are not unknowns."""
+    return build(model.scene.held(), model.discretisation)
+
+
+def _started(model: Model, solution: Solution, sentence: str) -> Start:
+    """The start in an equilibrium of the held scene."""
+    x = model.unloaded()
+    if not solution.converged:
+        return Start(x, solution.message, found=False)
+    # Bases that are free begin where the scene puts them, where their unknowns are zero.
+    unknowns = solution.model.discrete.unknowns
+    for key, entries in unknowns.slices.items():
+        x[model.discrete.unknowns.slices[key]] = solution.x[entries]
+    return Start(np.asarray(x), sentence)

@@ -1,0 +1,245 @@
+"""The figure of modes, one panel each, and the animation of one of them.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.eigenproblem import REAL
+from cosserat_casadi.motion.modes import Mode, Modes
+from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
+from cosserat_casadi.plots.canvas import FLAT, SPACE, Canvas, Plane
+from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.plots.moving_shapes import PLANES
+from cosserat_casadi.plots.scenery import CLAMP
+
+SECTIONS = np.linspace(0.0, 1.0, 101)
+"""Abscissae at which rods are drawn."""
+
+MARKED = slice(None, None, 10)
+"""Sections that are marked, so that one sees them move along the rod and turn."""
+
+SHARE = 0.2
+"""Size of the largest displacement that is drawn, relative to the scene's extent."""
+
+TURNED = 1.0
+"""Largest angle of a section that is drawn, rad, where sections turn more than they move."""
+
+ARM = 0.25
+"""Length of the lines that show how sections turn, relative to the scene's extent."""
+
+STILL = 1e-6
+"""Displacement, relative to the extent, of a mode in which sections only turn."""
+
+COLUMNS = 4
+"""Panels in a row."""
+
+TICKS = 4
+"""Most intervals between the ticks of an axis."""
+
+EQUILIBRIUM = "0.65"
+
+PERIOD_FRAMES = 50
+"""Frames of one period of an animation."""
+
+
+def save_modes_plot(modes: Modes, file: str | Path) -> None:
+    """Draw modes into a file, whole or not at all; the same modes give the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_modes(modes), file)
+
+
+def plot_modes(modes: Modes) -> Any:
+    """Figure of modes: one panel each with the equilibrium in grey and both ends of the swing.
+
+    Dots mark sections; where sections only turn, lines show their x axes. A panel shows the coordinate plane that
+    holds the mode, else space. All have one scale and one amplitude.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    count = len(modes.modes)
+    columns = max(1, min(COLUMNS, count))
+    rows = max(1, ceil(count / columns))
+    figure = figure_class()(figsize=(3.6 * columns, 3.5 * rows + 0.6), layout="constrained")
+    # Labels of axes in space reach out of their panels.
+    figure.get_layout_engine().set(wspace=0.08)
+    add_title(figure, modes.model.scene.title)
+    if not count:
+        figure.text(0.5, 0.5, modes.message, color=FAILURE, ha="center", wrap=True)
+        return figure
+    lines = _mode_lines(modes)
+    for index, mode in enumerate(modes.modes):
+        drawn = lines[index]
+        projection = None
+        if drawn.plane is None:
+            projection = "3d"
+        axes = figure.add_subplot(rows, columns, index + 1, projection=projection)
+        canvas = Canvas(axes, drawn.plane, drawn.size)
+        _draw_mode(canvas, modes, drawn)
+        axes.set_title(mode_words(mode, index), fontsize=10, color=FAILURE if mode.grows else PLAIN_TEXT)
+    return figure
+
+
+def mode_words(mode: Mode, index: int) -> str:
+    """Number, frequency and damping of a mode; the index begins with 0."""
+    if mode.eigenvalue == 0.0:
+        return f"{index + 1}: {mode.words}"
+    if not mode.oscillates:
+        return f"{index + 1}: {mode.words}, {abs(mode.eigenvalue.real):.4g} 1/s"
+    words = f"{index + 1}: {mode.frequency:.4g} Hz"
+    # What is left of rounding is no damping.
+    if abs(mode.damping_ratio) > REAL:
+        words += f", ζ = {mode.damping_ratio:.3g}"
+    return words
+
+
+def save_mode_animation(
+    modes: Modes, index: int, file: str | Path, *, progress: Callable[[float], None] | None = None
+) -> None:
+    """Draw one period of a mode into a file, whole or not at all; a GIF repeats it.
+
+    Args:
+        modes: at least one.
+        index: of the mode, from 0.
+        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.animation`.
+        progress: receives the share of the frames that are drawn.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS.
+        PlotUnavailableError: matplotlib is not installed.
+        AnimationUnavailableError: it is MP4, and ffmpeg is not installed.
+        WriteError: the file cannot be written, as on a full disk.
+    """
+    mode = modes.modes[index]
+    drawn = _mode_lines(modes)[index]
+    phases = 2 * np.pi * np.arange(PERIOD_FRAMES) / PERIOD_FRAMES
+    # From the equilibrium on, so that the first picture is known.
+    swing = drawn.amplitude * np.imag(np.exp(1j * phases)[:, None] * mode.vector)
+    frames = Frames(
+        model=modes.model,
+        x=modes.solution.x + swing,
+        inputs=np.tile(modes.solution.inputs, (PERIOD_FRAMES, 1)),
+        words=[f"mode {mode_words(mode, index)}"] * PERIOD_FRAMES,
+        colour=FAILURE if mode.grows else PLAIN_TEXT,
+        interval=1 / FRAME_RATE,
+        section_axes=bool(drawn.arms),
+    )
+    save_frames(frames, file, progress=progress)
+
+
+@dataclass(frozen=True)
+class _ModeLines:
+    """Centre lines of all rods in one mode, world axes.
+
+    Attributes:
+        equilibrium: by rod, shape (len(SECTIONS), 3), m.
+        ends: by rod, at both ends of the swing, shape (2, len(SECTIONS), 3), m.
+        arms: by rod, ends of the lines that show how sections turn in the equilibrium and at one end of the swing,
+            shape (2, sections, 2, 3), m; empty where sections do not only turn.
+        amplitude: factor on the mode.
+        size: largest extent of the scene, m.
+    """
+
+    equilibrium: dict[str, FloatArray]
+    ends: dict[str, FloatArray]
+    arms: dict[str, FloatArray]
+    amplitude: float
+    size: float
+
+    @property
+    def points(self) -> FloatArray:
+        """All points, shape (k, 3), m."""
+        lines = [*self.equilibrium.values(), *self.ends.values(), *self.arms.values()]
+        return np.concatenate([line.reshape(-1, 3) for line in lines])
+
+    @property
+    def plane(self) -> Plane | None:
+        """The first coordinate plane that holds all points, or None."""
+        if self.arms:
+            return None
+        extents = np.ptp(self.points, axis=0)
+        for plane in PLANES:
+            (across,) = set(SPACE) - set(plane)
+            if extents[across] <= FLAT * self.size:
+                return plane
+        return None
+
+
+def _mode_lines(modes: Modes) -> list[_ModeLines]:
+    """What is drawn of each mode."""
+    names = list(modes.model.discrete.rods)
+    poses = {name: modes.solution.pose(SECTIONS, name) for name in names}
+    shapes = {name: modes.shape(SECTIONS, name) for name in names}
+    equilibrium = {name: pose.position for name, pose in poses.items()}
+    extents = np.ptp(np.concatenate(list(equilibrium.values())), axis=0)
+    size = float(extents.max())
+    drawn = []
+    for index in range(len(modes.modes)):
+        displacements = {name: np.real(shape.position[index]) for name, shape in shapes.items()}
+        largest = max(float(np.abs(displacement).max()) for displacement in displacements.values())
+        arms: dict[str, FloatArray] = {}
+        if largest > STILL * size:
+            amplitude = SHARE * size / largest
+        else:
+            # The largest rotation of the mode is one.
+            amplitude = TURNED
+            for name, pose in poses.items():
+                turn = amplitude * np.real(shapes[name].rotation[index])
+                arms[name] = _arms(pose.position, pose.rotation[:, :, 0], turn, ARM * size)
+        # What is left of rounding would make a plane mode one in space.
+        ends = {}
+        for name, displacement in displacements.items():
+            moved = amplitude * np.where(np.abs(displacement) > STILL * largest, displacement, 0.0)
+            ends[name] = np.stack([equilibrium[name] + moved, equilibrium[name] - moved])
+        drawn.append(_ModeLines(equilibrium, ends, arms, amplitude, size))
+    return drawn
+
+
+def _arms(positions: FloatArray, axes: FloatArray, turns: FloatArray, length: float) -> FloatArray:
+    """Lines along the x axes of marked sections, before and after a small turn, shape (2, sections, 2, 3), m."""
+    starts = positions[MARKED]
+    directions = axes[MARKED]
+    turned = directions + np.cross(turns[MARKED], directions)
+    turned /= np.linalg.norm(turned, axis=1, keepdims=True)
+    before = np.stack([starts, starts + length * directions], axis=1)
+    after = np.stack([starts, starts + length * turned], axis=1)
+    return np.stack([before, after])
+
+
+def _draw_mode(canvas: Canvas, modes: Modes, drawn: _ModeLines) -> None:
+    for index, (name, resting) in enumerate(drawn.equilibrium.items()):
+        colour = rod_colour(index)
+        canvas.line(resting, color=EQUILIBRIUM, linewidth=1.5)
+        canvas.markers(resting[MARKED], color=EQUILIBRIUM, marker=".", markersize=5)
+        there, back = drawn.ends[name]
+        canvas.line(back, color=colour, linewidth=1.5, alpha=0.35)
+        canvas.line(there, color=colour, linewidth=2.5)
+        canvas.markers(there[MARKED], color=colour, marker=".", markersize=7)
+        if modes.model.discrete.unloaded.floating_base(name) is None:
+            canvas.markers(resting[:1], **CLAMP)
+    for index, (before, after) in enumerate(drawn.arms.values()):
+        for arm in before:
+            canvas.line(arm, color=EQUILIBRIUM, linewidth=1.5)
+        for arm in after:
+            canvas.line(arm, color=rod_colour(index), linewidth=2.0)
+    canvas.label_axes()
+    canvas.axes.locator_params(nbins=TICKS)
+    canvas.equalise(drawn.points)

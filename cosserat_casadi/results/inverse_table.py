@@ -1,0 +1,60 @@
+"""The file of a table of targets: a row for each, with its outcome, the gaps and the inputs found."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.control.target_table import TargetTable
+from cosserat_casadi.model.load_cases import column_indices
+
+MET = "met"
+"""Outcome of a row whose target is met."""
+
+MISSED = "missed"
+"""Outcome of a row with an equilibrium that misses its target."""
+
+UNSTABLE = "unstable"
+"""Outcome of a row whose equilibrium a real rod leaves."""
+
+
+def row_outcome(inverse: Inverse, unstable: bool) -> str:
+    """How a row ended, in a word: met, missed, unstable, or the label of a failed solve.
+
+    Args:
+        inverse: the row's end.
+        unstable: whether an unstable equilibrium is accepted.
+    """
+    if not inverse.solution.converged:
+        return inverse.solution.outcome.label
+    if inverse.unstable and not unstable:
+        return UNSTABLE
+    return MET if inverse.met else MISSED
+
+
+def table_text(table: TargetTable, found: Sequence[Inverse], unstable: bool) -> str:
+    """The file as text: the table's own columns, the outcome, gaps with their errors, and the inputs found.
+
+    Args:
+        table: the targets.
+        found: the end of each row.
+        unstable: as in :func:`row_outcome`.
+    """
+    indices = column_indices(found[0].solution.model.inputs)
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    gaps = ("position_gap", "angle_gap", "position_error_estimate", "angle_error_estimate")
+    writer.writerow([*table.columns, "outcome", *gaps, *indices])
+    for given, inverse in zip(table.values.tolist(), found, strict=True):
+        cells: list[object] = [*given, row_outcome(inverse, unstable)]
+        # Where no equilibrium was found there is nothing to give.
+        if inverse.solution.converged:
+            (gap,) = inverse.gaps
+            cells += [gap.position, gap.angle, gap.position_error, gap.angle_error]
+            cells += [float(inverse.solution.inputs[index]) for index in indices.values()]
+        else:
+            cells += [None] * (len(gaps) + len(indices))
+        writer.writerow(cells)
+    return stream.getvalue()

@@ -1,0 +1,71 @@
+"""The file of modes: the equilibrium, and eigenvalue, frequency, damping and shape of each mode."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape
+from cosserat_casadi.motion.modes import Mode, Modes
+from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
+from cosserat_casadi.results.solution_file import listed_abscissae, result
+
+
+def modes_result(modes: Modes) -> dict[str, Any]:
+    """Modes as the plain data of their file; a number that is not finite becomes null."""
+    data = {
+        "schema": SCHEMA,
+        "title": modes.model.scene.title,
+        "converged": modes.converged,
+        "outcome": modes.outcome.label,
+        "message": modes.message,
+        "equilibrium": result(modes.solution),
+        "modes": _mode_entries(modes),
+    }
+    plain_data: dict[str, Any] = plain(data)
+    return plain_data
+
+
+def modes_text(modes: Modes) -> str:
+    """The file of modes as text."""
+    return json_text(modes_result(modes))
+
+
+def _mode_entries(modes: Modes) -> list[dict[str, Any]]:
+    if not modes.modes:
+        return []
+    shapes: dict[str, RodShape] = {}
+    for name, discretisation in modes.model.discretisation.items():
+        shapes[name] = modes.shape(listed_abscissae(discretisation.breaks), name)
+    return [_mode_entry(mode, index, shapes) for index, mode in enumerate(modes.modes)]
+
+
+def _mode_entry(mode: Mode, index: int, shapes: dict[str, RodShape]) -> dict[str, Any]:
+    return {
+        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+        "angular_frequency": mode.angular_frequency,
+        "frequency": mode.frequency,
+        "damping_ratio": mode.damping_ratio,
+        "error_estimate": mode.error_estimate,
+        "shape": {name: _shape_entry(shape, index) for name, shape in shapes.items()},
+    }
+
+
+def _shape_entry(shape: RodShape, index: int) -> dict[str, Any]:
+    """Displacements and rotations of one mode; where it is not in phase all over, their imaginary parts too."""
+    position = shape.position[index]
+    rotation = shape.rotation[index]
+    entry: dict[str, Any] = {"X": shape.X, "position": _real(position), "rotation": _real(rotation)}
+    if np.any(position.imag) or np.any(rotation.imag):
+        entry["imaginary"] = {"position": _imaginary(position), "rotation": _imaginary(rotation)}
+    return entry
+
+
+def _real(numbers: NumberArray) -> FloatArray:
+    return np.asarray(numbers.real)
+
+
+def _imaginary(numbers: NumberArray) -> FloatArray:
+    return np.asarray(numbers.imag)

@@ -1,0 +1,114 @@
+"""What of a scene varies along a rod, as its file says it: for whoever checks how a list was read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from cosserat_casadi.scene.profiles import Profile, read_profile
+from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.reference import unit_of
+from cosserat_casadi.scene.scene import Scene
+from cosserat_casadi.scene.values import Varying
+
+
+@dataclass(frozen=True)
+class VaryingValue:
+    """A value of a scene that varies along X.
+
+    Attributes:
+        key: where it stands, such as ``finger.section.radius`` or ``cable.offset[0]``.
+        unit: of the numbers, "1" where they have none.
+        profile: as the file says it.
+        plain: whether the file gives a plain list, which its key gives its meaning.
+    """
+
+    key: str
+    unit: str
+    profile: Profile
+    plain: bool
+
+
+def varying_values(scene: Scene, tables: Mapping[str, Any]) -> list[VaryingValue]:
+    """All values of a scene that its file gives by more than one number along X, in the order of the format.
+
+    Args:
+        scene: the scene.
+        tables: what it was read from, overrides included.
+    """
+    return list(_of_record(scene, tables, ""))
+
+
+def _of_record(record: Record, table: Mapping[str, Any], owner: str) -> Iterator[VaryingValue]:
+    """The values of a record and of those in it; what its table leaves out varies nowhere."""
+    for name, field in type(record).model_fields.items():
+        key = field.alias or name
+        if key not in table:
+            continue
+        written = table[key]
+        where = f"{owner}.{key}" if owner else key
+        mark = _varying(field)
+        if mark is None:
+            yield from _of_contents(getattr(record, name), written, where)
+        elif _is_vector(field):
+            for i, component in enumerate(written):
+                yield from _of_value(component, mark, unit_of(field), f"{where}[{i}]")
+        else:
+            yield from _of_value(written, mark, unit_of(field), where)
+
+
+def _of_contents(contents: Any, written: Any, where: str) -> Iterator[VaryingValue]:
+    """The values of the record, or of the list of records, under a key; nothing where it holds something else."""
+    if isinstance(contents, Record):
+        yield from _of_record(contents, written, where)
+    elif isinstance(contents, tuple):
+        for i, entry in enumerate(contents):
+            if isinstance(entry, Record):
+                # As in overrides, an entry that has a name stands for itself.
+                yield from _of_record(entry, written[i], written[i].get("name", f"{where}[{i}]"))
+
+
+def _of_value(written: Any, mark: Varying, unit: str, where: str) -> Iterator[VaryingValue]:
+    if isinstance(written, Mapping):
+        profile = read_profile(written)
+    elif isinstance(written, list):
+        profile = Profile(mark.notation, tuple(written))
+    else:
+        return
+    # One number is a constant, however it is written.
+    if len(profile.numbers) > 1:
+        yield VaryingValue(where, unit, profile, plain=isinstance(written, list))
+
+
+def _varying(field: FieldInfo) -> Varying | None:
+    """The mark of a field that may vary along X, or whose components may."""
+    marks = (entry for annotation in _annotations(field) for entry in _metadata(annotation))
+    return next((mark for mark in marks if isinstance(mark, Varying)), None)
+
+
+def _is_vector(field: FieldInfo) -> bool:
+    """Whether it is the components of a field that vary: the mark stands inside a list."""
+    for annotation in _annotations(field):
+        if any(isinstance(entry, Varying) for entry in _metadata(annotation)):
+            return False
+        if get_origin(annotation) is tuple:
+            return True
+    return False
+
+
+def _annotations(field: FieldInfo) -> Iterator[Any]:
+    """The annotation of a field and all that it is made of, from outside to inside."""
+    pending: list[Any] = [Annotated[(field.annotation, *field.metadata, None)]]
+    while pending:
+        annotation = pending.pop(0)
+        yield annotation
+        pending += get_args(annotation)
+
+
+def _metadata(annotation: Any) -> tuple[Any, ...]:
+    if get_origin(annotation) is Annotated:
+        return tuple(annotation.__metadata__)
+    return ()
