@@ -14,7 +14,9 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
+from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import QUERIES, Names
+from cosserat_casadi.codegen.routines import improved
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.model.build import Model
 
@@ -41,9 +43,14 @@ def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
         straight = scalar(function, name)
         if straight.n_instructions() <= STRAIGHT:
             return straight
+    return loops(function, name)
+
+
+def loops(function: ca.Function, name: str) -> ca.Function:
+    """A function written for loops in C, with dense outputs."""
     symbols = function.mx_in()
     results = [ca.densify(result) for result in function.call(symbols)]
-    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    return in_loops(ca.Function(name, symbols, results, function.name_in(), function.name_out()))
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:
@@ -72,7 +79,7 @@ def _generated(file: Path) -> str:
     text = file.read_text(encoding="utf-8")
     if not text.endswith(ENDING):
         raise WriteError(file, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
-    return text
+    return improved(text)
 
 
 ENDING = '} /* extern "C" */\n#endif\n'

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.loops import in_loops
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
@@ -83,7 +84,7 @@ def _whole(function: ca.Function, name: str) -> Parted:
     symbols = function.mx_in()
     result = function.call(symbols)[0].nz[:]
     no_constants = ca.MX(0, 1)
-    kernel = ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"])
+    kernel = in_loops(ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"]))
     part = Part(
         kernel=0,
         x=list(range(function.size1_in(0))),
