@@ -205,7 +205,8 @@ def _with_fixed(search: _Search) -> Motion:
     witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
     space_error = float("inf")
     if witness.start.found:
-        history = _like(witness, timed.history, timed.tolerance)
+        # Its steps are controlled in any case: those of the user may be too long for more modes.
+        history = witness.controlled(_step_tolerance(search, timed))
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         if history.completed:
@@ -257,6 +258,13 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
         search.time_error = timed.error
         return timed.history
     return _like(simulator, search.last.history, search.step_tolerance)
+
+
+def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
+    """Tolerance of a step that a motion was computed with; where its steps were given, that of the paths."""
+    if np.isfinite(timed.tolerance):
+        return timed.tolerance
+    return TIME_SHARE * search.tolerance
 
 
 def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
