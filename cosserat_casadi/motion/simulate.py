@@ -61,6 +61,9 @@ MOST_TIGHTENINGS = 6
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
 
+MOST_HALVINGS = 10
+"""Times that they are halved before a tolerance is given up."""
+
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
 
@@ -195,7 +198,7 @@ class Simulator:
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = float("nan")
-        for _ in range(4 * MOST_TIGHTENINGS):
+        for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)
             # Steps too long for their equations to be solved say nothing of shorter ones.
