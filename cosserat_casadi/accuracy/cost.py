@@ -15,7 +15,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
 STRAIGHT = 25_000
-"""Instructions up to which a kernel is straight-line code: several times as fast as loops, but compilers choke on more.
+"""Instructions up to which a kernel is straight-line code: a third faster than loops, but compilers choke on more.
 
 Functions of one interval are called: each call is one instruction.
 """

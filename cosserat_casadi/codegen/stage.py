@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
@@ -20,7 +20,12 @@ from cosserat_casadi.model.build import Model
 
 
 def compiled_stage(
-    model: Model, name: str = "stage", *, curvature: bool = False, compiler: str | None = None
+    model: Model,
+    name: str = "stage",
+    *,
+    curvature: bool = False,
+    compiler: str | None = None,
+    progress: Progress | None = None,
 ) -> ca.Function:
     """(x, inputs) ↦ (residual, pose of every tip and body), compiled once, with compiled derivatives.
 
@@ -31,6 +36,7 @@ def compiled_stage(
             of CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and
             good where the deviations are small. Exact ones have several times as many instructions: minutes of gcc.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
@@ -45,7 +51,7 @@ def compiled_stage(
     texts: dict[str, str] = {}
     for function in stage_functions(model, name, curvature):
         texts |= sources([function], function.name(), "long long int")
-    return ca.external(name, os.fspath(compiled_texts(name, texts, found)))
+    return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
 
 
 def check_scalar(model: Model) -> None:

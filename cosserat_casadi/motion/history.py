@@ -13,6 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
@@ -26,9 +27,10 @@ DIFFERENTIATED = 0.01
 
 def equations_of(model: Model, piece: Piece) -> MotionEquations:
     """The equations of motion of a model while its inputs follow one piece of their paths."""
+    inverse_dynamics = RepeatedCall(model.inverse_dynamics)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        return np.asarray(model.inverse_dynamics(x, v, a, *piece.at(t)).full()[:, 0])
+        return inverse_dynamics(x, v, a, *piece.at(t))
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *piece.at(t))

@@ -30,7 +30,7 @@ from cosserat_casadi.motion.trajectory import (
     MotionState,
     StepStatistics,
 )
-from cosserat_casadi.numerics.collocation import gauss, radau
+from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.simulation import Simulation
@@ -61,6 +61,9 @@ MOST_TIGHTENINGS = 6
 
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
+
+MOST_HALVINGS = 10
+"""Times that they are halved before a tolerance is given up."""
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
@@ -130,12 +133,16 @@ class Simulator:
         if not np.all(self.model.discrete.unknowns.differential):
             # What Newton's method leaves is what supports and joints are open by.
             newton = min(newton, CLOSED / tolerance)
-        return self._integrated(StepSettings(tolerance=tolerance / displacements(self.model), newton=newton))
+        settings = StepSettings(tolerance=tolerance / displacements(self.model), newton=newton)
+        return self._integrated(radau(STAGES), settings)
 
     def stepped(self, size: float) -> History:
-        """The motion with equal steps, s."""
+        """The motion with equal steps, s, by the integrator that is asked for."""
+        method = radau(STAGES)
+        if self.simulation.integrator == "gauss":
+            method = gauss(STAGES)
         tolerance = EXACT / displacements(self.model)
-        return self._integrated(StepSettings(tolerance=tolerance, size=size, newton=1.0))
+        return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
     def paths(self, history: History) -> FloatArray:
         """What two motions are compared by, shape (T, points, 3)."""
@@ -192,7 +199,7 @@ class Simulator:
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = float("nan")
-        for _ in range(4 * MOST_TIGHTENINGS):
+        for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)
             # Steps too long for their equations to be solved say nothing of shorter ones.
@@ -207,10 +214,7 @@ class Simulator:
                 break
         return TimedHistory(history, error)
 
-    def _integrated(self, settings: StepSettings) -> History:
-        method = radau(STAGES)
-        if self.simulation.integrator == "gauss":
-            method = gauss(STAGES)
+    def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
         history = integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
