@@ -72,7 +72,7 @@ def command(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     """Runs the command with a stand-in for the simulation; returns the exit code."""
 
     def run_with(*arguments: str, simulate: Simulate = swing) -> int:
-        module = types.ModuleType("cosserat_casadi.motion.simulate")
+        module = types.ModuleType("cosserat_casadi.motion.resolve")
         module.simulate_scene = simulate  # type: ignore[attr-defined]
         monkeypatch.setitem(sys.modules, module.__name__, module)
         return run(lambda **options: app(["simulate", *arguments], **options))
@@ -260,7 +260,7 @@ def simulate_scene(scene, *, start, progress):
     except KeyboardInterrupt:
         return replace(motion, outcome=outcome, message=outcome.value)
 
-module = types.ModuleType("cosserat_casadi.motion.simulate")
+module = types.ModuleType("cosserat_casadi.motion.resolve")
 module.simulate_scene = simulate_scene
 sys.modules[module.__name__] = module
 main()
