@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -76,7 +76,7 @@ class _UnknownInstructionError(Exception):
     """An instruction that can not be given other operands."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Value:
     """A matrix as entries that were computed before.
 
@@ -116,7 +116,7 @@ def _column(numbers: Numbers) -> _Value:
     return _Value(ca.Sparsity.dense(len(numbers)), numbers)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Step:
     """A computation.
 
@@ -144,36 +144,53 @@ class _Step:
         return self.instructions <= SMALL
 
 
-@dataclass
 class _Origins:
     """What the numbers stand for: entry after entry of arguments, constants and results of steps.
 
-    Attributes:
-        first: for each of these things the number of its first entry. Number 0 is a zero, and the first thing.
-        sizes: entries of each.
-        constants: values of the entries of each; None for what is computed.
+    Number 0 is a zero, and the first of these things.
     """
 
-    first: list[int] = field(default_factory=lambda: [0])
-    sizes: list[int] = field(default_factory=lambda: [1])
-    constants: list[list[float] | None] = field(default_factory=lambda: [[0.0]])
+    def __init__(self) -> None:
+        # Arrays of things with room for more, which is doubled when it is full.
+        self._first = np.zeros(64, dtype=np.int64)
+        self._constant = np.zeros(64, dtype=np.bool_)
+        self._values: list[list[float] | None] = []
+        self.sizes: list[int] = []
+        self._count = 0
+        self.add(ca.Sparsity.dense(1), [0.0])
 
     def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> _Value:
-        """Number the entries of one more thing."""
-        start = self.first[-1] + self.sizes[-1]
-        numbers = np.arange(start, start + pattern.nnz())
-        self.first.append(start)
+        """Number the entries of one more thing, of constants with their values."""
+        thing = len(self.sizes)
+        if thing == len(self._first):
+            self._first = np.concatenate([self._first, np.zeros_like(self._first)])
+            self._constant = np.concatenate([self._constant, np.zeros_like(self._constant)])
+        self._first[thing] = self._count
+        self._constant[thing] = constants is not None
+        self._values.append(constants)
         self.sizes.append(pattern.nnz())
-        self.constants.append(constants)
+        numbers = np.arange(self._count, self._count + pattern.nnz())
+        self._count += pattern.nnz()
         if constants is not None:
             numbers[np.array(constants) == 0.0] = 0
         return _Value(pattern, numbers)
 
+    def numbers(self, thing: int) -> Numbers:
+        """Numbers of all entries of a thing."""
+        first = int(self._first[thing])
+        return np.arange(first, first + self.sizes[thing])
+
+    def entries(self, thing: int, numbers: Numbers) -> Numbers:
+        """Which entries of a thing these are."""
+        return numbers - int(self._first[thing])
+
     def owners(self, numbers: Numbers) -> Numbers:
         """For each number the thing that it is an entry of; 0 for all constants."""
-        owners = np.searchsorted(self.first, numbers, side="right") - 1
-        constant = np.array([values is not None for values in self.constants])
-        return np.where(constant[owners], 0, owners)
+        owners = self._things(numbers)
+        return np.where(self._constant[owners], 0, owners)
+
+    def _things(self, numbers: Numbers) -> Numbers:
+        return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
 
     def is_whole(self, numbers: Numbers) -> bool:
         """Whether these are all entries of one thing in their order, or constants."""
@@ -185,12 +202,14 @@ class _Origins:
             return False
         return owner == 0 or (len(numbers) == self.sizes[owner] and bool(np.all(np.diff(numbers) == 1)))
 
-    def constant(self, number: int) -> float:
-        """Value of a constant."""
-        thing = int(np.searchsorted(self.first, number, side="right")) - 1
-        values = self.constants[thing]
-        assert values is not None, "asked for of constants alone"
-        return values[number - self.first[thing]]
+    def constants(self, numbers: Numbers) -> list[float]:
+        """Values of constants."""
+        values = []
+        for thing, number in zip(self._things(numbers).tolist(), numbers.tolist(), strict=True):
+            of_thing = self._values[thing]
+            assert of_thing is not None, "asked for of constants alone"
+            values.append(of_thing[number - int(self._first[thing])])
+        return values
 
 
 class _Steps:
@@ -464,9 +483,8 @@ class _Writing:
         large_in = set[int]()
         layers: list[tuple[list[_Step], list[_Step]]] = []
         for step in self.steps.steps:
-            needed = self._needed([step])
             layer = 0
-            for owner in needed:
+            for owner in self._needed(step):
                 after_large = step.small and owner in large_in
                 layer = max(layer, layer_of[owner] + int(after_large))
             while len(layers) <= layer:
@@ -478,9 +496,9 @@ class _Writing:
                     large_in.add(owner)
         return layers
 
-    def _needed(self, steps: Sequence[_Step]) -> list[int]:
-        """What steps take their operands from."""
-        numbers = [operand.numbers for step in steps for operand in step.operands]
+    def _needed(self, step: _Step) -> list[int]:
+        """What a step takes its operands from."""
+        numbers = [operand.numbers for operand in step.operands]
         owners = self.origins.owners(np.concatenate([np.zeros(1, dtype=np.int64), *numbers]))
         return [int(owner) for owner in np.unique(owners) if owner]
 
@@ -508,9 +526,9 @@ class _Writing:
             arguments = [self._scalars(operand, entry_of) for operand in step.operands]
             for result, computed in zip(step.results, step.function.call(arguments), strict=True):
                 entry_of |= zip(result.numbers.tolist(), computed.nonzeros(), strict=True)
-        needed = self._needed_later(steps)
-        kept = [owner for owner in made if owner in needed]
-        results = [ca.vertcat(*[entry_of[number] for number in self._numbers(owner).tolist()]) for owner in kept]
+        inside = set[_Step | None](steps)
+        kept = [owner for owner in made if self._users[owner] - inside]
+        results = [ca.vertcat(*[entry_of[number] for number in self.origins.numbers(owner).tolist()]) for owner in kept]
         together = ca.Function(TOGETHER, symbols, ca.cse(results))
         columns = together.call([self._vector(numbers) for numbers in given])
         for owner, column in zip(kept, columns, strict=True):
@@ -519,24 +537,26 @@ class _Writing:
     def _given(self, numbers: Numbers) -> Numbers:
         """What to hand over of one thing of which some entries are needed: all of it unless they are few."""
         needed = np.unique(numbers)
-        whole = self._numbers(int(self.origins.owners(needed[:1])[0]))
+        whole = self.origins.numbers(int(self.origins.owners(needed[:1])[0]))
         return whole if 2 * len(needed) > len(whole) else needed
 
-    def _needed_later(self, steps: Sequence[_Step]) -> set[int]:
-        """What the other steps and the outputs need."""
-        others = [step for step in self.steps.steps if step not in steps]
-        outputs = np.concatenate([np.zeros(1, dtype=np.int64), *[value.numbers for value in self.steps.outputs]])
-        return {*self._needed(others), *self.origins.owners(outputs).tolist()}
-
-    def _numbers(self, owner: int) -> Numbers:
-        first = self.origins.first[owner]
-        return np.arange(first, first + self.origins.sizes[owner])
+    @cached_property
+    def _users(self) -> dict[int, set[_Step | None]]:
+        """For each thing the steps that need it; None stands for the outputs."""
+        users = defaultdict[int, set[_Step | None]](set)
+        for step in self.steps.steps:
+            for owner in self._needed(step):
+                users[owner].add(step)
+        for value in self.steps.outputs:
+            for owner in np.unique(self.origins.owners(value.numbers)).tolist():
+                users[owner].add(None)
+        return users
 
     def _scalars(self, value: _Value, entry_of: dict[int, ca.SX]) -> ca.SX:
         entries = []
         for number in value.numbers.tolist():
             if number not in entry_of:
-                entry_of[number] = ca.SX(self.origins.constant(number))
+                entry_of[number] = ca.SX(self.origins.constants(np.array([number]))[0])
             entries.append(entry_of[number])
         return ca.SX(value.pattern, ca.vertcat(*entries))
 
@@ -582,9 +602,9 @@ class _Writing:
     def _piece(self, owner: int, numbers: Numbers) -> ca.MX:
         """A column of entries of one thing."""
         if owner == 0:
-            return ca.MX(ca.DM([self.origins.constant(number) for number in numbers.tolist()]))
+            return ca.MX(ca.DM(self.origins.constants(numbers)))
         if self.origins.is_whole(numbers):
             return self._computed[owner]
-        entries = numbers - self.origins.first[owner]
+        entries = self.origins.entries(owner, numbers)
         piece: ca.MX = self._computed[owner].nz[entries.tolist()]
         return piece

@@ -11,8 +11,10 @@ from collections.abc import Sequence
 
 import casadi as ca
 
+from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
@@ -74,18 +76,23 @@ def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Functio
         name: what the function is called.
         curvature: whether the last one is exact.
     """
-    plain = straight(_stage(model, name), name)
-    slopes = straight(_slopes(model, plain), f"jac_{name}")
+    plain = written(_stage(model, name), name)
+    slopes = written(_slopes(model, plain), f"jac_{name}")
     adjoint = plain.reverse(1)
     second = adjoint.jacobian() if curvature else _bare(plain, slopes, adjoint)
-    return [plain, slopes, straight(adjoint, adjoint.name()), straight(second, f"jac_{adjoint.name()}")]
+    return [plain, slopes, written(adjoint, adjoint.name()), written(second, f"jac_{adjoint.name()}")]
 
 
-def straight(function: ca.Function, name: str) -> ca.Function:
-    """A function as scalar instructions, common terms shared, zeros left out of its outputs."""
+def written(function: ca.Function, name: str) -> ca.Function:
+    """A function as scalar instructions with common terms shared, or where they are too many for loops in C."""
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     results = ca.cse(list(function.call(symbols)))
-    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    straight = ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    if straight.n_instructions() <= STRAIGHT:
+        return straight
+    arguments = function.mx_in()
+    whole = ca.Function(name, arguments, function.call(arguments), function.name_in(), function.name_out())
+    return in_loops(whole)
 
 
 def _stage(model: Model, name: str) -> ca.Function:

@@ -32,6 +32,7 @@ from cosserat_casadi.motion.trajectory import (
 )
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
+from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.simulation import Simulation
 
 TELL = Callable[[MotionProgress], None]
@@ -302,8 +303,7 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
     for index, rod in enumerate(model.discrete.rods.values()):
         if rod.properties.linear_density is None:
-            what = f"missing: {rod.properties.name!r} has no mass, and a motion needs one"
-            problems.append(Problem(f"rods[{index}].material.density", what, "give the density, kg/m³"))
+            problems.append(_without_mass(model.scene.rods[index], index))
     if model.scene.accuracy.rotation == "permuted":
         what = "'permuted', the literal linear system, has no velocities"
         problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
@@ -312,6 +312,14 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         problems.append(Problem("simulation.integrator", what, "use 'radau'"))
     if problems:
         raise SceneError(*problems)
+
+
+def _without_mass(rod: Rod, index: int) -> Problem:
+    """A rod has no mass: what is missing in its table."""
+    what = f"missing: {rod.name!r} has no mass, and a motion needs one"
+    if rod.material is None:
+        return Problem(f"rods[{index}].linear_density", what, "give the mass per length, kg/m")
+    return Problem(f"rods[{index}].material.density", what, "give the density, kg/m³")
 
 
 def _check_start(history: History, simulation: Simulation) -> None:
@@ -373,10 +381,10 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         outcome=outcome,
         message=message,
         times=times,
-        x=np.array([state.x for state in states]),
-        v=np.array([state.v for state in states]),
-        a=np.array([state.a for state in states]),
-        inputs=np.array([state.inputs for state in states]),
+        x=_stacked([state.x for state in states], model.size),
+        v=_stacked([state.v for state in states], model.size),
+        a=_stacked([state.a for state in states], model.size),
+        inputs=_stacked([state.inputs for state in states], model.inputs.size),
         energy=energies_of(history, times, moving),
         error_estimate=error,
         statistics=history.statistics,
@@ -384,6 +392,11 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         interpolant=history.at,
         warnings=tuple(warnings(simulator)),
     )
+
+
+def _stacked(rows: list[FloatArray], size: int) -> FloatArray:
+    """Vectors one below the other, shape (T, size); T is zero where a motion ends before the first time asked for."""
+    return np.array(rows, dtype=float).reshape(len(rows), size)
 
 
 def warnings(simulator: Simulator) -> list[str]:
