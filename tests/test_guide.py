@@ -1,4 +1,4 @@
-"""The guide works when pasted: its files, commands and Python, in order, in one folder."""
+"""Tutorials work when pasted: their files, commands and Python, in order, in one folder each."""
 
 from __future__ import annotations
 
@@ -12,16 +12,23 @@ import pytest
 
 from tests.conftest import ROOT
 
-GUIDE = (ROOT / "docs" / "guide.md").read_text()
+MADE = {
+    "guide.md": {"bent.png", "reach.json", "controller"},
+    "motion.md": {"swing.json", "swing.png", "swing.gif", "let_go.json", "modes.json"},
+}
+"""Pages, with files that their blocks leave behind."""
+
 SAVED = re.compile(r"[Ss]ave (?:this )?as `([\w.]+)`")
 BLOCK = re.compile(r"```(\w+)\n(.*?)```", flags=re.DOTALL)
 
 
-def blocks() -> list[tuple[str, str, str]]:
+def blocks(page: str) -> list[tuple[str, str, str]]:
     """Language, text and, of what is saved, the name that the sentence before gives it."""
-    found, end = [], 0
-    for block in BLOCK.finditer(GUIDE):
-        names = SAVED.findall(GUIDE[end : block.start()])
+    text = (ROOT / "docs" / page).read_text()
+    found = []
+    end = 0
+    for block in BLOCK.finditer(text):
+        names = SAVED.findall(text[end : block.start()])
         found.append((block[1], block[2], names[-1] if names else ""))
         end = block.end()
     return found
@@ -34,20 +41,21 @@ def run_lines(text: str, folder: Path) -> None:
     assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
 
 
-def test_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("page", MADE)
+def test_the_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     notebook: dict[str, Any] = {}
-    for language, text, name in blocks():
+    for language, text, name in blocks(page):
         if name:
             Path(name).write_text(text)
         elif language == "sh":
             run_lines(text, tmp_path)
         else:
             assert language == "python", f"a block in {language} that nobody saves"
-            exec(compile(text, "guide.md", "exec"), notebook)
-    assert {"bent.png", "reach.json", "controller"} <= {path.name for path in tmp_path.iterdir()}
+            exec(compile(text, page, "exec"), notebook)
+    assert MADE[page] <= {path.name for path in tmp_path.iterdir()}
 
 
 def test_every_kind_of_block_is_there() -> None:
-    assert {language for language, *_ in blocks()} == {"toml", "sh", "python", "c"}
-    assert [name for *_, name in blocks() if name] == ["finger.toml", "target.toml", "controller.c"]
+    assert {language for language, *_ in blocks("guide.md")} == {"toml", "sh", "python", "c"}
+    assert [name for *_, name in blocks("guide.md") if name] == ["finger.toml", "target.toml", "controller.c"]

@@ -14,7 +14,12 @@ import pytest
 from tests.conftest import ROOT
 from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command, run_python
 
-ELSEWHERE = {"guide.md": "test_guide.py", "control.md": "test_control_page.py", "sweeps.md": "sweep/test_page.py"}
+ELSEWHERE = {
+    "guide.md": "test_guide.py",
+    "motion.md": "test_guide.py",
+    "control.md": "test_control_page.py",
+    "sweeps.md": "sweep/test_page.py",
+}
 """Pages that a test of their own runs."""
 
 ONE_PROGRAM = ("extending.md",)

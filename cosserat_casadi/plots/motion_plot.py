@@ -36,6 +36,9 @@ LIGHTEST = 0.12
 TICKS = 6
 """Most intervals between the ticks of an axis in space."""
 
+COLUMN_SPACE = 0.06
+"""Room between the columns, over their width: the layout does not see the labels of axes in space."""
+
 STROKES = ("-", "--", ":")
 """Strokes of the curves of a panel, each used for all colours before the next."""
 
@@ -82,6 +85,7 @@ def plot_motion(motion: Motion) -> Any:
         figure.text(0.5, 0.5, motion.message, color=FAILURE, ha="center", wrap=True)
         return figure
 
+    figure.get_layout_engine().set(wspace=COLUMN_SPACE)
     grid = figure.add_gridspec(panel_count, 2, width_ratios=(1.25, 1.0))
     shapes = moving_shapes(motion.model, motion.times, motion.x, motion.inputs)
     canvas = _add_canvas(figure, grid[:, 0], shapes)
