@@ -15,7 +15,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.properties import RodProperties
 
 STRAIGHT = 25_000
-"""Instructions up to which a kernel is straight-line code: several times as fast as loops, but compilers choke on more.
+"""Instructions up to which a kernel is straight-line code: a third faster than loops, but compilers choke on more.
 
 Functions of one interval are called: each call is one instruction.
 """
@@ -33,7 +33,7 @@ _PLANAR = (114.0, 8.8, 0.5)
 _STRAIGHT_TIME = (0.14, 0.29e-3, 0.44e-3)
 """µs of straight-line code: a constant, the factor of operations in functions of an interval, that of the others."""
 
-_LOOPS_TIME = (3.3, 0.41e-3, 1.2e-3, 0.2e-3, 1.3e-3)
+_LOOPS_TIME = (0.66, 0.39e-3, 0.34e-3, 0.18e-3, 0.18e-3)
 """µs of loops: for each interval, and the factors of the parts of :class:`Operations`."""
 
 

@@ -6,16 +6,20 @@ from contextlib import ExitStack, closing
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.program import Program, Times
+from cosserat_casadi.codegen.compiled import Progress
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import without_load
 
 
-def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[str, Times | str]]:
+def effect_times(
+    scene: scenes.Scene, compiler: str, progress: Progress | None = None
+) -> tuple[Times | str, dict[str, Times | str]]:
     """Times of a scene, and of the scene without each of its loads and actuators by name; a sentence where one fails.
 
     Args:
         scene: the scene.
         compiler: path of a C compiler.
+        progress: told what is compiled, how many programs are, and of how many.
     """
     with ExitStack() as stack:
         # The compiler works on all of them at once; nothing is timed until it is done.
@@ -23,9 +27,11 @@ def effect_times(scene: scenes.Scene, compiler: str) -> tuple[Times | str, dict[
         without = {}
         for cause in scene.causes:
             model = build(without_load(scene, cause.name))
-            program = closing(Program(model, compiler))
-            without[cause.name] = stack.enter_context(program)
-        for compiled in (whole, *without.values()):
-            compiled.wait()
+            without[cause.name] = stack.enter_context(closing(Program(model, compiler)))
+        programs = (whole, *without.values())
+        for done, program in enumerate(programs):
+            if progress is not None:
+                progress("Compiling the scene with and without each effect", done, len(programs))
+            program.wait()
         times_without = {name: compiled.times() for name, compiled in without.items()}
         return whole.times(), times_without

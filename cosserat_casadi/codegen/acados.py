@@ -24,7 +24,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.stage import check_scalar, straight
+from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 
@@ -101,7 +101,7 @@ def acados_functions(model: Model, name: str) -> list[ca.Function]:
     symbols = [dae.x, dae.xdot, dae.u, dae.z, ca.SX.sym("t"), ca.SX.sym("p", 0)]
     words = ["x", "xdot", "u", "z", "t", "p"]
     return [
-        straight(ca.Function(called, symbols, [blocks[word] for word in outputs], words, list(outputs)), called)
+        written(ca.Function(called, symbols, [blocks[word] for word in outputs], words, list(outputs)), called)
         for called, outputs in ((f"{name}_impl_dae_{ending}", outputs) for ending, outputs in wanted.items())
     ]
 

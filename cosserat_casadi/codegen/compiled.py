@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import json
 import os
-import platform
 import shutil
 import subprocess
-import sys
 import tempfile
-from collections.abc import Collection, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Collection, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +19,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.cache import SCRATCH, VARIABLE, cache_folder, content_hash, keep_within, mark_used
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
@@ -35,6 +33,9 @@ from cosserat_casadi.numerics.outcome import Outcome
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
 
 FLAGS = ("-O2", "-std=c99", "-fPIC")
+
+Progress = Callable[[str, int, int], None]
+"""Takes what is being done, how much of it is done, and how much there is."""
 
 OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
 """Functions of which a scene may have none: one without bodies."""
@@ -257,15 +258,19 @@ def _argument(name: str, values: FloatArray) -> Any:
     return ctypes.c_double(values[0]) if name in SCALAR_ARGUMENTS else pointer(values)
 
 
-def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Compiled:
+def load(
+    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
+) -> Compiled:
     """Compile an exported folder, once, and load it.
 
     The shared object lies in the user's cache folder under a name that holds a hash of sources, compiler and flags:
-    an object that some process has loaded is never written over.
+    the same sources are compiled once, wherever they lie, and an object that some process has loaded is never written
+    over. The environment variable ``COSSERAT_CASADI_CACHE`` names another folder, or with ``off`` none.
 
     Args:
         directory: a folder written by :func:`cosserat_casadi.export`.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
 
     Raises:
         ExportError: the folder is not one of an export, there is no compiler, or it fails.
@@ -281,21 +286,13 @@ def load(directory: str | os.PathLike[str], compiler: str | None = None) -> Comp
         sources.append(folder / derivatives)
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
     headers += [folder / file for file in described["files"] if file in VERBATIM]
-    return Compiled(shared_object(names.name, sources, headers, find_compiler(compiler)), described, names)
+    library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
+    return Compiled(library, described, names)
 
 
-def cache_folder() -> Path:
-    """Where compiled libraries are kept: the cache folder of the user's platform."""
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "cosserat_casadi"
-
-
-def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str) -> Path:
+def shared_object(
+    name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str, progress: Progress | None = None
+) -> Path:
     """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
 
     Args:
@@ -303,26 +300,33 @@ def shared_object(name: str, sources: Sequence[Path], headers: Sequence[Path], c
         sources: files to compile.
         headers: files beside them that they include.
         compiler: path of a C compiler.
+        progress: told what is compiled, how many files are, and of how many.
 
     Raises:
         ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
     """
-    # The cache may lie in a home folder that machines of several kinds share.
-    digest = hashlib.sha256("\0".join([compiler, *FLAGS, platform.system(), platform.machine()]).encode())
-    for path in (*sources, *headers):
-        digest.update(_read(path))
-    target = cache_folder() / f"{name}-{digest.hexdigest()[:20]}.so"
-    if not target.exists():
-        try:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            _compile(compiler, sources, target)
-        except OSError as error:
-            remedy = "name a folder for it in the environment variable XDG_CACHE_HOME"
-            raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
+    digest = content_hash(compiler, FLAGS, [_read(path) for path in (*sources, *headers)])
+    target = cache_folder() / f"{name}-{digest}.so"
+    if target.exists():
+        mark_used(target)
+        return target
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _compile(compiler, sources, target, progress)
+        keep_within(target.parent)
+    except OSError as error:
+        remedy = f"name a folder for it in the environment variable {VARIABLE}"
+        raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
     return target
 
 
-def compiled_texts(name: str, texts: Mapping[str, str], compiler: str, included: Collection[str] = frozenset()) -> Path:
+def compiled_texts(
+    name: str,
+    texts: Mapping[str, str],
+    compiler: str,
+    included: Collection[str] = frozenset(),
+    progress: Progress | None = None,
+) -> Path:
     """As :func:`shared_object`, of sources and headers that are texts by file name.
 
     Args:
@@ -330,6 +334,7 @@ def compiled_texts(name: str, texts: Mapping[str, str], compiler: str, included:
         texts: content by file name.
         compiler: path of a C compiler.
         included: files that others include: they are not compiled by themselves.
+        progress: as there.
     """
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / file for file in texts]
@@ -337,16 +342,23 @@ def compiled_texts(name: str, texts: Mapping[str, str], compiler: str, included:
             path.write_text(texts[path.name], encoding="utf-8")
         sources = [path for path in paths if path.suffix == ".c" and path.name not in included]
         headers = [path for path in paths if path not in sources]
-        return shared_object(name, sources, headers, compiler)
+        return shared_object(name, sources, headers, compiler, progress)
 
 
-def _compile(compiler: str, sources: Sequence[Path], target: Path) -> None:
-    with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
+def _compile(compiler: str, sources: Sequence[Path], target: Path, progress: Progress | None = None) -> None:
+    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=target.parent) as scratch:
         made = Path(scratch) / target.name
         objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
         commands = [[compiler, *FLAGS, "-c", str(s), "-o", str(o)] for s, o in zip(sources, objects, strict=True)]
+        doing = f"Compiling {target.name.rpartition('-')[0]}"
+        if progress is not None:
+            progress(doing, 0, len(sources))
         with ThreadPoolExecutor() as pool:
-            list(pool.map(lambda command: _run(command, sources[0].parent), commands))
+            running = [pool.submit(_run, command, sources[0].parent) for command in commands]
+            for done, compiled in enumerate(as_completed(running), 1):
+                compiled.result()
+                if progress is not None:
+                    progress(doing, done, len(sources))
         _run([compiler, *FLAGS, "-shared", *map(str, objects), "-o", str(made), "-lm"], sources[0].parent)
         made.replace(target)
 

@@ -6,6 +6,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.functions_in_c import differentiable_functions
 from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 
@@ -17,4 +18,4 @@ def differentiable(model: Model, names: Names) -> list[ca.Function]:
         plain = kernel(model, entry.function, entry.external)
         reverse = plain.reverse(1)
         functions += [plain, plain.forward(1), reverse, reverse.forward(1)]
-    return functions
+    return [in_loops(function) for function in functions]

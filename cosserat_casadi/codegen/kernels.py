@@ -14,12 +14,18 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
+from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import QUERIES, Names
+from cosserat_casadi.codegen.parts import in_one, sharing
+from cosserat_casadi.codegen.routines import improved
 from cosserat_casadi.errors import WriteError
 from cosserat_casadi.model.build import Model
 
 PARTED = ("path_residual", "path_jacobian")
 """Functions of which an assembly has parts instead, one for each rod."""
+
+RATE = "path_rate"
+"""A function of an assembly with an entry for each unknown, as the residual has."""
 
 GENERATOR = {"with_header": True, "static_aux": True}
 
@@ -29,8 +35,18 @@ def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Func
     wanted = functions_in_c(model, names)
     if parts is None:
         return [kernel(model, entry.function, entry.kernel) for entry in wanted]
-    of_model = [kernel(model, entry.function, entry.kernel) for entry in wanted if entry.spec.name not in PARTED]
-    return [*parts.kernels, *of_model]
+    every = [*parts.kernels]
+    names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
+    for kind in names_of_kind:
+        entries = [entry for entry in wanted if entry.spec.name == kind]
+        plain = [kernel(model, entry.function, entry.kernel) for entry in entries]
+        if not all(function.is_a("SXFunction") for function in plain):
+            every += plain
+        elif kind == RATE:
+            every.append(in_one(entries[0].function, parts.blocks.owners, entries[0].kernel))
+        else:
+            every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
+    return every
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
@@ -41,9 +57,14 @@ def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
         straight = scalar(function, name)
         if straight.n_instructions() <= STRAIGHT:
             return straight
+    return loops(function, name)
+
+
+def loops(function: ca.Function, name: str) -> ca.Function:
+    """A function written for loops in C, with dense outputs."""
     symbols = function.mx_in()
     results = [ca.densify(result) for result in function.call(symbols)]
-    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    return in_loops(ca.Function(name, symbols, results, function.name_in(), function.name_out()))
 
 
 def scalar(function: ca.Function, name: str) -> ca.Function:
@@ -72,7 +93,7 @@ def _generated(file: Path) -> str:
     text = file.read_text(encoding="utf-8")
     if not text.endswith(ENDING):
         raise WriteError(file, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)))
-    return text
+    return improved(text)
 
 
 ENDING = '} /* extern "C" */\n#endif\n'

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.loops import in_loops
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
@@ -62,9 +63,8 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(3)]
     entries = function.call(symbols)[0].nonzeros()
     groups: dict[tuple[Line, ...], list[tuple[_Stream, list[int]]]] = {}
-    for owner in sorted(set(owners)):
-        own = [i for i, entry_owner in enumerate(owners) if entry_owner == owner]
-        stream = _Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])]))
+    for own in _by_owner(owners):
+        stream = _Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *_names(ARGUMENTS[:3])))
         groups.setdefault(stream.key, []).append((stream, own))
     kernels = list[ca.Function]()
     parts = list[Part]()
@@ -78,12 +78,107 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     return Parted(kernels, parts)
 
 
+def _by_owner(owners: Sequence[int]) -> list[list[int]]:
+    """For each owner in turn the places where it stands."""
+    return [[i for i, entry_owner in enumerate(owners) if entry_owner == owner] for owner in sorted(set(owners))]
+
+
+def _names(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Names of the arguments of a part, and of its one result."""
+    return [*arguments], ["entries"]
+
+
+def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], name: str) -> list[ca.Function]:
+    """Kernels, those that compute alike by one function that they call.
+
+    Args:
+        functions: what the kernels compute, with as many arguments each.
+        kernels: the same as straight-line code with dense outputs, which those keep that are like no other.
+        name: what the functions that they call are called, before their numbers.
+    """
+    # Common terms are shared afterwards: those of one rod may be equal by chance.
+    streams = [_Stream(_stacked(function)) for function in functions]
+    groups: dict[tuple[Line, ...], list[int]] = {}
+    for i, stream in enumerate(streams):
+        groups.setdefault(stream.key, []).append(i)
+    result = list(kernels)
+    for number, members in enumerate(groups.values()):
+        if len(members) > 1:
+            shared, constants = _shared([streams[i] for i in members], f"{name}_{number}")
+            for i, values in zip(members, constants, strict=True):
+                result[i] = _calling(functions[i], kernels[i].name(), shared, streams[i].reads, values)
+    return result
+
+
+def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Function:
+    """A function with one column as its result, of which entries of owners that compute alike share code.
+
+    Args:
+        function: the function.
+        owners: for each entry of the result whose it is.
+        name: what it is called.
+    """
+    symbols, (result,) = _scalars(function)
+    entries = ca.vertsplit(ca.densify(result))
+    places = _by_owner(owners)
+    pieces = []
+    kernels = []
+    for own in places:
+        piece = ca.vertcat(*[entries[i] for i in own])
+        pieces.append(ca.Function("piece", symbols, [piece], *_names(function.name_in())))
+        kernels.append(ca.Function("piece", symbols, [ca.cse(piece)], *_names(function.name_in())))
+    arguments = function.mx_in()
+    columns = [piece.call(arguments)[0] for piece in sharing(pieces, kernels, f"{name}_part")]
+    order = [i for own in places for i in own]
+    back = sorted(range(len(order)), key=order.__getitem__)
+    whole = ca.vertcat(*columns)[back]
+    return ca.Function(name, arguments, [whole], function.name_in(), function.name_out())
+
+
+def _scalars(function: ca.Function) -> tuple[list[ca.SX], list[ca.SX]]:
+    """Arguments and results as scalars, without entries that are zero whatever the arguments."""
+    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    return symbols, [ca.sparsify(result) for result in function.call(symbols)]
+
+
+def _stacked(function: ca.Function) -> ca.Function:
+    """The entries of all results in one column, as scalars."""
+    symbols, results = _scalars(function)
+    entries = [entry for result in results for entry in result.nonzeros()]
+    return ca.Function("stacked", symbols, [ca.vertcat(*entries)], *_names(function.name_in()))
+
+
+def _calling(
+    function: ca.Function, name: str, shared: ca.Function, reads: Sequence[Sequence[int]], constants: Sequence[float]
+) -> ca.Function:
+    """A function with dense results as a call of a shared one.
+
+    Args:
+        function: the function.
+        name: what it is called.
+        shared: maps what is read of each argument, and constants, to the entries of all results.
+        reads: entries that are read of each argument.
+        constants: those of this function.
+    """
+    symbols = function.mx_in()
+    given = [ca.vec(symbol.nz[[*entries]]) for symbol, entries in zip(symbols, reads, strict=True)]
+    column = shared.call([*given, ca.DM(constants)], False, True)[0]
+    results = []
+    start = 0
+    for result in _scalars(function)[1]:
+        pattern = result.sparsity()
+        entries = column[start : start + pattern.nnz()]
+        start += pattern.nnz()
+        results.append(ca.densify(ca.MX(pattern, entries)))
+    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+
+
 def _whole(function: ca.Function, name: str) -> Parted:
     """The function as one part, in loops."""
     symbols = function.mx_in()
     result = function.call(symbols)[0].nz[:]
     no_constants = ca.MX(0, 1)
-    kernel = ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"])
+    kernel = in_loops(ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"]))
     part = Part(
         kernel=0,
         x=list(range(function.size1_in(0))),
@@ -125,8 +220,7 @@ class _Stream:
 
     Attributes:
         function: map (x, inputs, factor) ↦ entries.
-        x: unknowns that are read.
-        inputs: inputs that are read.
+        reads: for each argument the entries that are read; an argument of one entry is read whole.
         lines: the instructions.
         constants: value of every use of a constant, in order.
     """
@@ -137,16 +231,26 @@ class _Stream:
         self.constants: list[float] = []
         codes = [function.instruction_id(k) for k in range(function.n_instructions())]
         read = {tuple(function.instruction_input(k)) for k, code in enumerate(codes) if code == ca.OP_INPUT}
-        self.x = sorted(entry for argument, entry in read if argument == 0)
-        self.inputs = sorted(entry for argument, entry in read if argument == 1)
-        # Of the load factor there is one entry.
-        arguments = (self.x, self.inputs, [0])
-        self._local = [{entry: i for i, entry in enumerate(argument)} for argument in arguments]
+        self.reads = [sorted(entry for number, entry in read if number == i) for i in range(function.n_in())]
+        for i in range(function.n_in()):
+            if function.numel_in(i) == 1:
+                self.reads[i] = [0]
+        self._local = [{entry: i for i, entry in enumerate(entries)} for entries in self.reads]
         self._value_of: dict[int, int] = {}
         self._constant_of: dict[int, float] = {}
         self._value_count = 0
         for k, code in enumerate(codes):
             self._add(k, code)
+
+    @property
+    def x(self) -> list[int]:
+        """Unknowns that are read, the first argument."""
+        return self.reads[0]
+
+    @property
+    def inputs(self) -> list[int]:
+        """Inputs that are read, the second argument."""
+        return self.reads[1]
 
     @property
     def key(self) -> tuple[Line, ...]:
@@ -196,15 +300,12 @@ def _shared(streams: Sequence[_Stream], name: str) -> tuple[ca.Function, list[li
     first = streams[0]
     uses = list(zip(*(stream.constants for stream in streams), strict=True))
     varied = list(dict.fromkeys(values for values in uses if len(set(values)) > 1))
-    symbols = [
-        ca.SX.sym("x", len(first.x)),
-        ca.SX.sym("inputs", len(first.inputs)),
-        ca.SX.sym("factor"),
-        ca.SX.sym("constants", len(varied)),
-    ]
-    symbol_of = dict(zip(varied, _entries(symbols[3]), strict=True))
+    arguments = [*first.function.name_in(), "constants"]
+    sizes = [*map(len, first.reads), len(varied)]
+    symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
+    symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
     constants = [symbol_of[values] if values in symbol_of else ca.SX(values[0]) for values in uses]
-    kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), ARGUMENTS, ["entries"])
+    kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), *_names(arguments))
     return kernel, [[values[i] for values in varied] for i in range(len(streams))]
 
 

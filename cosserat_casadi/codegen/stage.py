@@ -11,8 +11,10 @@ from collections.abc import Sequence
 
 import casadi as ca
 
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
+from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
@@ -20,7 +22,12 @@ from cosserat_casadi.model.build import Model
 
 
 def compiled_stage(
-    model: Model, name: str = "stage", *, curvature: bool = False, compiler: str | None = None
+    model: Model,
+    name: str = "stage",
+    *,
+    curvature: bool = False,
+    compiler: str | None = None,
+    progress: Progress | None = None,
 ) -> ca.Function:
     """(x, inputs) ↦ (residual, pose of every tip and body), compiled once, with compiled derivatives.
 
@@ -31,6 +38,7 @@ def compiled_stage(
             of CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and
             good where the deviations are small. Exact ones have several times as many instructions: minutes of gcc.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
@@ -45,7 +53,7 @@ def compiled_stage(
     texts: dict[str, str] = {}
     for function in stage_functions(model, name, curvature):
         texts |= sources([function], function.name(), "long long int")
-    return ca.external(name, os.fspath(compiled_texts(name, texts, found)))
+    return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
 
 
 def check_scalar(model: Model) -> None:
@@ -68,18 +76,23 @@ def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Functio
         name: what the function is called.
         curvature: whether the last one is exact.
     """
-    plain = straight(_stage(model, name), name)
-    slopes = straight(_slopes(model, plain), f"jac_{name}")
+    plain = written(_stage(model, name), name)
+    slopes = written(_slopes(model, plain), f"jac_{name}")
     adjoint = plain.reverse(1)
     second = adjoint.jacobian() if curvature else _bare(plain, slopes, adjoint)
-    return [plain, slopes, straight(adjoint, adjoint.name()), straight(second, f"jac_{adjoint.name()}")]
+    return [plain, slopes, written(adjoint, adjoint.name()), written(second, f"jac_{adjoint.name()}")]
 
 
-def straight(function: ca.Function, name: str) -> ca.Function:
-    """A function as scalar instructions, common terms shared, zeros left out of its outputs."""
+def written(function: ca.Function, name: str) -> ca.Function:
+    """A function as scalar instructions with common terms shared, or where they are too many for loops in C."""
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
     results = ca.cse(list(function.call(symbols)))
-    return ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    straight = ca.Function(name, symbols, results, function.name_in(), function.name_out())
+    if straight.n_instructions() <= STRAIGHT:
+        return straight
+    arguments = function.mx_in()
+    whole = ca.Function(name, arguments, function.call(arguments), function.name_in(), function.name_out())
+    return in_loops(whole)
 
 
 def _stage(model: Model, name: str) -> ca.Function:

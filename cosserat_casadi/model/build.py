@@ -103,10 +103,10 @@ def build(
         scene: a validated scene.
         discretisation: one for every rod; by default what the scene fixes, else a moderate one. Use
             :func:`cosserat_casadi.solve_scene` to have it chosen for a tolerance.
-        moving: whether it is for a motion, in which rods may be free and bodies may turn freely.
+        moving: whether it is for a motion, in which bodies may turn freely.
 
     Raises:
-        SceneError: joints over-constrain; or at rest nothing holds a rod, or a body is free to turn.
+        SceneError: joints over-constrain; or, at rest, leave a body free to turn.
     """
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation

@@ -36,7 +36,7 @@ class MotionFunctions:
 
         Zero along a motion. At rest it is the residual of statics to the last bit.
         """
-        return [MotionEquations(written.system).residual]
+        return [ca.densify(MotionEquations(written.system).residual)]
 
     @scene_function(Output("stiffness"), Output("damping"), Output("mass"), Output("residual"), arguments=MOTION)
     def dynamics_jacobian(self, written: Expressions) -> list[Matrix]:

@@ -38,17 +38,15 @@ RANK = 1e-8
 
 @lru_cache(maxsize=64)
 def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
-    """Refuse a scene whose constraints hold too much; or, unless it moves, leave a rod or a body free.
+    """Refuse a scene whose constraints hold too much, or, unless it moves, leave a body free to turn.
 
     Args:
         scene: the scene.
-        moving: whether what nothing holds may move.
+        moving: whether bodies may turn freely.
 
     Raises:
-        SceneError: with the first constraint that has nothing of its own to hold, or every rod and body that is free.
+        SceneError: with the first constraint that has nothing of its own to hold, or every body that turns freely.
     """
-    if not moving:
-        _refuse_free_rods(scene)
     carries = any(rod.base.rod is not None for rod in scene.rods)
     if not scene.joints and not carries:
         return
@@ -66,22 +64,6 @@ def check_constraints(scene: scenes.Scene, *, moving: bool = False) -> None:
         if _rank(upper) < len(upper):
             problem = f"over-constrains: {placed.what} is held already in a direction in which its rods cannot give"
             raise SceneError(Problem(placed.where, problem, remedy))
-
-
-def _refuse_free_rods(scene: scenes.Scene) -> None:
-    """Refuse rods that nothing holds: where they come to rest is anywhere.
-
-    Raises:
-        SceneError: with every such rod.
-    """
-    problems = []
-    for index, rod in enumerate(scene.rods):
-        if rod.base.free:
-            problem = f"nothing holds the base of {rod.name!r}, so that it has no equilibrium"
-            remedy = "simulate it, or leave `free` out"
-            problems.append(Problem(f"rods[{index}].base.free", problem, remedy))
-    if problems:
-        raise SceneError(*problems)
 
 
 def _at_a_random_shape(probe: DiscreteScene) -> System:

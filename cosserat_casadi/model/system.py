@@ -156,20 +156,20 @@ class System:
             rate = motion.v[entries]
             acceleration = motion.a[entries]
             quaternion = QuaternionMotion(self.frame_poses[name].quaternion, rate[3:], acceleration[3:])
-            norm_time = self._mass_of(name) * frame.length**2 / frame.unit
+            norm_time = self._turning_mass(name) / frame.unit
             motions[name] = FloatingFrameMotion(frame, quaternion, rate, acceleration, norm_time)
         return motions
 
-    def _mass_of(self, name: FrameName) -> float:
-        """Mass of the body, or of the rod, that a floating frame belongs to, kg."""
-        body = self.discrete.frames[name].body
-        if body is not None:
-            return body.mass
+    def _turning_mass(self, name: FrameName) -> float:
+        """Moment of inertia of the size that the body, or the rod, of a floating frame has, kg m²."""
+        frame = self.discrete.frames[name]
+        if frame.body is not None:
+            return frame.body.mass * frame.length**2 + float(np.trace(frame.body.inertia_matrix))
         rod = self.discrete.rods[name.name]
         masses = section_masses(rod)
         if masses is None:
             return 0.0
-        return float(rod.node_lengths @ masses.mass)
+        return float(rod.node_lengths @ masses.mass) * frame.length**2
 
     @cached_property
     def body_inertias(self) -> dict[FrameName, BodyInertia]:

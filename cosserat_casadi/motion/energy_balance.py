@@ -30,20 +30,22 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
         moving: names of the inputs that move: a dead force that changes does work, and has no energy of its own.
     """
     model = history.model
-    places = [history.locate(float(time)) for time in times]
+    # Work counts from the start of the motion, which need not be among the times.
+    places = [history.locate(float(time)) for time in (history.legs[0].piece.start, *times)]
     kinetic, elastic, of_loads, dead = _called(model.energies, places, accelerations=False)
     conserved = dead[:, :1] * _still(model, moving)[:, None]
     potential = (conserved.T @ of_loads)[0]
     dissipated, work = _integrals(history, times, 1.0 - conserved[:, 0])
 
     stored = kinetic[0] + elastic[0] + potential
-    left_over = stored - stored[:1] + dissipated - work
-    parts = np.stack([kinetic[0], elastic[0], potential - potential[:1], dissipated, work])
+    gained = stored[1:] - stored[0]
+    left_over = gained + dissipated - work
+    parts = np.stack([kinetic[0, 1:], elastic[0, 1:], potential[1:] - potential[0], dissipated, work])
     largest = float(np.abs(parts).max(initial=0.0))
     # Nothing moves and nothing is stored: nothing is missing either.
     if largest > 0.0:
         left_over = left_over / largest
-    return Energies(kinetic[0], elastic[0], potential, dissipated, work, left_over)
+    return Energies(kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, left_over)
 
 
 def _still(model: Model, moving: frozenset[str]) -> FloatArray:

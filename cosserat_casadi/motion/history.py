@@ -11,7 +11,9 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
@@ -25,9 +27,10 @@ DIFFERENTIATED = 0.01
 
 def equations_of(model: Model, piece: Piece) -> MotionEquations:
     """The equations of motion of a model while its inputs follow one piece of their paths."""
+    inverse_dynamics = RepeatedCall(model.inverse_dynamics)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        return np.asarray(model.inverse_dynamics(x, v, a, *piece.at(t)).full()[:, 0])
+        return inverse_dynamics(x, v, a, *piece.at(t))
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *piece.at(t))
@@ -106,7 +109,7 @@ class History:
         """The state at a time that was reached, by the dense output of the steps; at a jump, before it."""
         leg, instant = self.locate(time)
         inputs = leg.piece.at(instant.time).value
-        return MotionState(instant.x, instant.v, instant.a, inputs)
+        return MotionState(self._closing.closed(instant.x, inputs), instant.v, instant.a, inputs)
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
@@ -120,11 +123,19 @@ class History:
         """Number of the step that holds a time; at the end of a step, that one."""
         return min(bisect_left(self._ends, time), len(self.steps) - 1)
 
-    def states(self, times: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Unknowns, rates, second derivatives and inputs at T times, shapes (T, size) and (T, inputs)."""
-        states = [self.at(float(time)) for time in times]
-        x, v, a, inputs = (np.array([getattr(state, name) for state in states]) for name in ("x", "v", "a", "inputs"))
-        return x, v, a, inputs
+    def rough_positions(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Unknowns and inputs at T times as the steps have them, shapes (T, size) and (T, inputs).
+
+        Between the ends of steps constraints are open there by less than the error of the motion.
+        """
+        places = [self.locate(float(time)) for time in times]
+        x = np.array([instant.x for _, instant in places])
+        inputs = np.array([leg.piece.at(instant.time).value for leg, instant in places])
+        return x, inputs
+
+    @cached_property
+    def _closing(self) -> Closing:
+        return Closing(self.model)
 
     @cached_property
     def _ends(self) -> list[float]:

@@ -22,7 +22,7 @@ def watched_times(history: History, duration: float) -> FloatArray:
 def paths(history: History, times: FloatArray) -> FloatArray:
     """Positions of all tips and bodies over the length, shape (T, points, 3), without unit."""
     model = history.model
-    x, _, _, inputs = history.states(times)
+    x, inputs = history.rough_positions(times)
     points = []
     for name, rod in model.discrete.rods.items():
         position = tip_poses(model, name, x, inputs).position

@@ -8,7 +8,7 @@ the last. See docs/theory.md, section 11.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -54,6 +54,9 @@ FASTEST = 0.1
 SLOWEST = 0.9
 """Largest such share: beyond it nothing converges."""
 
+MOST_RUNGS = 3
+"""Most rungs of the ladder of modes that are climbed at once."""
+
 SAFETY = 1.5
 """Factor on the error that is extrapolated from it."""
 
@@ -97,6 +100,7 @@ class _Search:
         tolerance: of the paths, over the length.
         levels: the motions so far.
         distances: between each and the next.
+        rungs: places of the levels on the ladder of modes.
         step_tolerance: of a step, over the length; nan for steps of given size.
         time_error: error of the steps on the first level.
     """
@@ -106,8 +110,9 @@ class _Search:
     start: Solution | None
     tell: TELL | None
     tolerance: float
-    levels: list[_Level]
-    distances: list[float]
+    levels: list[_Level] = field(default_factory=list)
+    distances: list[float] = field(default_factory=list)
+    rungs: list[int] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
 
@@ -118,17 +123,38 @@ class _Search:
 
     @property
     def ratio(self) -> float:
-        """Share of the distance between two levels that is left after the finer one."""
+        """Share of the error that one rung of the ladder leaves, from the last two distances."""
         if len(self.distances) < 2 or self.distances[-2] == 0.0:
             return UNKNOWN_RATIO
-        return float(np.clip(self.distances[-1] / self.distances[-2], FASTEST, SLOWEST))
+        # The distance to a far better motion is the error of the worse one.
+        climbed = self.rungs[-2] - self.rungs[-3]
+        by_all = self.distances[-1] / self.distances[-2]
+        return float(np.clip(by_all ** (1.0 / climbed), FASTEST, SLOWEST))
 
     @property
     def space_error(self) -> float:
         """Error of the paths that the modes of the last level leave: the rest of a geometric series."""
         if not self.distances:
             return float("inf")
-        return SAFETY * self.distances[-1] * self.ratio / (1.0 - self.ratio)
+        left = self.ratio ** (self.rungs[-1] - self.rungs[-2])
+        return SAFETY * self.distances[-1] * left / (1.0 - left)
+
+    def climb(self, last: int) -> int | None:
+        """The next rung: as far up as seems to be needed; None where the last one would not do.
+
+        Args:
+            last: the highest rung.
+        """
+        rung = self.rungs[-1]
+        if len(self.distances) < 2:
+            return rung + 1 if rung < last else None
+        wanted = SPACE_SHARE * self.tolerance
+        if self.space_error * self.ratio ** (last - rung) > self.tolerance:
+            return None
+        needed = np.log(wanted / self.space_error) / np.log(self.ratio)
+        # Not further than is foreseen well, and never to stay.
+        above = int(np.clip(np.floor(needed), 1, MOST_RUNGS))
+        return min(rung + above, last) if rung < last else None
 
 
 def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: TELL | None = None) -> Motion:
@@ -150,7 +176,7 @@ def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: TEL
     simulation = scene.simulation
     check_simulation(coarsest, simulation)
     assert simulation is not None, "checked"
-    search = _Search(moving_scene, simulation, start, progress, tolerance_of(coarsest, simulation), [], [])
+    search = _Search(moving_scene, simulation, start, progress, tolerance_of(coarsest, simulation))
     try:
         if scene.accuracy.fixed:
             return _with_fixed(search)
@@ -179,7 +205,8 @@ def _with_fixed(search: _Search) -> Motion:
     witness = _simulator(search, build(scene, finer, moving=True), "with a few modes more, for the error")
     space_error = float("inf")
     if witness.start.found:
-        history = _like(witness, timed.history, timed.tolerance)
+        # Its steps are controlled in any case: those of the user may be too long for more modes.
+        history = witness.controlled(_step_tolerance(search, timed))
         if history.outcome is StepOutcome.INTERRUPTED:
             raise KeyboardInterrupt
         if history.completed:
@@ -195,11 +222,10 @@ def _finer(discretisation: Discretisation) -> Discretisation:
 def _with_tolerance(search: _Search) -> Motion:
     """The motion on more and more modes, until the tolerance is met or no further modes are tried."""
     ladder = seeing_modes(search.scene)
-    modes = ladder[0]
-    chosen = _uniform(search.scene, modes)
-    for number, modes in enumerate(ladder):
-        if number:
-            chosen = _next_modes(search, modes)
+    rung: int | None = 0
+    while rung is not None:
+        modes = ladder[rung]
+        chosen = _next_modes(search, modes) if search.levels else _uniform(search.scene, modes)
         model = build(search.scene, chosen, moving=True)
         simulator = _simulator(search, model, f"with up to {modes} modes")
         if not simulator.start.found:
@@ -213,10 +239,10 @@ def _with_tolerance(search: _Search) -> Motion:
         if search.levels:
             search.distances.append(path_distance(search.last.paths, level.paths))
         search.levels.append(level)
+        search.rungs.append(rung)
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
-        if _hopeless(search, len(ladder) - 1 - number):
-            break
+        rung = search.climb(len(ladder) - 1)
     timed = _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt
@@ -234,6 +260,13 @@ def _on_level(search: _Search, simulator: Simulator) -> History:
     return _like(simulator, search.last.history, search.step_tolerance)
 
 
+def _step_tolerance(search: _Search, timed: TimedHistory) -> float:
+    """Tolerance of a step that a motion was computed with; where its steps were given, that of the paths."""
+    if np.isfinite(timed.tolerance):
+        return timed.tolerance
+    return TIME_SHARE * search.tolerance
+
+
 def _like(simulator: Simulator, history: History, step_tolerance: float) -> History:
     """The motion with steps of a tolerance; where it is no number, with steps of the size of another motion."""
     if np.isfinite(step_tolerance):
@@ -248,14 +281,6 @@ def _timed(search: _Search) -> TimedHistory:
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
     return level.simulator.tightened(level.history, search.step_tolerance, TIME_SHARE * search.tolerance)
-
-
-def _hopeless(search: _Search, left: int) -> bool:
-    """Whether the levels that are left would not meet the tolerance, as far as can be foreseen."""
-    if len(search.distances) < 2:
-        return False
-    foreseen = search.space_error * search.ratio**left
-    return bool(foreseen > search.tolerance)
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:
@@ -294,7 +319,7 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     model = level.simulator.model
     times = watched_times(level.history, duration)
-    x, _, _, _ = level.history.states(times)
+    x, _ = level.history.rough_positions(times)
     moved = np.abs(x).max(axis=0) * displacements(model)
     felt = {}
     for name, rod in model.discrete.rods.items():

@@ -15,6 +15,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
@@ -29,8 +30,9 @@ from cosserat_casadi.motion.trajectory import (
     MotionState,
     StepStatistics,
 )
-from cosserat_casadi.numerics.collocation import gauss, radau
+from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
+from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.simulation import Simulation
 
 TELL = Callable[[MotionProgress], None]
@@ -60,8 +62,17 @@ MOST_TIGHTENINGS = 6
 FIRST_GAUSS_STEPS = 50
 """Steps that a motion by Gauss's method is first divided into; they are halved until the tolerance is met."""
 
+MOST_HALVINGS = 10
+"""Times that they are halved before a tolerance is given up."""
+
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
+
+NEWTON = 1e-3
+"""Error of Newton's method over the tolerance of a step."""
+
+CLOSED = 1e-10
+"""Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
 
 CONSISTENT = 1e-8
 """Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
@@ -118,12 +129,20 @@ class Simulator:
 
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
-        return self._integrated(StepSettings(tolerance=tolerance / displacements(self.model)))
+        newton = NEWTON
+        if not np.all(self.model.discrete.unknowns.differential):
+            # What Newton's method leaves is what supports and joints are open by.
+            newton = min(newton, CLOSED / tolerance)
+        settings = StepSettings(tolerance=tolerance / displacements(self.model), newton=newton)
+        return self._integrated(radau(STAGES), settings)
 
     def stepped(self, size: float) -> History:
-        """The motion with equal steps, s."""
+        """The motion with equal steps, s, by the integrator that is asked for."""
+        method = radau(STAGES)
+        if self.simulation.integrator == "gauss":
+            method = gauss(STAGES)
         tolerance = EXACT / displacements(self.model)
-        return self._integrated(StepSettings(tolerance=tolerance, size=size, newton=1.0))
+        return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
     def paths(self, history: History) -> FloatArray:
         """What two motions are compared by, shape (T, points, 3)."""
@@ -180,7 +199,7 @@ class Simulator:
         history = self.stepped(size)
         history_paths = self.paths(history)
         error = float("nan")
-        for _ in range(4 * MOST_TIGHTENINGS):
+        for _ in range(MOST_HALVINGS):
             size = size / 2.0
             shorter = self.stepped(size)
             # Steps too long for their equations to be solved say nothing of shorter ones.
@@ -195,10 +214,7 @@ class Simulator:
                 break
         return TimedHistory(history, error)
 
-    def _integrated(self, settings: StepSettings) -> History:
-        method = radau(STAGES)
-        if self.simulation.integrator == "gauss":
-            method = gauss(STAGES)
+    def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
         history = integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
@@ -287,13 +303,23 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
     for index, rod in enumerate(model.discrete.rods.values()):
         if rod.properties.linear_density is None:
-            what = f"missing: {rod.properties.name!r} has no mass, and a motion needs one"
-            problems.append(Problem(f"rods[{index}].material.density", what, "give the density, kg/m³"))
+            problems.append(_without_mass(model.scene.rods[index], index))
+    if model.scene.accuracy.rotation == "permuted":
+        what = "'permuted', the literal linear system, has no velocities"
+        problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
     if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
         what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("simulation.integrator", what, "use 'radau'"))
     if problems:
         raise SceneError(*problems)
+
+
+def _without_mass(rod: Rod, index: int) -> Problem:
+    """A rod has no mass: what is missing in its table."""
+    what = f"missing: {rod.name!r} has no mass, and a motion needs one"
+    if rod.material is None:
+        return Problem(f"rods[{index}].linear_density", what, "give the mass per length, kg/m")
+    return Problem(f"rods[{index}].material.density", what, "give the density, kg/m³")
 
 
 def _check_start(history: History, simulation: Simulation) -> None:
@@ -319,7 +345,7 @@ def unresolved(history: History, duration: float) -> bool:
     """Whether the rods bend too sharply for their nodes at some time."""
     model = history.model
     times = watched_times(history, duration)
-    x, _, _, inputs = history.states(times)
+    x, inputs = history.rough_positions(times)
     indices = model.resolution_index.map(len(times))(x.T, inputs.T).full()
     return bool(indices.max() > 1.0)
 
@@ -328,7 +354,19 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
         return str(outcome.value)
-    return f"{outcome.value} Reached: t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s."
+    reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
+    return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+
+
+def most_violent(history: History) -> str:
+    """The rod, or the body, whose accelerations displace it most where a motion ends."""
+    model = history.model
+    accelerations = np.nan_to_num(np.abs(history.end.a), nan=np.inf) * displacements(model)
+    largest = {}
+    for block, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.POSE):
+        kind = "rod " if block.kind is BlockKind.STRAIN else ""
+        largest[f"{kind}{block.owner}"] = float(accelerations[entries].max(initial=0.0))
+    return max(largest, key=lambda owner: largest[owner])
 
 
 def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:
@@ -336,17 +374,17 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
     model = simulator.model
     wanted = simulator.simulation.frame_times
     times = wanted[wanted <= history.end.time]
-    x, v, a, inputs = history.states(times)
+    states = [history.at(float(time)) for time in times]
     moving = frozenset(motion.input for motion in model.scene.motions)
     return Motion(
         model=model,
         outcome=outcome,
         message=message,
         times=times,
-        x=x,
-        v=v,
-        a=a,
-        inputs=inputs,
+        x=_stacked([state.x for state in states], model.size),
+        v=_stacked([state.v for state in states], model.size),
+        a=_stacked([state.a for state in states], model.size),
+        inputs=_stacked([state.inputs for state in states], model.inputs.size),
         energy=energies_of(history, times, moving),
         error_estimate=error,
         statistics=history.statistics,
@@ -354,6 +392,11 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         interpolant=history.at,
         warnings=tuple(warnings(simulator)),
     )
+
+
+def _stacked(rows: list[FloatArray], size: int) -> FloatArray:
+    """Vectors one below the other, shape (T, size); T is zero where a motion ends before the first time asked for."""
+    return np.array(rows, dtype=float).reshape(len(rows), size)
 
 
 def warnings(simulator: Simulator) -> list[str]:

@@ -18,7 +18,7 @@ from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.stage_newton import NewtonBounds
 from cosserat_casadi.numerics.step_matrices import Deviation, StepMatrices
 
-MOST_ITERATIONS = 15
+MOST_ITERATIONS = 25
 """Most Newton iterations of a step whose size is controlled: beyond them a shorter one is cheaper."""
 
 SAFETY = 0.9

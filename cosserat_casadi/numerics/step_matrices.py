@@ -72,7 +72,7 @@ class StepMatrices:
         transformed = self.method.to_eigenvectors @ residuals
         solutions = np.empty_like(transformed)
         for k, inverse in enumerate(self.inverses):
-            solutions[k] = inverse @ transformed[k]
+            solutions[k] = _product(inverse, transformed[k])
         changes = self.method.from_eigenvectors @ (self.shares * solutions)
         return np.asarray(-changes.real)
 
@@ -91,8 +91,13 @@ class StepMatrices:
         velocity = deviation.velocity
         momentum = self.linearisation.mass @ (rate * position + velocity)
         impulse = momentum + self.linearisation.damping @ position
-        changed = inverse @ (rate * impulse)
+        changed = _product(inverse, rate * impulse)
         return Deviation(changed.real, (rate * (changed - position)).real)
+
+
+def _product(matrix: npt.NDArray[Any], vector: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """A matrix times a vector, on one core: a BLAS that wakes its threads for so little may wait long for them."""
+    return np.asarray(np.einsum("ij,j->i", matrix, vector))
 
 
 def step_matrices(

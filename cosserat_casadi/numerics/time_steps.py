@@ -164,10 +164,12 @@ def integrate(
     run = _Run(equations, method, settings, start, end)
     outcome = StepOutcome.INTERRUPTED
     try:
-        if settings.size is None:
-            outcome = _controlled_steps(run, after_step)
-        else:
-            outcome = _equal_steps(run, settings.size, after_step)
+        # Numbers that overflow are found where they are judged.
+        with np.errstate(all="ignore"):
+            if settings.size is None:
+                outcome = _controlled_steps(run, after_step)
+            else:
+                outcome = _equal_steps(run, settings.size, after_step)
     except KeyboardInterrupt:
         # What was computed stands: whoever stops a long motion wants to see it.
         outcome = StepOutcome.INTERRUPTED

@@ -46,6 +46,10 @@ NOTHING = 1e-12
 """Share of the largest value below which a curve counts as zero."""
 
 
+ROUNDING = 1e-16
+"""Imbalance below which the axis of the imbalance does not go: a motion that has not begun has none."""
+
+
 def save_motion_plot(motion: Motion, file: str | Path) -> None:
     """Draw a motion into a file, whole or not at all; the same motion gives the same bytes.
 
@@ -244,6 +248,9 @@ def _draw_imbalance(panel: Any, motion: Motion) -> None:
         _say(panel, "zero")
         return
     panel.semilogy(motion.times, np.where(positive, magnitude, np.nan), color="0.2", linewidth=1.4)
+    lowest, highest = panel.get_ylim()
+    if lowest < ROUNDING < highest:
+        panel.set_ylim(bottom=ROUNDING)
 
 
 def _say(panel: Any, word: str) -> None:

@@ -83,10 +83,10 @@ int six_rod_platform_k_input_jacobian_5(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_input_jacobian_5_SZ_IW 0
 #define six_rod_platform_k_input_jacobian_5_SZ_W 92
 int six_rod_platform_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_rate_SZ_ARG 16
-#define six_rod_platform_k_rate_SZ_RES 4
+#define six_rod_platform_k_rate_SZ_ARG 27
+#define six_rod_platform_k_rate_SZ_RES 6
 #define six_rod_platform_k_rate_SZ_IW 0
-#define six_rod_platform_k_rate_SZ_W 92
+#define six_rod_platform_k_rate_SZ_W 957
 int six_rod_platform_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_tangent_SZ_ARG 1
 #define six_rod_platform_k_tangent_SZ_RES 1
@@ -98,125 +98,125 @@ int six_rod_platform_k_resolution_index(const casadi_real** arg, casadi_real** r
 #define six_rod_platform_k_resolution_index_SZ_IW 0
 #define six_rod_platform_k_resolution_index_SZ_W 0
 int six_rod_platform_k_igm_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_1_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_1_SZ_RES 6
+#define six_rod_platform_k_igm_leg_1_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_1_SZ_RES 7
 #define six_rod_platform_k_igm_leg_1_SZ_IW 0
-#define six_rod_platform_k_igm_leg_1_SZ_W 50
-int six_rod_platform_k_tip_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_1_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_1_SZ_RES 5
-#define six_rod_platform_k_tip_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_leg_1_SZ_W 30
-int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 5
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 96
-int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_1_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_1_SZ_RES 5
-#define six_rod_platform_k_shape_leg_1_SZ_IW 0
-#define six_rod_platform_k_shape_leg_1_SZ_W 30
+#define six_rod_platform_k_igm_leg_1_SZ_W 328
 int six_rod_platform_k_igm_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_2_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_2_SZ_RES 6
+#define six_rod_platform_k_igm_leg_2_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_2_SZ_RES 7
 #define six_rod_platform_k_igm_leg_2_SZ_IW 0
-#define six_rod_platform_k_igm_leg_2_SZ_W 50
-int six_rod_platform_k_tip_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_2_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_2_SZ_RES 5
-#define six_rod_platform_k_tip_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_leg_2_SZ_W 30
-int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 5
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 96
-int six_rod_platform_k_shape_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_2_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_2_SZ_RES 5
-#define six_rod_platform_k_shape_leg_2_SZ_IW 0
-#define six_rod_platform_k_shape_leg_2_SZ_W 30
+#define six_rod_platform_k_igm_leg_2_SZ_W 328
 int six_rod_platform_k_igm_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_3_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_3_SZ_RES 6
+#define six_rod_platform_k_igm_leg_3_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_3_SZ_RES 7
 #define six_rod_platform_k_igm_leg_3_SZ_IW 0
-#define six_rod_platform_k_igm_leg_3_SZ_W 50
-int six_rod_platform_k_tip_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_3_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_3_SZ_RES 5
-#define six_rod_platform_k_tip_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_leg_3_SZ_W 30
-int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 5
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 96
-int six_rod_platform_k_shape_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_3_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_3_SZ_RES 5
-#define six_rod_platform_k_shape_leg_3_SZ_IW 0
-#define six_rod_platform_k_shape_leg_3_SZ_W 30
+#define six_rod_platform_k_igm_leg_3_SZ_W 328
 int six_rod_platform_k_igm_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_4_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_4_SZ_RES 6
+#define six_rod_platform_k_igm_leg_4_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_4_SZ_RES 7
 #define six_rod_platform_k_igm_leg_4_SZ_IW 0
-#define six_rod_platform_k_igm_leg_4_SZ_W 50
-int six_rod_platform_k_tip_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_4_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_4_SZ_RES 5
-#define six_rod_platform_k_tip_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_leg_4_SZ_W 30
-int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 5
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 96
-int six_rod_platform_k_shape_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_4_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_4_SZ_RES 5
-#define six_rod_platform_k_shape_leg_4_SZ_IW 0
-#define six_rod_platform_k_shape_leg_4_SZ_W 30
+#define six_rod_platform_k_igm_leg_4_SZ_W 328
 int six_rod_platform_k_igm_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_5_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_5_SZ_RES 6
+#define six_rod_platform_k_igm_leg_5_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_5_SZ_RES 7
 #define six_rod_platform_k_igm_leg_5_SZ_IW 0
-#define six_rod_platform_k_igm_leg_5_SZ_W 50
-int six_rod_platform_k_tip_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_5_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_5_SZ_RES 5
-#define six_rod_platform_k_tip_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_leg_5_SZ_W 30
-int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 5
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 96
-int six_rod_platform_k_shape_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_5_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_5_SZ_RES 5
-#define six_rod_platform_k_shape_leg_5_SZ_IW 0
-#define six_rod_platform_k_shape_leg_5_SZ_W 30
+#define six_rod_platform_k_igm_leg_5_SZ_W 328
 int six_rod_platform_k_igm_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_igm_leg_6_SZ_ARG 9
-#define six_rod_platform_k_igm_leg_6_SZ_RES 6
+#define six_rod_platform_k_igm_leg_6_SZ_ARG 14
+#define six_rod_platform_k_igm_leg_6_SZ_RES 7
 #define six_rod_platform_k_igm_leg_6_SZ_IW 0
-#define six_rod_platform_k_igm_leg_6_SZ_W 50
+#define six_rod_platform_k_igm_leg_6_SZ_W 328
+int six_rod_platform_k_tip_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_leg_1_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_1_SZ_RES 6
+#define six_rod_platform_k_tip_leg_1_SZ_IW 0
+#define six_rod_platform_k_tip_leg_1_SZ_W 141
+int six_rod_platform_k_tip_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_leg_2_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_2_SZ_RES 6
+#define six_rod_platform_k_tip_leg_2_SZ_IW 0
+#define six_rod_platform_k_tip_leg_2_SZ_W 141
+int six_rod_platform_k_tip_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_leg_3_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_3_SZ_RES 6
+#define six_rod_platform_k_tip_leg_3_SZ_IW 0
+#define six_rod_platform_k_tip_leg_3_SZ_W 141
+int six_rod_platform_k_tip_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_leg_4_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_4_SZ_RES 6
+#define six_rod_platform_k_tip_leg_4_SZ_IW 0
+#define six_rod_platform_k_tip_leg_4_SZ_W 141
+int six_rod_platform_k_tip_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_leg_5_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_5_SZ_RES 6
+#define six_rod_platform_k_tip_leg_5_SZ_IW 0
+#define six_rod_platform_k_tip_leg_5_SZ_W 141
 int six_rod_platform_k_tip_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_leg_6_SZ_ARG 3
-#define six_rod_platform_k_tip_leg_6_SZ_RES 5
+#define six_rod_platform_k_tip_leg_6_SZ_ARG 6
+#define six_rod_platform_k_tip_leg_6_SZ_RES 6
 #define six_rod_platform_k_tip_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_leg_6_SZ_W 30
+#define six_rod_platform_k_tip_leg_6_SZ_W 141
+int six_rod_platform_k_tip_jacobian_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_RES 6
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_IW 0
+#define six_rod_platform_k_tip_jacobian_leg_1_SZ_W 1600
+int six_rod_platform_k_tip_jacobian_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_RES 6
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_IW 0
+#define six_rod_platform_k_tip_jacobian_leg_2_SZ_W 1600
+int six_rod_platform_k_tip_jacobian_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_RES 6
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_IW 0
+#define six_rod_platform_k_tip_jacobian_leg_3_SZ_W 1600
+int six_rod_platform_k_tip_jacobian_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_RES 6
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_IW 0
+#define six_rod_platform_k_tip_jacobian_leg_4_SZ_W 1600
+int six_rod_platform_k_tip_jacobian_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_RES 6
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_IW 0
+#define six_rod_platform_k_tip_jacobian_leg_5_SZ_W 1600
 int six_rod_platform_k_tip_jacobian_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 7
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 5
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_ARG 10
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_RES 6
 #define six_rod_platform_k_tip_jacobian_leg_6_SZ_IW 0
-#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 96
+#define six_rod_platform_k_tip_jacobian_leg_6_SZ_W 1600
+int six_rod_platform_k_shape_leg_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_shape_leg_1_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_1_SZ_RES 6
+#define six_rod_platform_k_shape_leg_1_SZ_IW 0
+#define six_rod_platform_k_shape_leg_1_SZ_W 219
+int six_rod_platform_k_shape_leg_2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_shape_leg_2_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_2_SZ_RES 6
+#define six_rod_platform_k_shape_leg_2_SZ_IW 0
+#define six_rod_platform_k_shape_leg_2_SZ_W 219
+int six_rod_platform_k_shape_leg_3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_shape_leg_3_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_3_SZ_RES 6
+#define six_rod_platform_k_shape_leg_3_SZ_IW 0
+#define six_rod_platform_k_shape_leg_3_SZ_W 219
+int six_rod_platform_k_shape_leg_4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_shape_leg_4_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_4_SZ_RES 6
+#define six_rod_platform_k_shape_leg_4_SZ_IW 0
+#define six_rod_platform_k_shape_leg_4_SZ_W 219
+int six_rod_platform_k_shape_leg_5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_shape_leg_5_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_5_SZ_RES 6
+#define six_rod_platform_k_shape_leg_5_SZ_IW 0
+#define six_rod_platform_k_shape_leg_5_SZ_W 219
 int six_rod_platform_k_shape_leg_6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_shape_leg_6_SZ_ARG 4
-#define six_rod_platform_k_shape_leg_6_SZ_RES 5
+#define six_rod_platform_k_shape_leg_6_SZ_ARG 8
+#define six_rod_platform_k_shape_leg_6_SZ_RES 6
 #define six_rod_platform_k_shape_leg_6_SZ_IW 0
-#define six_rod_platform_k_shape_leg_6_SZ_W 30
+#define six_rod_platform_k_shape_leg_6_SZ_W 219
 int six_rod_platform_k_body_platform(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_body_platform_SZ_ARG 2
 #define six_rod_platform_k_body_platform_SZ_RES 2

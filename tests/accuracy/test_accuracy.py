@@ -161,14 +161,26 @@ def test_foreseen_operations_of_spread_loads(magnitude: dict[str, list[float]]) 
 
 @pytest.mark.parametrize("nodes", [6, 18])
 def test_loops_are_foreseen(nodes: int) -> None:
-    """Beyond the limit of straight-line code an interval takes several times as long."""
+    """Beyond the limit of straight-line code kernels are loops; the forecast knows on which side a model is."""
     wanted = scene(push(), WEIGHT)
     model = build(wanted, discretise(wanted, 6, nodes, "magnus6"))
     rod, chosen = model.discrete.rods["rod"].properties, model.discretisation["rod"]
     straight = scalar(model.path_jacobian, "jacobian").n_instructions() <= STRAIGHT
     assert straight == (nodes == 6)
     assert (foreseen_operations(rod, chosen).instructions <= STRAIGHT) == straight
-    assert (foreseen_time(rod, chosen) < 2.0 * nodes) == straight
+
+
+def test_no_cliff_is_foreseen() -> None:
+    """Time grows with the intervals, and by no more than half where straight-line code ends."""
+    wanted = scene(push(), WEIGHT)
+    rod = build(wanted, discretise(wanted, 6, 6, "magnus6")).discrete.rods["rod"].properties
+    candidates = [discretise(wanted, 6, nodes, "magnus6")["rod"] for nodes in range(6, 20)]
+    straight = [foreseen_operations(rod, chosen).instructions <= STRAIGHT for chosen in candidates]
+    times = np.array([foreseen_time(rod, chosen) for chosen in candidates])
+    assert straight[0] and not straight[-1]
+    growth = times[1:] / times[:-1]
+    assert growth.min() > 1.0
+    assert growth.max() < 1.5
 
 
 def test_components_give_up_modes_together() -> None:

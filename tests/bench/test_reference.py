@@ -22,7 +22,7 @@ HELD = {"rod": "rod", "position": [0.2, 0.15, 0.6]}
 PLAIN = [
     path
     for path in sorted((ROOT / "examples").glob("*.toml"))
-    if not any(word in path.read_text() for word in ("[[actuators]]", "[[bodies]]", "base = { rod"))
+    if not any(word in path.read_text() for word in ("[[actuators]]", "[[bodies]]", "base = { rod", "free = true"))
 ]
 
 

@@ -48,6 +48,13 @@ position = [0.1, 0, 0.15]
 input = "push.force"
 lower = [0, 0, 0]
 upper = [1, 0, 0]
+[simulation]
+duration = 0.1
+frames = 5
+[[motions]]
+input = "push.force"
+times = [0, 0.1]
+values = [[0.2, 0, 0], [0, 0, 0]]
 """
 
 COMMANDS = {
@@ -58,6 +65,8 @@ COMMANDS = {
     "sweep": ["sweep", "wire.toml", "--over", "rows.csv", "--output", "out.csv", "--cores", "1"],
     "tune": ["tune", "wire.toml", "--range", "push.force.x=0:0.1", "--samples", "2", "--output", "out.toml"],
     "export": ["export", "wire.toml", "--output", "out"],
+    "simulate": ["simulate", "wire.toml", "--output", "out.json", "--plot", "out.svg"],
+    "modes": ["modes", "wire.toml", "--count", "2", "--output", "out.json", "--plot", "out.svg"],
     "bench": ["bench", "wire.toml", "--methods", "magnus4", "--points", "1", "--output", "out"],
 }
 """One call of each command, with every file that it can write."""
@@ -191,12 +200,13 @@ def stopped(command: str, number: signal.Signals, delay: float, folder: Path) ->
         time.sleep(0.01)
     time.sleep(delay)
     process.send_signal(number)
-    code, _, said = ended(process)
+    code, shown, said = ended(process)
     expected = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}[number]
     # A signal that comes when all is written ends the process without a word.
     assert code in (expected, 0, NOT_FOUND, -number), said
+    # A motion that was interrupted is told of, as far as it goes.
     if code == expected:
-        assert "Stopped" in said
+        assert "Stopped" in said or "was interrupted" in " ".join(shown.split())
     left = new_files(folder)
     assert [name for name in left if name.endswith(".part") and name != "out.csv.part"] == []
     if "out.json" in left:
@@ -208,7 +218,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks /proc what a process listens to")
 @pytest.mark.parametrize("number", SIGNALS)
-@pytest.mark.parametrize(("command", "delay"), [("solve", 0.05), ("sweep", 0.3), ("export", 0.15)])
+@pytest.mark.parametrize(("command", "delay"), [("solve", 0.05), ("sweep", 0.3), ("export", 0.15), ("simulate", 0.5)])
 def test_signals(folder: Path, command: str, number: signal.Signals, delay: float) -> None:
     stopped(command, number, delay, folder)
 

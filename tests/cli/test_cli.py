@@ -268,7 +268,11 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert [p.name for p in tmp_path.iterdir()] == ["r.json"]
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.toml")), ids=lambda path: path.stem)
+# What nothing holds has no equilibrium.
+HELD = [path for path in sorted((ROOT / "examples").glob("*.toml")) if "free = true" not in path.read_text()]
+
+
+@pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
 def test_examples_solve(path: Path, tmp_path: Path) -> None:
     done = cosserat("solve", str(path), "--output", "r.json", cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

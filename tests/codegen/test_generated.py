@@ -296,3 +296,12 @@ def test_a_changed_hash_is_named() -> None:
 
 def test_arithmetic_is_the_same_every_time() -> None:
     assert arithmetic() == arithmetic()
+
+
+@pytest.mark.slow
+def test_six_legs_share_their_code(generated: Path) -> None:
+    """The platform's sources stay within 1.5 MB: six legs that compute alike are one piece of code."""
+    name = "six_rod_platform"
+    files = files_of(rebuilt(generated / name), name, None)
+    sources = [text for file, text in files.items() if file.endswith(".c")]
+    assert sum(map(len, sources)) < 1_500_000

@@ -16,7 +16,8 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, load, solve
 from cosserat_casadi.codegen import compiled
-from cosserat_casadi.codegen.compiled import FLAGS, cache_folder
+from cosserat_casadi.codegen.cache import cache_folder
+from cosserat_casadi.codegen.compiled import FLAGS
 from cosserat_casadi.codegen.manifest import MANIFEST
 from tests.scenes import WEIGHT, push, scene
 
@@ -48,6 +49,7 @@ QUICK = tuple("-O0" if flag == "-O2" else flag for flag in FLAGS)
 def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Compiled libraries go to a folder of this test, and are compiled in little time."""
     monkeypatch.setattr(compiled, "FLAGS", QUICK)
+    monkeypatch.delenv("COSSERAT_CASADI_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
@@ -186,7 +188,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Names of the objects that would have been compiled."""
     made: list[str] = []
 
-    def pretend(compiler: str, sources: list[Path], target: Path) -> None:
+    def pretend(compiler: str, sources: list[Path], target: Path, progress: object) -> None:
         made.append(target.name)
         target.write_bytes(b"")
 
@@ -308,7 +310,7 @@ def test_a_cache_that_cannot_be_written(strip: Path, tmp_path: Path, monkeypatch
     where, problem, remedy = refusal(strip)
     assert where == str(tmp_path / "file" / "cosserat_casadi")
     assert problem.startswith("cannot be written to: ")
-    assert "XDG_CACHE_HOME" in remedy
+    assert "COSSERAT_CASADI_CACHE" in remedy
 
 
 ANEW = "write one with cosserat export"

@@ -6,7 +6,13 @@ import casadi as ca
 import numpy as np
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen.parts import CONSTANT, _Stream, parted
+from cosserat_casadi import build, discretise
+from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.functions_in_c import functions_in_c
+from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.codegen.parts import CONSTANT, _Stream, in_one, parted, sharing
+from tests.scenes import rod, scene
 
 
 def function(expression: str) -> ca.Function:
@@ -46,3 +52,62 @@ def test_parts_that_differ_in_constants_share_a_kernel_and_compute_the_whole() -
         kernel = split.kernels[part.kernel]
         entries[part.entries] = kernel(x[part.x], inputs[part.inputs], 0.4, part.constants).full()[:, 0]
     assert_allclose(entries, whole(x, inputs, 0.4).full()[:, 0], rtol=1e-15, atol=0)
+
+
+def straight(name: str, *expressions: str) -> ca.Function:
+    """A function of two arguments, with zeros in its results."""
+    x, scale = ca.SX.sym("x", 5), ca.SX.sym("scale")
+    names = {"x": x, "scale": scale, "ca": ca}
+    results = [ca.densify(eval(expression, names)) for expression in expressions]
+    return ca.Function(name, [x, scale], results)
+
+
+def test_kernels_that_compute_alike_call_one_function() -> None:
+    zero = "ca.SX(1, 2)"
+    alike = "ca.horzcat(3*ca.sin(x[0]) + 5*x[1], 0, scale)", zero
+    also = "ca.horzcat(0, 7*ca.sin(x[3]) + 5*x[4], scale)", zero
+    other = "ca.horzcat(x[2], x[2]**2, 0)", zero
+    functions = [straight("a", *alike), straight("b", *also), straight("c", *other)]
+    made = sharing(functions, functions, "shared")
+    assert [function.name() for function in made] == ["a", "b", "c"]
+    assert made[2] is functions[2]
+    called = [function.find_functions() for function in made[:2]]
+    assert [[callee.name() for callee in callees] for callees in called] == [["shared_0"], ["shared_0"]]
+    x = np.arange(1.0, 6.0)
+    for one, whole in zip(made, functions, strict=True):
+        for found, expected in zip(one(x, 0.3), whole(x, 0.3), strict=True):
+            assert found.sparsity().is_dense()
+            assert_allclose(found.full(), expected.full(), rtol=1e-15, atol=0)
+
+
+def test_one_column_whose_owners_compute_alike() -> None:
+    whole = straight("whole", "ca.vertcat(x[1]*scale, 3*ca.sin(x[0]), x[2]*scale, 4*ca.sin(x[4]), x[3])")
+    made = in_one(whole, [1, 0, 2, 0, 1], "made")
+    x = np.arange(1.0, 6.0)
+    assert_allclose(made(x, 0.3).full(), whole(x, 0.3).full(), rtol=1e-15, atol=0)
+
+
+def test_more_alike_legs_are_little_more_code() -> None:
+    sizes = []
+    for count in (2, 4):
+        places = [[0.1 + 0.013 * i, 0.02 - 0.011 * i, 0.0] for i in range(count)]
+        legs = [rod("reissner", name=f"leg_{i}", base={"position": place}) for i, place in enumerate(places)]
+        joints = [
+            {"body": "hand", "rod": f"leg_{i}", "kind": "fixed", "position": place} for i, place in enumerate(places)
+        ]
+        load = {"name": "load", "kind": "body_wrench", "body": "hand", "force": [0.2, 0.0, -0.3]}
+        wanted = scene(load, rods=legs, bodies=[{"name": "hand", "mass": 0.1}], joints=joints)
+        model = build(wanted, discretise(wanted, 2, 6, "magnus4"))
+        names = scene_names("legs", wanted)
+        functions = kernels(model, names, assembled(model, names))
+        sizes.append(len(kernel_sources(functions, names)["legs_kernels.c"]))
+        made = {function.name(): function for function in functions}
+        rng = np.random.default_rng(count)
+        for entry in functions_in_c(model, names):
+            if entry.kernel not in made:
+                continue
+            given = [rng.uniform(0.1, 0.9, entry.function.size_in(i)) for i in range(entry.function.n_in())]
+            for found, expected in zip(made[entry.kernel].call(given), entry.function.call(given), strict=True):
+                scale = np.abs(expected.full()).max(initial=0.0)
+                assert_allclose(found.full(), expected.full(), rtol=0, atol=1e-13 * scale)
+    assert sizes[1] < 1.3 * sizes[0]

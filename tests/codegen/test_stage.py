@@ -11,6 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, Model, build, compiled_stage, discretise
+from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen import stage as stage_module
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
 from tests.scenes import WEIGHT, push, scene
@@ -38,8 +40,10 @@ def somewhere(model: Model) -> tuple[np.ndarray, np.ndarray]:
     return 0.2 * random.standard_normal(model.size), model.pack() + 0.1 * random.standard_normal(model.inputs.size)
 
 
+@pytest.mark.parametrize("longest", [STRAIGHT, 0], ids=["straight", "loops"])
 @pytest.mark.parametrize("make", [wire, hand])
-def test_stage_vs_model(make: Callable[[], Model]) -> None:
+def test_stage_vs_model(make: Callable[[], Model], longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stage_module, "STRAIGHT", longest)
     model = make()
     stage = compiled_stage(model, "stage_of_" + make.__name__)
     at = somewhere(model)
@@ -67,7 +71,9 @@ def hessian(function: ca.Function, model: Model, weights: np.ndarray) -> np.ndar
     return ca.Function("hessian", [x, inputs], [ca.hessian(lagrangian, both)[0]])(*somewhere(model)).full()
 
 
-def test_second_derivatives_vs_model() -> None:
+@pytest.mark.parametrize("longest", [STRAIGHT, 0], ids=["straight", "loops"])
+def test_second_derivatives_vs_model(longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stage_module, "STRAIGHT", longest)
     model = wire()
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
     plain = ca.Function("plain", [x, inputs], [model.residual(x, inputs), ca.vertcat(*model.tip["rod"](x, inputs)[:2])])

@@ -25,6 +25,22 @@ def explicit(acceleration: Field, by_position: Field, by_velocity: Field, size: 
     )
 
 
+def complex_steps(
+    residual: Callable[..., FloatArray], t: float, x: FloatArray, v: FloatArray, a: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """∂F/∂x, ∂F/∂v, ∂F/∂a of an analytic residual to rounding."""
+
+    def derivative(argument: int) -> FloatArray:
+        columns = []
+        for entry in range(len(x)):
+            arguments = [np.array(values, dtype=complex) for values in (x, v, a)]
+            arguments[argument][entry] += 1e-30j
+            columns.append(residual(t, *arguments).imag / 1e-30)
+        return np.column_stack(columns)
+
+    return derivative(0), derivative(1), derivative(2)
+
+
 def reference(acceleration: Field, x: FloatArray, v: FloatArray, start: float, end: float) -> FloatArray:
     """Positions and velocities at the end by DOP853, shape (2, n)."""
     size = len(x)
@@ -109,16 +125,7 @@ class Top:
     def jacobians(
         self, t: float, x: FloatArray, v: FloatArray, a: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        # Central differences of a polynomial of low degree; complex steps are exact.
-        def derivative(argument: int) -> FloatArray:
-            columns = []
-            for entry in range(4):
-                arguments = [np.array(values, dtype=complex) for values in (x, v, a)]
-                arguments[argument][entry] += 1e-30j
-                columns.append(self.residual(t, *arguments).imag / 1e-30)  # type: ignore[arg-type]
-            return np.column_stack(columns)
-
-        return derivative(0), derivative(1), derivative(2)
+        return complex_steps(self.residual, t, x, v, a)
 
     @property
     def equations(self) -> MotionEquations:
@@ -136,3 +143,43 @@ class Top:
         start = np.concatenate([q, self.left(q) @ v])
         solution = solve_ivp(rate, (0, end), start, method="DOP853", rtol=3e-14, atol=1e-14)
         return np.asarray(solution.y[:4, -1])
+
+
+@dataclass(frozen=True)
+class TurningPair:
+    """A free light mass in the plane, a frame that turns about it, and in the frame a mass of one on a spring.
+
+    As at the free end of a rod whose coordinates begin there: to move the light mass alone, x₀ and x₁ must move and
+    x₃ and x₄ take it back in the frame, whose angle x₂ changes in every step.
+
+    Attributes:
+        light: the light mass.
+    """
+
+    light: float
+
+    def residual(self, t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        cosine, sine = np.cos(x[2]), np.sin(x[2])
+        frame = np.array([[cosine, -sine], [sine, cosine]])
+        across = np.array([[0.0, -1.0], [1.0, 0.0]])
+        arm = frame @ (np.array([1.0, 0.0]) + x[3:])
+        acceleration = a[:2] + a[2] * (across @ arm) - v[2] ** 2 * arm
+        acceleration = acceleration + 2 * v[2] * (across @ frame @ v[3:]) + frame @ a[3:]
+        pulling = self.light * a[:2] + acceleration
+        turning = a[2] + (across @ arm) @ acceleration
+        stretching = frame.T @ acceleration + x[3:]
+        return np.concatenate([pulling, [turning], stretching])
+
+    def jacobians(
+        self, t: float, x: FloatArray, v: FloatArray, a: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return complex_steps(self.residual, t, x, v, a)
+
+    @property
+    def equations(self) -> MotionEquations:
+        return MotionEquations(np.ones(5, dtype=bool), self.residual, self.jacobians)
+
+    def acceleration(self, t: float, x: FloatArray, v: FloatArray) -> FloatArray:
+        rest = np.zeros(5)
+        mass = self.jacobians(t, x, v, rest)[2]
+        return np.asarray(np.linalg.solve(mass, -self.residual(t, x, v, rest)))

@@ -11,6 +11,7 @@ from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_times
 from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.build import build
@@ -51,8 +52,9 @@ def check(
 
 
 def _print_times(scene: Scene) -> None:
-    with Console(stderr=True).status("Compiling the scene with and without each effect"):
-        whole, parts = effect_times(scene, find_compiler())
+    with progress_bar() as bar:
+        show_count = count_reporter(bar, "Building the scene without each effect")
+        whole, parts = effect_times(scene, find_compiler(), show_count)
     rods = [rod.name for rod in scene.rods]
     print_effects(Console(), rods, whole, parts)
 

@@ -1,0 +1,143 @@
+"""The folder of compiled libraries: what is compiled again, what is removed, and two processes at once."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from cosserat_casadi import build, discretise, export, load
+from cosserat_casadi.codegen import cache, compiled
+from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
+from cosserat_casadi.codegen.compiled import find_compiler
+from tests.scenes import push, scene
+
+needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
+needs_shell = pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for the compiler")
+
+
+@pytest.fixture
+def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setattr(compiled, "FLAGS", tuple("-O0" if flag == "-O2" else flag for flag in compiled.FLAGS))
+    given = scene(push(), strain="planar")
+    return export(build(given, discretise(given, 2, 3)), tmp_path / "strip")
+
+
+def counting_compiler(tmp_path: Path) -> tuple[str, Path]:
+    """A compiler that writes a line for each of its runs."""
+    runs = tmp_path / "runs"
+    path = tmp_path / "countcc"
+    path.write_text(f'#!/bin/sh\necho run >> "{runs}"\nexec gcc "$@"\n')
+    path.chmod(0o755)
+    return str(path), runs
+
+
+@needs_compiler
+@needs_shell
+def test_the_second_load_runs_no_compiler_at_all(strip: Path, tmp_path: Path) -> None:
+    compiler, runs = counting_compiler(tmp_path)
+    told: list[tuple[str, int, int]] = []
+    first = load(strip, compiler, progress=lambda *words: told.append(words))
+    # Two sources and the link.
+    assert runs.read_text().splitlines() == ["run"] * 3
+    assert told == [("Compiling strip", done, 2) for done in range(3)]
+    second = load(strip, compiler, progress=lambda *words: told.append(words))
+    assert second.library == first.library
+    assert first.library.parent == tmp_path / "kept"
+    assert len(runs.read_text().splitlines()) == len(told) == 3
+
+
+@needs_compiler
+@needs_shell
+def test_another_compiler_under_the_same_name_compiles_again(strip: Path, tmp_path: Path) -> None:
+    compiler, _ = counting_compiler(tmp_path)
+    first = load(strip, compiler).library
+    with Path(compiler).open("a") as stream:
+        stream.write("# newer\n")
+    assert load(strip, compiler).library != first
+
+
+def test_contents_are_told_from_each_other_and_from_their_order() -> None:
+    compiler = find_compiler()
+    hashes = {content_hash(compiler, ["-O2"], contents) for contents in ([b"ab", b"c"], [b"a", b"bc"], [b"c", b"ab"])}
+    assert len(hashes | {content_hash(compiler, ["-O3"], [b"ab", b"c"])}) == 4
+
+
+@needs_compiler
+def test_switched_off_nothing_is_left(strip: Path, tmp_path: Path) -> None:
+    code = (
+        "import sys; from cosserat_casadi import load; a = load(sys.argv[1]).library; "
+        "assert a.exists() and load(sys.argv[1]).library == a; print(a)"
+    )
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    environment = {**os.environ, "COSSERAT_CASADI_CACHE": "off", "TMPDIR": str(temporary), "HOME": str(tmp_path)}
+    command = [sys.executable, "-c", code, str(strip)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True)
+    assert Path(done.stdout.strip()).is_relative_to(temporary)
+    assert list(temporary.iterdir()) == []
+    assert not (tmp_path / "kept").exists()
+
+
+@needs_compiler
+def test_two_processes_at_once(strip: Path, tmp_path: Path) -> None:
+    code = "import sys; from cosserat_casadi import load; print(load(sys.argv[1]).solve().converged)"
+    command = [sys.executable, "-c", code, str(strip)]
+    processes = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+    assert [process.communicate(timeout=120)[0].strip() for process in processes] == ["True", "True"]
+    (library,) = (tmp_path / "kept").iterdir()
+    assert library.suffix == ".so"
+
+
+def test_the_least_recently_used_libraries_are_removed_beyond_the_limit(tmp_path: Path) -> None:
+    now = time.time()
+    ages = {"a": 5 * IN_USE, "b": 2 * IN_USE, "c": 3 * IN_USE, "d": IN_USE / 2}
+    for name, age in ages.items():
+        path = tmp_path / f"arm-{name * 20}.so"
+        path.write_bytes(b"x" * 100)
+        # Written long ago, used then.
+        os.utime(path, (now - age, now - 10 * ABANDONED))
+    mine = tmp_path / "mine.so"
+    mine.write_bytes(b"x" * 100)
+    os.utime(mine, (0, 0))
+    keep_within(tmp_path, 250)
+    kept = {f"arm-{name * 20}.so" for name in "bd"}
+    assert {path.name for path in tmp_path.iterdir()} == {*kept, "mine.so"}
+    # What may be in use stays, whatever the limit.
+    keep_within(tmp_path, 0)
+    assert {path.name for path in tmp_path.iterdir()} == {f"arm-{'d' * 20}.so", "mine.so"}
+
+
+def test_use_is_remembered(tmp_path: Path) -> None:
+    library = tmp_path / "a.so"
+    library.write_bytes(b"x")
+    os.utime(library, (0, 0))
+    cache.mark_used(library)
+    found = library.stat()
+    assert found.st_mtime == 0
+    assert time.time() - found.st_atime < 60
+
+
+def test_what_a_killed_compilation_left_is_removed(tmp_path: Path) -> None:
+    old, running = f"{SCRATCH}old", f"{SCRATCH}running"
+    for name, age in ((old, 2 * ABANDONED), (running, 60.0), ("mine", 2 * ABANDONED)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "object.o").write_bytes(b"x")
+        os.utime(tmp_path / name, (time.time() - age,) * 2)
+    keep_within(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {running, "mine"}
+
+
+def test_the_variable_names_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path))
+    assert cache_folder() == tmp_path
+    monkeypatch.delenv("COSSERAT_CASADI_CACHE")
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert cache_folder() == tmp_path / "xdg" / "cosserat_casadi"

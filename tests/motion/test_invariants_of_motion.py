@@ -1,0 +1,225 @@
+"""What every motion keeps, whatever moves: momentum, energy, the direction of time, the place of the observer."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, Motion, simulate
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.trajectory import MotionState
+from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
+from tests import moving_scenes
+from tests.motion import transients
+from tests.motion.stepping import moving_model, orders, stepped
+
+FREE = {"position": [0.1, 0.2, 0.3], "quaternion": [0.6, 0, 0.8, 0], "free": True}
+
+
+def undamped(strain: str = "kirchhoff", **changes: Any) -> dict[str, Any]:
+    """The rod of the moving scenes without damping."""
+    rod = moving_scenes.rod(strain=strain, **changes)
+    del rod["damping"]
+    return rod
+
+
+def simulated(scene: dict[str, Any], **simulation: Any) -> Motion:
+    asked = {"duration": 0.5, "tolerance": 1e-4, **simulation}
+    motion = simulate(moving_model({**scene, "simulation": asked}))
+    assert motion.converged, motion.message
+    return motion
+
+
+def step_ends(history: History) -> list[MotionState]:
+    """The motion at its start and at the ends of all steps."""
+    return [history.at(0.0), *(history.at(step.end.time) for _, step in history.steps)]
+
+
+def energies(model: Model, states: list[MotionState]) -> FloatArray:
+    """Kinetic, elastic and potential energy together, shape (T,), J."""
+    still = np.zeros(model.inputs.size)
+    totals = []
+    for state in states:
+        kinetic, elastic, of_loads, dead = model.energies(state.x, state.v, state.inputs, still)
+        potential = (dead[:, 0].T @ of_loads).full()
+        totals.append(float(kinetic) + float(elastic) + float(potential.sum()))
+    return np.array(totals)
+
+
+# Momentum of a free rod
+
+
+def spinning() -> tuple[Model, FloatArray, FloatArray]:
+    """A free Kirchhoff rod that is bent, moves and turns, with nothing that acts on it."""
+    model = moving_model(moving_scenes.scene(undamped(base=FREE), loads=[]), 2, 6)
+    draw = np.random.default_rng(1).standard_normal
+    strains = model.discrete.unknowns.strain("a")
+    x = np.zeros(model.size)
+    x[strains] = 0.1 * draw(strains.stop)
+    v = 0.5 * draw(model.size)
+    # The norm of the base's quaternion, the last four unknowns, stays: its rate is across it.
+    quaternion = np.array(FREE["quaternion"])
+    v[-4:] -= quaternion * (quaternion @ v[-4:])
+    return model, x, v
+
+
+@pytest.mark.parametrize(
+    ("method", "order"), [(radau(3), 5), (gauss(2), 4), (gauss(3), 6)], ids=["Radau-3", "Gauss-2", "Gauss-3"]
+)
+def test_momentum_of_a_free_rod_stays_to_the_order_of_the_steps(method: Collocation, order: int) -> None:
+    """Not to rounding: positions of the base are coordinates, and momentum is no quadratic function of them."""
+    model, x, v = spinning()
+    still = np.zeros(model.inputs.size)
+    errors = []
+    for size in (0.01, 0.005):
+        states = step_ends(stepped(model, method, size, 0.2, x, v))
+        momenta = []
+        for state in states:
+            linear, angular = model.momentum(state.x, state.v, state.inputs, still)
+            momenta.append(np.concatenate([linear.full()[:, 0], angular.full()[:, 0]]))
+        change = np.abs(np.array(momenta) - momenta[0]).max(axis=0)
+        total = energies(model, states)
+        errors.append([change[:3].max(), change[3:].max(), np.abs(total - total[0]).max()])
+    assert_allclose(orders(errors)[-1], order, rtol=0, atol=0.7)
+    assert max(errors[-1]) < 5e-6
+
+
+def test_free_fall_is_a_parabola_without_strain() -> None:
+    """Uniform gravity moves the rod as a whole, whatever its shape: exact for every step that is taken."""
+    rod = undamped("reissner", base=FREE, intrinsic={"curvature": [0.5, [-1.0, 0.4], 0.3], "tangent": [0, 0, 1]})
+    motion = simulated(moving_scenes.scene(rod, loads=[moving_scenes.WEIGHT]), start="unloaded")
+    fall = 0.5 * motion.times[:, None] ** 2 * np.array(moving_scenes.WEIGHT["acceleration"])
+    tip = motion.tip()
+    assert_allclose(tip.position, tip.position[0] + fall, rtol=0, atol=1e-12)
+    assert_allclose(tip.quaternion, np.tile(tip.quaternion[0], (len(fall), 1)), rtol=0, atol=1e-12)
+    assert_allclose(motion.energy.elastic, 0.0, rtol=0, atol=1e-20)
+    assert_allclose(motion.energy.imbalance, 0.0, rtol=0, atol=1e-12)
+
+
+# Energy
+
+
+def test_imbalance_of_energy_falls_with_the_tolerance() -> None:
+    """Loads of all kinds, damping, a base that moves and a tendon that is pulled: all enter the balance."""
+    scene = moving_scenes.FAMILIES["all driven"]()
+    del scene["inputs"]
+    wave = {"wave": "one_minus_cosine", "frequency": 2.0}
+    scene["motions"] = [
+        {"input": "a.base.position", "amplitude": [0.03, 0.02, -0.02], **wave},
+        {"input": "a.base.quaternion", "amplitude": [0.05, 0.1, -0.1, 0.05], **wave},
+        {"input": "a.length", "amplitude": 0.04, **wave},
+        {"input": "cable.tension", "amplitude": 0.5, **wave},
+        {"input": "push.force", "amplitude": [0.5, 0.2, -0.3], **wave},
+    ]
+    imbalances = []
+    for tolerance in (1e-3, 1e-4, 1e-5):
+        energy = simulated(scene, tolerance=tolerance).energy
+        assert energy.dissipated[-1] > 0.0
+        imbalances.append(np.abs(energy.imbalance).max())
+    for coarse, fine in pairwise(imbalances):
+        assert fine < coarse / 3
+    assert imbalances[-1] < 1e-5
+
+
+def test_times_that_leave_the_start_out_have_the_same_energies() -> None:
+    scene = transients.line_load(duration=0.5, tolerance=1e-3, times=[0.0, 0.2, 0.4])
+    scene["accuracy"] = {"modes": 4, "nodes": 10}
+    whole = simulate(moving_model(scene)).energy
+    scene["simulation"]["times"] = [0.2, 0.4]
+    part = simulate(moving_model(scene)).energy
+    for name in ("kinetic", "elastic", "potential", "dissipated", "work"):
+        assert_allclose(getattr(part, name), getattr(whole, name)[1:], rtol=1e-12, atol=1e-18)
+    assert np.abs(part.imbalance).max() < 1e-2
+
+
+def swinging() -> tuple[Model, FloatArray]:
+    """A soft cantilever on two modes, let go under its weight: it swings far, and nothing damps it."""
+    model = moving_model(transients.table({}, transients.gravity(5.0), accuracy={"modes": 2, "nodes": 6}))
+    return model, model.unloaded()
+
+
+def largest_change_of_energy(steps: int, parts: int) -> FloatArray:
+    """Largest change of energy in each of some equal parts of a motion by Gauss's method, over what is exchanged."""
+    model, x = swinging()
+    states = step_ends(stepped(model, gauss(3), 0.02, 0.02 * steps, x))
+    exchanged = 5.0
+    changes = np.abs(energies(model, states)[1:]) / exchanged
+    return np.asarray(changes.reshape(parts, -1).max(axis=1))
+
+
+def test_energy_is_bounded_by_gauss() -> None:
+    """It swings about its value and does not drift: late steps are as good as early ones."""
+    changes = largest_change_of_energy(2000, 4)
+    assert changes.max() < 1e-6
+    assert changes[-1] < 3 * changes[0]
+
+
+@pytest.mark.slow
+def test_energy_is_bounded_by_gauss_over_many_steps() -> None:
+    changes = largest_change_of_energy(100_000, 10)
+    assert changes.max() < 1e-6
+    assert changes[-1] < 3 * changes[0]
+
+
+# Time
+
+
+@pytest.mark.parametrize("method", [gauss(1), gauss(2), gauss(3)], ids=["Gauss-1", "Gauss-2", "Gauss-3"])
+def test_steps_of_gauss_run_backwards(method: Collocation) -> None:
+    """Velocities turned round, the rod goes the same way back: the method is symmetric. Radau IIA is not."""
+    assert distance_after_return(method) < 1e-10
+    assert distance_after_return(radau(3)) > 1e-7
+
+
+def distance_after_return(method: Collocation) -> float:
+    """How far from its start a rod is that goes there and back."""
+    model, x = swinging()
+    there = stepped(model, method, 0.02, 0.5, x).at(0.5)
+    back = stepped(model, method, 0.02, 0.5, there.x, -there.v).at(0.5)
+    return float(np.abs(back.x - x).max() + np.abs(back.v).max())
+
+
+# Observers
+
+
+def test_rod_on_a_base_in_uniform_motion_moves_as_on_one_at_rest() -> None:
+    scene = moving_scenes.scene(undamped(), loads=[moving_scenes.WEIGHT, moving_scenes.FOLLOW])
+    still = simulated(scene, start="unloaded")
+    speed = np.array([0.7, -0.4, 0.2])
+    drift = {"input": "a.base.position", "times": [0.0, 1.0], "values": [[0, 0, 0], speed.tolist()]}
+    carried = simulated({**scene, "motions": [drift]}, start="unloaded")
+    drifted = still.tip().position + still.times[:, None] * speed
+    assert_allclose(carried.tip().position, drifted, rtol=0, atol=1e-9)
+    assert_allclose(carried.tip().quaternion, still.tip().quaternion, rtol=0, atol=1e-9)
+
+
+def test_turned_scene_moves_as_the_scene_does() -> None:
+    """Base, weight and force turned by the same rotation: so is the path."""
+    turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    weight = np.array(moving_scenes.WEIGHT["acceleration"])
+    plain = simulated(moving_scenes.scene(undamped(), loads=[moving_scenes.WEIGHT]), start="unloaded")
+    turned_weight = {**moving_scenes.WEIGHT, "acceleration": (turn @ weight).tolist()}
+    # x to y, y to z, z to x: a third of a turn about the diagonal.
+    base = {"quaternion": [0.5, 0.5, 0.5, 0.5]}
+    turned = simulated(moving_scenes.scene(undamped(base=base), loads=[turned_weight]), start="unloaded")
+    assert_allclose(turned.tip().position, plain.tip().position @ turn.T, rtol=0, atol=1e-11)
+
+
+def test_two_rods_in_series_move_as_one() -> None:
+    """One carries the other at its tip; the joint is a constraint, and the modes of the halves are others."""
+    length = 0.8
+    loads = [moving_scenes.WEIGHT, {**moving_scenes.PUSH, "rod": "b"}]
+    whole = undamped(name="b", linear_density=0.8, length=length)
+    halves = [
+        undamped(name="a", linear_density=0.8, length=length / 2),
+        undamped(name="b", linear_density=0.8, length=length / 2, base={"rod": "a"}),
+    ]
+    one = simulated({**moving_scenes.scene(whole, loads=loads), "accuracy": {"modes": 8, "nodes": 20}})
+    two = simulated({**moving_scenes.scene(*halves, loads=loads), "accuracy": {"modes": 5, "nodes": 14}})
+    assert_allclose(two.tip("b").position, one.tip().position, rtol=0, atol=2e-4 * length)
+    assert_allclose(two.tip("a").position, one.section(None, [0.5]).position[:, 0], rtol=0, atol=2e-4 * length)

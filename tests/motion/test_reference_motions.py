@@ -1,0 +1,65 @@
+"""Motions of the reference cases: by chains of rigid slices, in other coordinates, integrated by other methods."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from cosserat_casadi import Motion, read_scene, simulate_scene
+from tests.conftest import case_files
+
+CASES = [path for path in case_files("dynamics") if not path.stem.startswith("modes_")]
+pytestmark = pytest.mark.skipif(not CASES, reason="the reference cases are not beside this checkout")
+
+SLOWER = {"flying"}
+"""Cases that take minutes at small tolerances: waves of all lengths run along a free rod that is kicked."""
+
+
+UNDERSTATED = {"release_damped": 2.0}
+"""Factors on uncertainties that are too small: a Galerkin method in the strains by scipy's Radau is as far off."""
+
+
+def reference(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(path.with_suffix(".json").read_text())
+    return found
+
+
+def simulated(path: Path, tolerance: float) -> Motion:
+    """The motion at the times of the reference."""
+    times = json.dumps(reference(path)["expected"]["times"])
+    return simulate_scene(read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}")))
+
+
+def check_path(path: Path, tolerance: float) -> None:
+    """The tip's path is within the tolerance, and the error is not larger than was estimated."""
+    case = reference(path)
+    motion = simulated(path, tolerance)
+    assert motion.converged, motion.message
+    length = motion.model.scene.rods[0].length
+    uncertainty = UNDERSTATED.get(path.stem, 1.0) * case["uncertainty"] / length
+    distances = np.linalg.norm(motion.tip().position - np.array(case["expected"]["tip"]), axis=1)
+    error = distances.max() / length
+    assert error <= max(tolerance, uncertainty)
+    assert error <= motion.error_estimate + uncertainty
+
+
+@pytest.mark.parametrize("path", [path for path in CASES if path.stem not in SLOWER], ids=lambda path: path.stem)
+def test_path_of_the_tip_vs_independent_program(path: Path) -> None:
+    check_path(path, 1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+@pytest.mark.parametrize("path", [path for path in CASES if path.stem not in SLOWER], ids=lambda path: path.stem)
+def test_path_of_the_tip_to_smaller_tolerances(path: Path, tolerance: float) -> None:
+    check_path(path, tolerance)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", [path for path in CASES if path.stem in SLOWER], ids=lambda path: path.stem)
+def test_path_of_a_rod_that_is_kicked(path: Path) -> None:
+    check_path(path, 1e-3)

@@ -1,0 +1,236 @@
+"""Simulations as a whole: their rows, their two front doors, and every way in which they refuse or end early."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import (
+    Motion,
+    MotionOutcome,
+    SceneError,
+    motion_result,
+    scene_from_dict,
+    simulate,
+    simulate_scene,
+    solve_scene,
+)
+from cosserat_casadi.motion.trajectory import MotionProgress
+from tests.motion import transients
+from tests.motion.stepping import moving_model
+from tests.motion.transients import at_tip, gravity, table
+
+IN_SPACE = {
+    "strain": "kirchhoff",
+    "stiffness": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.8},
+    "rotary_inertia": [1e-3, 1e-3, 2e-3],
+}
+PIN = {"rod": "rod", "kind": "pinned", "position": [0.8, 0.0, 0.1]}
+FEW = {"modes": 3, "nodes": 8}
+
+
+def asked(**simulation: Any) -> dict[str, Any]:
+    return {"duration": 0.4, "tolerance": 1e-3, **simulation}
+
+
+def falling(**changes: Any) -> dict[str, Any]:
+    """A straight cantilever that is let go."""
+    return table({}, gravity(10.0), **{"accuracy": FEW, "simulation": asked(start="unloaded"), **changes})
+
+
+def held(**changes: Any) -> dict[str, Any]:
+    """A rod whose tip is pinned."""
+    return table(IN_SPACE, gravity(1.0), **{"accuracy": FEW, "supports": [PIN], "simulation": asked(), **changes})
+
+
+def simulated(scene: dict[str, Any]) -> Motion:
+    return simulate(moving_model(scene))
+
+
+# Rows
+
+
+def test_rows_are_at_the_frames_or_the_times() -> None:
+    even = simulated(falling(simulation=asked(start="unloaded", frames=5)))
+    assert_allclose(even.times, [0.0, 0.1, 0.2, 0.3, 0.4], rtol=0, atol=1e-15)
+    given = simulated(falling(simulation=asked(start="unloaded", times=[0.1, 0.15, 0.4])))
+    assert_allclose(given.times, [0.1, 0.15, 0.4], rtol=0, atol=1e-15)
+    assert_allclose(given.tip().position[[0, 2]], even.tip().position[[1, 4]], rtol=0, atol=1e-14)
+    assert len(given.energy.kinetic) == len(given.x) == 3
+
+
+def test_dense_output_is_what_the_rows_hold() -> None:
+    motion = simulated(falling())
+    for row in (0, 17, 60, 100):
+        state = motion.at(float(motion.times[row]))
+        assert_allclose(state.x, motion.x[row], rtol=0, atol=0)
+        assert_allclose(state.v, motion.v[row], rtol=0, atol=0)
+        assert_allclose(state.a, motion.a[row], rtol=0, atol=0)
+
+
+def test_dense_output_is_smooth_and_satisfies_the_equations() -> None:
+    """Rates are derivatives of positions, and the equations hold at any time as nearly as the tolerance says."""
+    scene = transients.line_load(duration=1.0, tolerance=1e-6, times=[0.0, 1.0])
+    scene["accuracy"] = FEW
+    motion = simulated(scene)
+    step = 1e-5
+    for time in (0.21, 0.5, 0.83):
+        before, state, after = (motion.at(time + shift) for shift in (-step, 0.0, step))
+        assert_allclose((after.x - before.x) / (2 * step), state.v, rtol=0, atol=1e-6)
+        # The load's own rates do not enter: it is dead.
+        still = np.zeros(motion.model.inputs.size)
+        residual = motion.model.inverse_dynamics(state.x, state.v, state.a, state.inputs, still, still).full()
+        assert_allclose(residual, 0.0, rtol=0, atol=2e-3)
+
+
+def test_a_model_moves_as_its_scene_does() -> None:
+    """On fixed modes both front doors give one motion, to the tolerance of the steps."""
+    scene = falling()
+    of_model = simulated(scene)
+    of_scene = simulate_scene(scene_from_dict(scene))
+    assert of_scene.model.discretisation == of_model.model.discretisation
+    assert_allclose(of_scene.tip().position, of_model.tip().position, rtol=0, atol=1e-3)
+    # What is missing for want of modes is in the estimate of the scene alone.
+    assert of_scene.error_estimate > of_model.error_estimate
+
+
+def test_given_equilibrium_is_where_the_motion_starts() -> None:
+    """A bent rod is let go: the force is gone in motion, where it goes from its value to zero at once."""
+    scene = table({}, at_tip(force=[0, 0, 0.5]), accuracy=FEW, simulation=asked())
+    bent = solve_scene(scene_from_dict(scene))
+    motion = simulate(moving_model(scene), start=bent)
+    assert_allclose(motion.tip().position, np.tile(bent.tip().position, (101, 1)), rtol=0, atol=1e-9)
+    assert motion.energy.kinetic.max() < 1e-15
+
+
+# Refused
+
+
+def refused(scene: Callable[[], dict[str, Any]] | dict[str, Any]) -> str:
+    given = scene() if callable(scene) else scene
+    with pytest.raises(SceneError) as caught:
+        simulate_scene(scene_from_dict(given))
+    return str(caught.value)
+
+
+def test_scene_without_simulation_is_refused() -> None:
+    scene = falling()
+    del scene["simulation"]
+    assert refused(scene).startswith("simulation: missing")
+
+
+def test_rod_without_mass_is_refused_where_its_mass_would_stand() -> None:
+    scene = table({}, at_tip(), simulation=asked())
+    del scene["rods"][0]["linear_density"]
+    assert refused(scene).startswith("rods[0].linear_density: missing: 'rod' has no mass")
+    rod = scene["rods"][0]
+    del rod["stiffness"]
+    rod["material"] = {"youngs_modulus": 1e6, "poisson_ratio": 0.3}
+    rod["section"] = {"shape": "circle", "radius": 0.01}
+    assert refused(scene).startswith("rods[0].material.density: missing: 'rod' has no mass")
+
+
+def test_gauss_is_refused_for_supports() -> None:
+    assert "simulation.integrator: 'gauss' does not converge" in refused(held(simulation=asked(integrator="gauss")))
+
+
+def test_start_off_a_support_is_refused() -> None:
+    """Nothing is moved there in silence."""
+    message = refused(held(simulation=asked(start="unloaded")))
+    assert "simulation.start: supports or joints are open by 0.2 (over the length)" in message
+
+
+def test_base_that_starts_with_a_speed_is_refused_in_a_loop() -> None:
+    moved = {"input": "rod.base.position", "amplitude": [0.05, 0, 0], "frequency": 1.0}
+    assert "has a speed at t = 0" in refused(held(motions=[moved]))
+    # Without a support the rod goes along with its base.
+    assert simulated(table(IN_SPACE, gravity(1.0), accuracy=FEW, motions=[moved], simulation=asked())).converged
+
+
+# Ended early
+
+
+def test_scene_without_equilibrium_has_no_start() -> None:
+    """Three coordinates cannot meet six equations of a clamped tip."""
+    clamp = {**PIN, "kind": "clamped", "quaternion": [1, 0, 0, 0]}
+    motion = simulated(held(supports=[clamp], accuracy={"modes": 1, "nodes": 4}))
+    assert motion.outcome is MotionOutcome.NO_START
+    assert motion.message.startswith(MotionOutcome.NO_START.value)
+    assert motion.times.shape == (0,)
+    assert motion.tip().position.shape == (0, 3)
+    with pytest.raises(ValueError, match="not started"):
+        motion.at(0.0)
+
+
+def test_load_beyond_all_numbers_ends_the_motion() -> None:
+    """What was computed until then stands."""
+    blown = {"input": "push.force", "times": [0.0, 0.2, 0.4], "values": [[0, 0, 0], [0, 0, 1], [0, 0, 1e300]]}
+    motion = simulated(table({}, at_tip(), accuracy=FEW, motions=[blown], simulation=asked(start="unloaded")))
+    assert motion.outcome in (MotionOutcome.NOT_FINITE, MotionOutcome.STEP_TOO_SMALL)
+    assert_allclose(motion.times[-1], 0.2, rtol=0, atol=0.0041)
+    assert "Reached: t = 0.2 s" in motion.message
+    assert np.all(np.isfinite(motion.x))
+
+
+def test_motion_that_ends_before_its_first_row_has_none() -> None:
+    """It is a motion all the same: it can be asked for poses, and be written."""
+    blown = {"input": "push.force", "times": [0.0, 0.1], "values": [[0, 0, 0], [0, 0, 1e300]]}
+    scene = table({}, at_tip(), accuracy=FEW, motions=[blown], simulation=asked(start="unloaded", times=[0.3, 0.4]))
+    motion = simulated(scene)
+    assert not motion.converged
+    assert motion.x.shape == (0, motion.model.size)
+    assert motion.tip().position.shape == (0, 3)
+    assert motion_result(motion)["converged"] is False
+
+
+def test_few_modes_do_not_resolve_a_rod() -> None:
+    motion = simulate_scene(scene_from_dict(falling(accuracy={"modes": 1, "nodes": 3})))
+    assert motion.outcome is MotionOutcome.UNRESOLVED
+    assert motion.error_estimate > 0.1
+    assert f"{motion.error_estimate:.2g}" in motion.message
+    assert len(motion.times) == 101
+
+
+def test_step_that_is_too_long_is_not_solved() -> None:
+    simulation = asked(start="unloaded", duration=0.5, step=0.5)
+    motion = simulated(falling(accuracy={"modes": 6, "nodes": 12}, simulation=simulation))
+    assert motion.outcome in (MotionOutcome.NOT_SOLVED, MotionOutcome.NOT_FINITE)
+    assert len(motion.times) == 1
+
+
+def interrupt_after(time: float) -> Callable[[MotionProgress], None]:
+    """Stands for Ctrl-C at a time of the motion."""
+
+    def tell(progress: MotionProgress) -> None:
+        if progress.time > time:
+            raise KeyboardInterrupt
+
+    return tell
+
+
+def test_interrupted_motion_keeps_its_rows() -> None:
+    motion = simulate(moving_model(falling()), progress=interrupt_after(0.2))
+    assert motion.outcome is MotionOutcome.INTERRUPTED
+    assert 0.2 < motion.times[-1] < 0.4
+    assert_allclose(motion.tip().position, simulated(falling()).tip().position[: len(motion.times)], rtol=0, atol=5e-3)
+
+
+def test_interrupted_search_keeps_the_best_whole_motion() -> None:
+    """Whoever stops the choice of modes gets the last motion that was computed to its end, and its error."""
+    scene = {**falling(), "accuracy": {}}
+    stages: list[str] = []
+
+    def tell(progress: MotionProgress) -> None:
+        if progress.stage not in stages:
+            stages.append(progress.stage)
+        if len(stages) == 3:
+            raise KeyboardInterrupt
+
+    motion = simulate_scene(scene_from_dict(scene), progress=tell)
+    assert motion.outcome is MotionOutcome.INTERRUPTED
+    assert len(motion.times) == 101
+    assert "whole" in motion.message
