@@ -13,7 +13,7 @@ help:
 	@echo "make test       set up .venv, check style, types and imports, run the tests"
 	@echo "make test-slow  the long sweeps that 'make test' leaves out"
 	@echo "make fuzz       10^4 random scenes at the ends of what is legal; writes figures to docs/hard-cases.md (hours)"
-	@echo "make bench      race the exported C against shooting solvers and packages; writes tables and figure"
+	@echo "make bench      race the exported C and motions against shooting solvers and packages; writes tables and figures"
 	@echo "make dial       judge what tolerances pick on 200 random scenes, resumable; writes tables and figure"
 	@echo "make format     format the sources"
 	@echo "make generated  write the C folders in generated/ anew"
@@ -44,7 +44,10 @@ fuzz: $(STAMP)
 
 bench: $(STAMP)
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench-motion]'
 	$(BIN)/python benchmarks/race.py --write
+	$(BIN)/python benchmarks/motion_precision.py --write
+	$(BIN)/python benchmarks/motion_peers.py --write
 
 dial: $(STAMP)
 	$(BIN)/python benchmarks/compiled_cost.py

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from markdown import put, table
 from peers import LIMITS, Peer, peers, shortest, stout
 from race_figure import race_figure
 from rich.progress import Progress
@@ -144,11 +145,6 @@ HEADINGS = (
 FIRST_PAGE_HEADINGS = ("error / L", "unknowns", "this package, C", "plain shooting", "tuned shooting")
 
 
-def markdown(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [headings, ("---",) * len(headings), *rows]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
-
-
 def literal_line(case: Case) -> str:
     model = model_of(case, 1e-8)
     ours, theirs = measured(model, case).times, measured(literal(model), case, repeat=20).times
@@ -189,7 +185,7 @@ def peer_table(rows: Sequence[Peer]) -> str:
         known = math.isfinite(row.error)
         error, took = (f"{row.error:.0e}", duration(row.microseconds)) if known else ("–", "–")
         cells.append([row.package, row.setting, error, took])
-    return markdown(("package", "", "tip error / L", "time"), cells)
+    return table(("package", "", "tip error / L", "time"), cells)
 
 
 def duration(microseconds: float) -> str:
@@ -204,24 +200,18 @@ def duration(microseconds: float) -> str:
 # All of it
 
 
-def put(page: Path, begin: str, end: str, text: str) -> None:
-    """A text between its marks in a page."""
-    before, rest = page.read_text().split(begin)
-    page.write_text(f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}")
-
-
 def limits() -> str:
     return "\n".join(f"* {package}: {words}" for package, words in LIMITS.items())
 
 
 def first_page_text(rows: Sequence[Raced]) -> str:
-    return markdown(FIRST_PAGE_HEADINGS, [row.first_page_cells for row in rows if row.name == ON_FIRST_PAGE])
+    return table(FIRST_PAGE_HEADINGS, [row.first_page_cells for row in rows if row.name == ON_FIRST_PAGE])
 
 
 def accuracy_text(rows: Sequence[Raced]) -> str:
     return "\n\n".join(
         [
-            markdown(HEADINGS, [row.cells for row in rows]),
+            table(HEADINGS, [row.cells for row in rows]),
             literal_line(CASES["B1 Kirchhoff"]),
             f"![Error against time: exported C, shooting by hand, packages from PyPI]({FIGURE})",
         ]
@@ -243,7 +233,7 @@ def main(
         if STOUT in cases:
             known = (in_c([row for row in rows if row.name == STOUT]), in_python(cases[STOUT]), peers(cases[STOUT]))
             met = list(bar.track(chain(*known), total=21, description="peers"))
-    print(markdown(HEADINGS, [row.cells for row in rows]), peer_table(met), sep="\n\n")
+    print(table(HEADINGS, [row.cells for row in rows]), peer_table(met), sep="\n\n")
     if write and met:
         put(DOCS / "accuracy.md", PEERS_BEGIN, PEERS_END, f"{peer_table(met)}\n\n{limits()}")
     if write and not only:

@@ -179,12 +179,12 @@ class Trial:
         igm = self.model.igm[rod.name]
         arguments = (q, *base_pose(rod), inputs)
         times = {
-            "vm_igm_us": _best(lambda: igm(*arguments)),
-            "vm_jacobian_us": _best(lambda: self.model.jacobian(x, inputs)),
+            "vm_igm_us": best_time(lambda: igm(*arguments)),
+            "vm_jacobian_us": best_time(lambda: self.model.jacobian(x, inputs)),
             "vm_cold_us": nan,
         }
         if self.solution.converged:
-            times["vm_cold_us"] = _best(lambda: solve(self.solution.model))
+            times["vm_cold_us"] = best_time(lambda: solve(self.solution.model))
         return times
 
 
@@ -250,7 +250,7 @@ def _too_large(model: Model) -> str:
     return f"not compiled: about {operations:,.0f} operations"
 
 
-def _best(task: Callable[[], object]) -> float:
+def best_time(task: Callable[[], object]) -> float:
     """Best time of several runs, µs."""
     # The first run builds functions.
     task()

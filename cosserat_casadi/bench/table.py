@@ -10,9 +10,11 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.bench.measurement import Measurement
+from cosserat_casadi.bench.motion_times import MotionTimes
 from cosserat_casadi.bench.pareto import front
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.reference import Reference
+from cosserat_casadi.model.price import MotionPrice, Price
 
 NARROW = ("", "point", "unknowns", "pose error", "IGM, µs", "Jacobian, µs", "cold, µs")
 """Columns that are always shown."""
@@ -161,4 +163,31 @@ def print_effects(console: Console, rods: Sequence[str], whole: Times | str, par
             f"{whole.jacobian - without.jacobian:+.2f}",
             f"{whole.cold - without.cold:+.2f}",
         )
+    console.print(table)
+
+
+def print_motion_times(
+    console: Console, unknowns: int, statics: Price, motion: MotionPrice, times: MotionTimes
+) -> None:
+    """What inertia and damping add to a residual and to a Jacobian.
+
+    Args:
+        console: where to print.
+        unknowns: of the model in motion.
+        statics: operations of the model at rest.
+        motion: operations of the model in motion.
+        times: of both, µs.
+    """
+    table = Table(title=f"In motion, {unknowns} unknowns, in CasADi's virtual machine (not compiled)")
+    table.add_column("function")
+    for heading in ("operations", "µs", "over statics"):
+        table.add_column(heading, justify="right")
+    table.add_row("residual at rest", f"{statics.residual:,}", _digits(times.residual), "")
+    share = times.inverse_dynamics / times.residual
+    table.add_row("inverse dynamics", f"{motion.inverse_dynamics:,}", _digits(times.inverse_dynamics), f"{share:.1f} ×")
+    table.add_row("residual and Jacobian at rest", f"{statics.jacobian:,}", _digits(times.jacobian), "")
+    share = times.dynamics_jacobian / times.jacobian
+    table.add_row(
+        "inverse dynamics with K, C and M", f"{motion.jacobian:,}", _digits(times.dynamics_jacobian), f"{share:.1f} ×"
+    )
     console.print(table)

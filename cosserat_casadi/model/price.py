@@ -32,6 +32,27 @@ def price(model: Model) -> Price:
     )
 
 
+@dataclass(frozen=True)
+class MotionPrice:
+    """Scalar operations of the equations of motion, common terms shared.
+
+    Attributes:
+        inverse_dynamics: of the residual.
+        jacobian: of the residual with its derivatives with positions, velocities and accelerations.
+    """
+
+    inverse_dynamics: int
+    jacobian: int
+
+
+def price_of_motion(model: Model) -> MotionPrice:
+    """Operations of a model's equations of motion."""
+    return MotionPrice(
+        inverse_dynamics=model.operations(model.inverse_dynamics),
+        jacobian=model.operations(model.dynamics_jacobian),
+    )
+
+
 def price_of_load(scene: scenes.Scene, load: str) -> int:
     """Operations that a load or actuator adds to the residual: the scene with it less the scene without."""
     loaded = build(scene)

@@ -18,12 +18,15 @@ from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.figure import FIGURES
 from cosserat_casadi.bench.grid import Candidate
 from cosserat_casadi.bench.measurement import Measurement
+from cosserat_casadi.bench.motion_times import motion_times
 from cosserat_casadi.bench.plan import make_plan, run_plan
 from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
 from cosserat_casadi.bench.reference import NoReferenceError
-from cosserat_casadi.bench.table import print_effects
+from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.model.price import price, price_of_motion
+from tests.moving_scenes import model_of
 from tests.scenes import push, rod, scene
 
 
@@ -180,3 +183,21 @@ def test_the_rod_is_named_whose_igm_is_timed() -> None:
         headings.append(console.file.getvalue())
     assert "IGM, µs" in headings[0]
     assert "IGM of left alone, µs" in headings[1]
+
+
+def test_a_motion_is_priced_beside_statics() -> None:
+    """Inertia and damping cost something, and derivatives more; the table has the operations that the model counts."""
+    model = model_of("planar")
+    statics = price(model)
+    motion = price_of_motion(model)
+    assert statics.residual < motion.inverse_dynamics < motion.jacobian
+    assert statics.jacobian < motion.jacobian
+    times = motion_times(model)
+    assert 0.0 < times.residual < times.dynamics_jacobian
+    assert 0.0 < times.jacobian < times.dynamics_jacobian
+    console = Console(file=io.StringIO(), width=160)
+    print_motion_times(console, model.size, statics, motion, times)
+    printed = console.file.getvalue()
+    assert "not compiled" in printed
+    for count in (statics.residual, statics.jacobian, motion.inverse_dynamics, motion.jacobian):
+        assert f"{count:,}" in printed

@@ -8,12 +8,15 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.bench.effects import effect_times
-from cosserat_casadi.bench.table import print_effects
+from cosserat_casadi.bench.motion_times import motion_times
+from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.price import price, price_of_motion
+from cosserat_casadi.motion.simulate import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
@@ -22,7 +25,10 @@ from cosserat_casadi.scene.varying import VaryingValue, varying_values
 def check(
     scene: SceneFile,
     settings: Settings = None,
-    timed: Annotated[bool, typer.Option("--time", help="Price each effect in compiled microseconds too.")] = False,
+    timed: Annotated[
+        bool,
+        typer.Option("--time", help="Price each effect in compiled microseconds too; and a motion, not compiled."),
+    ] = False,
 ) -> None:
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     overrides = tuple(settings or ())
@@ -34,9 +40,15 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    print_check(Console(), build(checked_scene), varying)
+    at_rest = checked_scene
+    if checked_scene.simulation is not None:
+        # What a motion lets go is held where statics is priced.
+        at_rest = checked_scene.held()
+    print_check(Console(), build(at_rest), varying)
     if timed:
-        _print_times(checked_scene)
+        _print_times(at_rest)
+    if timed and checked_scene.simulation is not None:
+        _print_motion_times(checked_scene)
 
 
 def _print_times(scene: Scene) -> None:
@@ -45,3 +57,13 @@ def _print_times(scene: Scene) -> None:
         whole, parts = effect_times(scene, find_compiler(), show_count)
     rods = [rod.name for rod in scene.rods]
     print_effects(Console(), rods, whole, parts)
+
+
+def _print_motion_times(scene: Scene) -> None:
+    with Console(stderr=True).status("Counting and timing the equations of motion"):
+        model = build(scene.with_motion_inputs(), moving=True)
+        check_simulation(model, scene.simulation)
+        statics = price(model)
+        motion = price_of_motion(model)
+        times = motion_times(model)
+    print_motion_times(Console(), model.size, statics, motion, times)

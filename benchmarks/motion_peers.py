@@ -1,0 +1,155 @@
+"""A second of motion of a soft cantilever, let go from straight under its weight: this package beside others.
+
+Largest error of the tip over the length at eleven times, against digits of a chain of rigid slices, and processor time.
+All in one run; other work on the machine lengthens wall time, and processor time less. `--write` puts the table into
+docs/accuracy.md and draws docs/figures/motion_peers.png.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from markdown import put, table
+from motion_rivals import LENGTH, LIMITS, TIMES, Paths, Rival, Run, rivals, timed
+from rich.progress import Progress
+
+from cosserat_casadi import Scene, read_scene, simulate_scene
+from cosserat_casadi.motion.poses import tip_poses
+from cosserat_casadi.motion.simulate import Simulator, started
+from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.plots.figure import figure_class, write_figure
+
+REFERENCE = Path(__file__).parent / "reference"
+DOCS = Path(__file__).parents[1] / "docs"
+BEGIN, END = "<!-- rivals: written by benchmarks/motion_peers.py -->", "<!-- end of rivals -->"
+FIGURE = "figures/motion_peers.png"
+
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
+OURS = "cosserat, Python"
+ON_CHOSEN = "cosserat, one motion on the modes chosen"
+
+HEADINGS = ("package", "", "tip error / L", "processor, s", "with first call, s")
+ROWS_OF_OTHERS = 22
+
+
+def released(tolerance: float, strain: str = "reissner") -> Scene:
+    """The scene, with a tolerance of its motion and a strain model."""
+    settings = [f"simulation.tolerance={tolerance}", f'rods.0.strain="{strain}"', f"simulation.times={TIMES.tolist()}"]
+    return read_scene(REFERENCE / "release_planar.toml", settings)
+
+
+def ours() -> Iterator[Rival]:
+    """Ours at each tolerance: with all that chooses and estimates, and the last motion once more by itself."""
+    for tolerance in TOLERANCES:
+        words = f"tolerance {tolerance:.0e}"
+        begin = time.process_time()
+        motion = simulate_scene(released(tolerance))
+        took = time.process_time() - begin
+        if not motion.converged:
+            yield Rival(OURS, f"{words}: {motion.outcome.name.lower()}, estimate {motion.error_estimate:.0e}")
+            continue
+        sizes = f"{words}, estimate {motion.error_estimate:.0e}"
+        yield Rival(OURS, sizes, motion.tip("rod").position, took, took)
+        yield timed(ON_CHOSEN, f"{words}: {motion.model.size} unknowns", partial(again, motion, tolerance))
+
+
+def again(motion: Motion, tolerance: float) -> Run:
+    """The motion on the same modes, once, with steps of a tolerance: nothing is chosen, and no error estimated."""
+    simulation = motion.model.scene.simulation
+    assert simulation is not None
+    simulator = Simulator(motion.model, simulation, started(motion.model, simulation, None))
+
+    def run() -> Paths:
+        history = simulator.controlled(tolerance)
+        x, _, _, inputs = history.states(TIMES)
+        return np.asarray(tip_poses(motion.model, "rod", x, inputs).position)
+
+    return run
+
+
+def true_tips() -> Paths:
+    """The digits."""
+    case = json.loads((REFERENCE / "release_planar.json").read_text())
+    assert np.allclose(case["times"], TIMES)
+    return np.array(case["tip"])
+
+
+def error(tip: Paths | None, true: Paths) -> float:
+    """Largest distance of the tip from where it should be, over the length; nan where there is no tip."""
+    if tip is None:
+        return math.nan
+    return float(np.linalg.norm(tip - true, axis=1).max() / LENGTH)
+
+
+def cells(row: Rival, true: Paths) -> list[str]:
+    """A row of the table."""
+    if row.tip is None:
+        return [row.package, row.setting, "–", "–", "–"]
+    return [row.package, row.setting, f"{error(row.tip, true):.1e}", f"{row.seconds:.2g}", f"{row.first:.2g}"]
+
+
+def without_shear(rows: Sequence[Rival], true: Paths) -> str:
+    """What the equations of a cable without shear and extension leave out, and its errors against those equations."""
+    stiff = simulate_scene(released(1e-4, "kirchhoff")).tip("rod").position
+    own = [f"{error(row.tip, stiff):.1e}" for row in rows if row.package == "MuJoCo" and row.tip is not None]
+    return (
+        f"MuJoCo's equations: a rod that neither shears nor stretches is {error(stiff, true):.1e} of the length away, "
+        f"by our own motion to 1e-4. Against that one the errors of its cable are {', '.join(own)}."
+    )
+
+
+STYLES = {
+    OURS: ("#ee8866", "P"),
+    ON_CHOSEN: ("#cc3311", "*"),
+    "Exudyn": ("#4477aa", "o"),
+    "MuJoCo": ("#228833", "s"),
+    "PyElastica": ("#777777", "D"),
+    "soromox": ("#aa3377", "^"),
+}
+"""Colour and marker of every contestant."""
+
+
+def drawn(rows: Sequence[Rival], true: Paths) -> Any:
+    """Error against processor time."""
+    figure = figure_class()(figsize=(7.2, 4.8), layout="constrained")
+    axes = figure.subplots()
+    for package, (colour, marker) in STYLES.items():
+        points = [(row.seconds, error(row.tip, true)) for row in rows if row.package == package and row.tip is not None]
+        if not points:
+            continue
+        times, errors = zip(*sorted(points), strict=True)
+        axes.loglog(times, errors, marker=marker, markersize=6, color=colour, linewidth=1.2, label=package)
+    axes.set_xlabel("processor time for a second of motion, s")
+    axes.set_ylabel("tip error / length")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=7.5)
+    return figure
+
+
+def main(write: Annotated[bool, typer.Option("--write", help="Put table and figure into docs.")] = False) -> None:
+    """Print the table."""
+    true = true_tips()
+    with Progress(transient=True) as bar:
+        contestants = chain(ours(), rivals())
+        rows = list(bar.track(contestants, total=2 * len(TOLERANCES) + ROWS_OF_OTHERS, description="moving"))
+    limits = [f"{package}: {words}" for package, words in LIMITS.items()]
+    remarks = "\n".join(f"* {words}" for words in [*limits, without_shear(rows, true)])
+    text = f"{table(HEADINGS, [cells(row, true) for row in rows])}\n\n{remarks}"
+    print(text)
+    if write:
+        picture = f"![Error of the tip against processor time]({FIGURE})"
+        put(DOCS / "accuracy.md", BEGIN, END, f"{text}\n\n{picture}")
+        write_figure(drawn(rows, true), DOCS / FIGURE, dpi=110)
+
+
+if __name__ == "__main__":
+    typer.run(main)

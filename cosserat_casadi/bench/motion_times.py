@@ -1,0 +1,42 @@
+"""What inertia and damping cost in time, in CasADi's virtual machine: equations of motion beside those of statics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.bench.measurement import best_time
+from cosserat_casadi.model.build import Model
+
+
+@dataclass(frozen=True)
+class MotionTimes:
+    """Best times of a call in CasADi's virtual machine, µs.
+
+    Attributes:
+        residual: of statics.
+        jacobian: of statics, with the residual.
+        inverse_dynamics: residual of the equations of motion.
+        dynamics_jacobian: that with its derivatives with positions, velocities and accelerations.
+    """
+
+    residual: float
+    jacobian: float
+    inverse_dynamics: float
+    dynamics_jacobian: float
+
+
+def motion_times(model: Model) -> MotionTimes:
+    """Times of a model built for a motion, at rest in the unloaded shape: they are the same everywhere."""
+    x = model.unloaded()
+    inputs = model.pack()
+    still = np.zeros(model.size)
+    held = np.zeros(model.inputs.size)
+    in_motion = (x, still, still, inputs, held, held)
+    return MotionTimes(
+        residual=best_time(lambda: model.residual(x, inputs)),
+        jacobian=best_time(lambda: model.jacobian(x, inputs)),
+        inverse_dynamics=best_time(lambda: model.inverse_dynamics(*in_motion)),
+        dynamics_jacobian=best_time(lambda: model.dynamics_jacobian(*in_motion)),
+    )
