@@ -21,7 +21,6 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
-    OUTCOMES,
     TELL,
     Simulator,
     TimedHistory,
@@ -29,6 +28,7 @@ from cosserat_casadi.motion.simulate import (
     message_of,
     motion_of,
     not_started,
+    outcome_of,
     started,
     tolerance_of,
     unresolved,
@@ -349,7 +349,7 @@ def _judged(search: _Search, level: _Level, error: float) -> Motion:
 
 
 def _ended_early(simulator: Simulator, history: History) -> Motion:
-    outcome = OUTCOMES[history.outcome]
+    outcome = outcome_of(history)
     return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
 
 

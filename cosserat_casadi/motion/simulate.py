@@ -15,6 +15,8 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import load_values
+from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -67,6 +69,18 @@ MOST_HALVINGS = 10
 
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
+
+NEARLY_TAUT = 1e-3
+"""Length, over the rod's, that a cable may lack or have over where it counts as about to become taut."""
+
+OUT_OF_BALANCE = 1e-6
+"""Residual of statics, without unit, at which a start is no equilibrium."""
+
+AT_ONCE = (
+    "The motion starts out of balance: loads act at once from t = 0 on. Waves of all lengths run along the rods, which "
+    "modes resolve slowly."
+)
+"""What is said of such a start."""
 
 NEWTON = 1e-3
 """Error of Newton's method over the tolerance of a step."""
@@ -264,7 +278,7 @@ def simulate(
     simulator = Simulator(model, asked, began, tell=progress)
     tolerance = tolerance_of(model, asked)
     timed = simulator.to_tolerance(tolerance, first=tolerance)
-    outcome = OUTCOMES[timed.history.outcome]
+    outcome = outcome_of(timed.history)
     if outcome is MotionOutcome.COMPLETED and unresolved(timed.history, asked.duration):
         outcome = MotionOutcome.UNRESOLVED
     return motion_of(simulator, timed.history, outcome, timed.error, message_of(timed.history, outcome))
@@ -350,11 +364,38 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
+def outcome_of(history: History) -> MotionOutcome:
+    """How a motion ended; steps that became too small where a slack cable had just become taut have that reason."""
+    outcome = OUTCOMES[history.outcome]
+    if outcome in (MotionOutcome.STEP_TOO_SMALL, MotionOutcome.NOT_SOLVED) and snapping_cables(history):
+        return MotionOutcome.SNAPPED
+    return outcome
+
+
+def snapping_cables(history: History) -> list[str]:
+    """Names of the cables that may go slack and are next to taut where a motion ends."""
+    model = history.model
+    end = history.at(history.end.time)
+    values = load_values(model.scene, model.inputs, end.inputs)
+    names = []
+    for cable in model.discrete.cables:
+        tendon = cable.tendon
+        if not EFFECTS[tendon.kind].may_go_slack(tendon):
+            continue
+        _, length, _ = model.actuator[tendon.name](end.x, end.inputs)
+        slack = values[tendon.name]["length"].item() - float(length)
+        if abs(slack) <= NEARLY_TAUT * model.discrete.rods[tendon.rod].properties.length:
+            names.append(tendon.name)
+    return names
+
+
 def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
         return str(outcome.value)
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
+    if outcome is MotionOutcome.SNAPPED:
+        return f"{outcome.value} Reached: {reached}; the cable is {', '.join(snapping_cables(history))}."
     return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
 
 
@@ -402,10 +443,19 @@ def _stacked(rows: list[FloatArray], size: int) -> FloatArray:
 def warnings(simulator: Simulator) -> list[str]:
     """Sentences on what limits the accuracy of a motion: loads that come suddenly."""
     jumps = simulator.moving.jumps(simulator.simulation.duration)
-    return [
+    at_start = [AT_ONCE] if _loaded_at_once(simulator) else []
+    return at_start + [
         f"{jump.input} jumps at {jump.time:g} s: waves of all lengths run along the rods, which modes resolve slowly."
         for jump in jumps
     ]
+
+
+def _loaded_at_once(simulator: Simulator) -> bool:
+    """Whether the start is out of balance: loads that were not there act from t = 0 on."""
+    model = simulator.model
+    inputs = simulator.moving.at(0.0).value
+    residual = model.residual(simulator.start.x, inputs).full()[:, 0]
+    return bool(np.abs(residual).max(initial=0.0) > OUT_OF_BALANCE)
 
 
 def not_started(model: Model, start: Start) -> Motion:

@@ -42,6 +42,10 @@ class MotionOutcome(Enum):
     INTERRUPTED = "The motion ended early: it was interrupted."
     NO_START = "No motion was computed: no state to start from was found."
     NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
+    SNAPPED = (
+        "The motion ended early: a slack cable snapped taut. That is an impact, which is not computed: damp the rod, "
+        "or move more slowly."
+    )
 
     @property
     def label(self) -> str:

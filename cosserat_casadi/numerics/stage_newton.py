@@ -96,6 +96,7 @@ def solve_stages(
     allowed = max(bounds.error, rounding)
     unknowns = guess
     length_before = np.inf
+    longest = np.inf
     contraction = 0.0
     for iteration in range(1, bounds.iterations + 1):
         stages = stages_of(method, equations.differential, start, matrices.step, unknowns)
@@ -109,26 +110,29 @@ def solve_stages(
         unknowns = unknowns + to_unknowns * corrections
         if iteration > 1:
             contraction = length / length_before
-        outcome = _outcome(length, contraction, allowed)
+        outcome = _outcome(length, longest, contraction, allowed)
         if outcome is not None:
             return StageSolution(unknowns, outcome, iteration, contraction, largest)
         updates.take(corrections)
         length_before = length
+        longest = length if iteration == 1 else max(longest, length)
     return StageSolution(unknowns, StageOutcome.DIVERGED, bounds.iterations, contraction, largest)
 
 
-def _outcome(length: float, contraction: float, allowed: float) -> StageOutcome | None:
+def _outcome(length: float, longest: float, contraction: float, allowed: float) -> StageOutcome | None:
     """How the iteration ends with a correction; None where another one is due.
 
     Args:
         length: of the correction, weighted.
+        longest: of the corrections before, weighted; infinite for the first.
         contraction: ratio to the one before; 0 for the first.
         allowed: weighted error that may be left.
     """
     # Where corrections shrink, what is left after this one is shorter than it; where they do not, it is rounding.
     if length <= allowed:
         return StageOutcome.CONVERGED
-    if contraction >= DIVERGING:
+    # Beside the longest one: after a very short correction one of the usual length is no sign of anything.
+    if length >= DIVERGING * longest:
         return StageOutcome.DIVERGED
     # Corrections may grow for once while the updates learn a direction; then, and at first, nothing is foretold.
     if contraction == 0.0 or contraction >= 1.0:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Motion, build, simulate, solve
+from cosserat_casadi import Motion, MotionOutcome, build, simulate, solve
 from tests import moving_scenes
 from tests.motion.stepping import moving_model
 
@@ -130,11 +130,15 @@ def test_cable_goes_slack_in_motion() -> None:
     assert motion.actuator("cable").effort[-1] < 1e-6
 
 
-@pytest.mark.xfail(reason="a cable that snaps taut is an impact, which hardly ever has a step that is short enough")
 @pytest.mark.parametrize(
     ("strain", "amplitude", "frequency"), [("kirchhoff", 3.0, 1.0), ("reissner", 0.5, 0.3)], ids=["stiff", "slow"]
 )
-def test_cable_goes_slack_and_taut_in_motion(strain: str, amplitude: float, frequency: float) -> None:
+def test_cable_that_snaps_taut_is_told(strain: str, amplitude: float, frequency: float) -> None:
+    """An impact, which hardly ever has a step that is short enough: either it is overcome, or named."""
     motion = simulated(pushed_cable(strain, 0.02, amplitude, frequency), 1 / frequency, tolerance=1e-3)
-    check_complementarity(motion)
-    assert motion.actuator("cable").effort.max() > 0.1
+    if motion.converged:
+        check_complementarity(motion)
+        assert motion.actuator("cable").effort.max() > 0.1
+        return
+    assert motion.outcome is MotionOutcome.SNAPPED
+    assert "the cable is cable" in motion.message
