@@ -104,17 +104,6 @@ def test_check_prices_the_scene(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
-def test_check_prices_what_only_a_motion_lets_go(wire: Path) -> None:
-    """A rod whose base is free has no equilibrium; with a simulation it is held for the figures of statics."""
-    free = SCENE.replace("[[loads]]", "base = { position = [0, 0, 0], free = true }\n[[loads]]")
-    (wire / "wire.toml").write_text(free)
-    assert cosserat("check", "wire.toml", cwd=wire).returncode == 2
-    (wire / "wire.toml").write_text(free + "[simulation]\nduration = 0.1\n")
-    done = cosserat("check", "wire.toml", cwd=wire)
-    assert done.returncode == 0
-    assert "residual and Jacobian" in " ".join(done.stdout.split())
-
-
 def test_check_says_how_lists_were_read(wire: Path) -> None:
     """The offset widens where the user may have meant that it converges: the note shows it."""
     cable = '[[actuators]]\nname = "cable"\nkind = "tendon"\nrod = "wire"\ntension = 1.0\noffset = [[8e-3, 4e-3], 0]\n'

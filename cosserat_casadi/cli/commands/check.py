@@ -40,13 +40,9 @@ def check(
     # A pipe cannot be read again.
     if scene.is_file():
         varying = varying_values(checked_scene, written_tables(scene, overrides))
-    at_rest = checked_scene
-    if checked_scene.simulation is not None:
-        # What a motion lets go is held where statics is priced.
-        at_rest = checked_scene.held()
-    print_check(Console(), build(at_rest), varying)
+    print_check(Console(), build(checked_scene), varying)
     if timed:
-        _print_times(at_rest)
+        _print_times(checked_scene)
     if timed and checked_scene.simulation is not None:
         _print_motion_times(checked_scene)
 
