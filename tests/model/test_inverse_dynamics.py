@@ -83,22 +83,23 @@ def test_what_moves_costs_statics_not_one_instruction() -> None:
 
 
 def norm_rows(model: Model, state: State) -> np.ndarray:
-    """τ² Q (Q·Q̈ + Q̇·Q̇) of the frames, τ² = m ℓ²/unit: not of mechanics."""
+    """τ² Q (Q·Q̈ + Q̇·Q̇) of the frames, τ² = (m ℓ² + tr J)/unit: not of mechanics."""
     rows = np.zeros(model.size)
     for name, frame in model.discrete.frames.items():
         entries = model.discrete.deviation(name)
         Q = frame.start.quaternion + state.x[entries][3:]
         rate, second = state.v[entries][3:], state.a[entries][3:]
-        time = mass_of(model, name) * frame.length**2 / frame.unit
+        time = turning_mass(model, name, frame.length) / frame.unit
         rows[entries][3:] = time * Q * (Q @ second + rate @ rate)
     return rows
 
 
-def mass_of(model: Model, name: FrameName) -> float:
+def turning_mass(model: Model, name: FrameName, length: float) -> float:
     if name.kind == "body":
-        return next(body.mass for body in model.scene.bodies if body.name == name.name)
+        body = next(body for body in model.scene.bodies if body.name == name.name)
+        return body.mass * length**2 + float(np.trace(body.inertia_matrix))
     record = next(record for record in model.scene.rods if record.name == name.name)
-    return float(record.length * np.mean(record.linear_density))
+    return float(record.length * np.mean(record.linear_density)) * length**2
 
 
 @cache
@@ -159,7 +160,7 @@ def test_mass_is_the_hessian_of_the_kinetic_energy(family: str) -> None:
     for name, frame in model.discrete.frames.items():
         entries = model.discrete.deviation(name)
         Q = frame.start.quaternion + state.x[entries][3:]
-        spread = mass_of(model, name) * frame.length**2 * np.outer(Q, Q)
+        spread = turning_mass(model, name, frame.length) * np.outer(Q, Q)
         hessian[entries, entries][3:, 3:] += spread
     size = np.abs(hessian).max()
     assert_allclose(mass, hessian, rtol=0, atol=1e-13 * size)

@@ -35,7 +35,18 @@ def cluster(quick_compiler: None) -> Iterator[Any]:
         with distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as running:
+            connect_once(running)
             yield running
+
+
+def connect_once(running: Any) -> None:
+    """Have dask start its first thread for a client: it gives that ten seconds, which a busy machine may take."""
+    for _ in range(3):
+        try:
+            distributed.Client(running.scheduler_address, set_as_default=False).close()
+        except AssertionError:
+            continue
+        return
 
 
 @pytest.mark.slow
