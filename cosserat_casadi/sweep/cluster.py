@@ -18,6 +18,9 @@ from cosserat_casadi.sweep.work import Answer, Chunk, Part, solve_parts
 AHEAD = 256
 """Chunks that the scheduler has at once: enough for many workers, few enough for its memory."""
 
+TRIES = 3
+"""Times that a client is made, where dask's own thread does not begin in time."""
+
 PATIENCE = 15
 """Seconds in which a scheduler has to answer."""
 
@@ -76,12 +79,22 @@ def _client(address: str) -> Any:
         message = "--scheduler needs dask.distributed: install it with  pip install 'cosserat-casadi[sweep]'"
         raise ClusterError(message) from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = _connected(Client, address)
     except (OSError, ValueError) as error:
         remedy = "start one with dask scheduler, and workers with dask worker"
         raise SceneError(Problem("--scheduler", f"no scheduler answers at {address}: {error}", remedy)) from None
     _check_workers(client)
     return client
+
+
+def _connected(make_client: Any, address: str) -> Any:
+    """A client of a scheduler; dask gives its own thread ten seconds to begin, which a busy machine may take."""
+    for _ in range(TRIES):
+        try:
+            return make_client(address, timeout=PATIENCE, set_as_default=False)
+        except AssertionError:
+            continue
+    raise ClusterError("dask's own thread did not begin to run: this machine is too busy")
 
 
 def _check_workers(client: Any) -> None:

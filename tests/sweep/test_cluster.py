@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import warnings
@@ -14,7 +15,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from cosserat_casadi import SceneError, sweep_scene
-from cosserat_casadi.sweep.cluster import ClusterError
+from cosserat_casadi.sweep.cluster import ClusterError, _connected
 from cosserat_casadi.sweep.store import Store
 from tests.sweep.conftest import PLANAR
 
@@ -32,21 +33,14 @@ pytestmark = [
 def cluster(quick_compiler: None) -> Iterator[Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        # What thousands of tests have left behind takes the collector seconds, in which no thread of dask begins.
+        gc.collect()
+        gc.freeze()
         with distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as running:
-            connect_once(running)
             yield running
-
-
-def connect_once(running: Any) -> None:
-    """Have dask start its first thread for a client: it gives that ten seconds, which a busy machine may take."""
-    for _ in range(3):
-        try:
-            distributed.Client(running.scheduler_address, set_as_default=False).close()
-        except AssertionError:
-            continue
-        return
+        gc.unfreeze()
 
 
 @pytest.mark.slow
@@ -105,6 +99,27 @@ def test_other_versions_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("cosserat_casadi.sweep.cluster.version", lambda name: "0.0.1")
     with pytest.raises(ClusterError, match=r"differ from 0\.0\.1 here"):
         sweep_scene(PLANAR, {"push.force.x": [0.1]}, scheduler=cluster.scheduler_address)
+
+
+def test_a_thread_of_dask_that_begins_late() -> None:
+    """It gives its own thread ten seconds; after three tries the machine is called too busy."""
+    made: list[str] = []
+
+    def late(address: str, **options: Any) -> str:
+        made.append(address)
+        assert len(made) > 2
+        return "client"
+
+    assert _connected(late, "tcp://here") == "client"
+    made.clear()
+
+    def never(address: str, **options: Any) -> str:
+        made.append(address)
+        raise AssertionError
+
+    with pytest.raises(ClusterError, match="too busy"):
+        _connected(never, "tcp://here")
+    assert len(made) == 3
 
 
 def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
