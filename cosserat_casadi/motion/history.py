@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
@@ -20,6 +21,9 @@ from cosserat_casadi.numerics.consistent_start import ConsistentStart, consisten
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
 from cosserat_casadi.numerics.time_steps import AfterStep, Integration, StepOutcome, StepSettings, integrate
+
+CONSISTENT = 1e-8
+"""Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
 
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
@@ -161,6 +165,9 @@ def integrated(
         method: the collocation method.
         settings: how to step.
         after_step: told of every step.
+
+    Raises:
+        SceneError: the start contradicts the constraints.
     """
     legs: list[Leg] = []
     for piece in pieces:
@@ -168,6 +175,8 @@ def integrated(
         interval = DIFFERENTIATED * (piece.end - piece.start)
         # Accelerations and multipliers jump where an input or its rates do.
         start = consistent_start(equations, piece.start, x, v, interval)
+        if not legs:
+            _check_start(start, pieces[-1].end)
         integration = integrate(equations, start.instant, piece.end, method, settings, after_step)
         legs.append(Leg(piece, start, integration))
         if integration.outcome is not StepOutcome.COMPLETED:
@@ -177,6 +186,24 @@ def integrated(
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         settings = replace(settings, first=min(integration.next_size, piece_length(pieces, len(legs))))
     return History(model, tuple(legs))
+
+
+def _check_start(start: ConsistentStart, duration: float) -> None:
+    """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
+
+    Raises:
+        SceneError: supports or joints are not closed, or would be torn open at once.
+    """
+    problems = []
+    if start.position_error > CONSISTENT:
+        what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
+        problems.append(Problem("simulation.start", what, "start from an equilibrium"))
+    if start.velocity_error * duration > CONSISTENT:
+        what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
+        remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
+        problems.append(Problem("motions", what, remedy))
+    if problems:
+        raise SceneError(*problems)
 
 
 def piece_length(pieces: Sequence[Piece], number: int) -> float:

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong
-from cosserat_casadi.accuracy.refine import TIGHT, solve_scene
+from cosserat_casadi.accuracy.refine import FINER_MODES, TIGHT, solve_scene
 from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.solution import Solution
@@ -43,9 +43,6 @@ LEVEL_FACTOR = 1.3
 
 MOST_MODES = 48
 """Polynomials per strain from which on no finer level is tried."""
-
-FINER_MODES = 4
-"""Polynomials that are added to those of the user to estimate errors."""
 
 SPARE_NODES = 4
 """Intervals beyond those that the polynomials and the turn of a rod need: mass is an integral of squares."""

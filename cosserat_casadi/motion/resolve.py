@@ -13,25 +13,24 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.accuracy.levels import SPARE_NODES, seeing_modes
+from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
-from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
-    TELL,
     Simulator,
+    Tell,
     TimedHistory,
     check_simulation,
-    message_of,
+    ended_early,
+    judged,
     motion_of,
     not_started,
-    outcome_of,
     started,
     tolerance_of,
-    unresolved,
 )
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.time_steps import StepOutcome
@@ -65,12 +64,6 @@ FELT = 0.02
 
 LAST = 3
 """One of so many coefficients counts as one of the last."""
-
-LARGEST_ERROR = 0.1
-"""Error, over the length, above which modes or a step that the user fixed are reported as not resolving the rod."""
-
-FINER_MODES = 4
-"""Modes that are added to those of the user to estimate their error."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +101,7 @@ class _Search:
     scene: Scene
     simulation: Simulation
     start: Solution | None
-    tell: TELL | None
+    tell: Tell | None
     tolerance: float
     levels: list[_Level] = field(default_factory=list)
     distances: list[float] = field(default_factory=list)
@@ -146,18 +139,20 @@ class _Search:
             last: the highest rung.
         """
         rung = self.rungs[-1]
+        if rung == last:
+            return None
         if len(self.distances) < 2:
-            return rung + 1 if rung < last else None
+            return rung + 1
         wanted = SPACE_SHARE * self.tolerance
         if self.space_error * self.ratio ** (last - rung) > self.tolerance:
             return None
         needed = np.log(wanted / self.space_error) / np.log(self.ratio)
         # Not further than is foreseen well, and never to stay.
         above = int(np.clip(np.floor(needed), 1, MOST_RUNGS))
-        return min(rung + above, last) if rung < last else None
+        return min(rung + above, last)
 
 
-def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: TELL | None = None) -> Motion:
+def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: Tell | None = None) -> Motion:
     """Motion of a scene to its tolerance, on modes, nodes and steps that are chosen for it.
 
     Where the scene fixes modes or nodes they are used as they are, and their error is estimated; where it fixes the
@@ -197,7 +192,7 @@ def _with_fixed(search: _Search) -> Motion:
         return not_started(model, simulator.start)
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
     if not timed.history.completed:
-        return _ended_early(simulator, timed.history)
+        return ended_early(simulator, timed.history)
     level = _Level(simulator, timed.history, simulator.paths(timed.history))
     search.levels.append(level)
 
@@ -234,7 +229,7 @@ def _with_tolerance(search: _Search) -> Motion:
         if history.outcome is StepOutcome.INTERRUPTED and search.levels:
             raise KeyboardInterrupt
         if not history.completed:
-            return _ended_early(simulator, history)
+            return ended_early(simulator, history)
         level = _Level(simulator, history, simulator.paths(history))
         if search.levels:
             search.distances.append(path_distance(search.last.paths, level.paths))
@@ -246,6 +241,8 @@ def _with_tolerance(search: _Search) -> Motion:
     timed = _timed(search)
     if timed.history.outcome is StepOutcome.INTERRUPTED:
         raise KeyboardInterrupt
+    if not timed.history.completed:
+        return ended_early(search.last.simulator, timed.history)
     finest = replace(search.last, history=timed.history)
     return _judged(search, finest, search.space_error + timed.error)
 
@@ -320,7 +317,7 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
     model = level.simulator.model
     times = watched_times(level.history, duration)
     x, _ = level.history.rough_positions(times)
-    moved = np.abs(x).max(axis=0) * displacements(model)
+    moved = np.abs(x).max(axis=0) * level.simulator.displacements
     felt = {}
     for name, rod in model.discrete.rods.items():
         of_rod = moved[model.discrete.unknowns.strain(name)]
@@ -333,24 +330,11 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
 
 
 def _judged(search: _Search, level: _Level, error: float) -> Motion:
-    """The motion of a level that was computed to its end, with its error."""
-    outcome = MotionOutcome.COMPLETED
-    message = message_of(level.history, outcome)
+    """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
     bound = search.tolerance
     if search.scene.accuracy.fixed or search.simulation.step is not None:
-        bound = LARGEST_ERROR
-    if unresolved(level.history, search.simulation.duration):
-        outcome = MotionOutcome.UNRESOLVED
-        message = message_of(level.history, outcome)
-    elif not error <= bound:
-        outcome = MotionOutcome.UNRESOLVED
-        message = f"{outcome.value} The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."
-    return motion_of(level.simulator, level.history, outcome, error, message)
-
-
-def _ended_early(simulator: Simulator, history: History) -> Motion:
-    outcome = outcome_of(history)
-    return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
+        bound = LARGEST_SHAPE_ERROR
+    return judged(level.simulator, level.history, error, bound)
 
 
 def _interrupted(search: _Search) -> Motion:

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -37,7 +39,7 @@ from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.simulation import Simulation
 
-TELL = Callable[[MotionProgress], None]
+Tell = Callable[[MotionProgress], None]
 """What is told of every step."""
 
 STAGES = 3
@@ -88,9 +90,6 @@ NEWTON = 1e-3
 CLOSED = 1e-10
 """Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
 
-CONSISTENT = 1e-8
-"""Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
-
 OUTCOMES = {
     StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
     StepOutcome.STEP_TOO_SMALL: MotionOutcome.STEP_TOO_SMALL,
@@ -134,12 +133,17 @@ class Simulator:
     simulation: Simulation
     start: Start
     stage: str = "simulating"
-    tell: TELL | None = None
+    tell: Tell | None = None
 
-    @property
+    @cached_property
     def moving(self) -> MovingInputs:
         """The inputs over time."""
         return moving_inputs(self.model)
+
+    @cached_property
+    def displacements(self) -> FloatArray:
+        """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
+        return displacements(self.model)
 
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
@@ -147,7 +151,7 @@ class Simulator:
         if not np.all(self.model.discrete.unknowns.differential):
             # What Newton's method leaves is what supports and joints are open by.
             newton = min(newton, CLOSED / tolerance)
-        settings = StepSettings(tolerance=tolerance / displacements(self.model), newton=newton)
+        settings = StepSettings(tolerance=tolerance / self.displacements, newton=newton)
         return self._integrated(radau(STAGES), settings)
 
     def stepped(self, size: float) -> History:
@@ -155,7 +159,7 @@ class Simulator:
         method = radau(STAGES)
         if self.simulation.integrator == "gauss":
             method = gauss(STAGES)
-        tolerance = EXACT / displacements(self.model)
+        tolerance = EXACT / self.displacements
         return self._integrated(method, StepSettings(tolerance=tolerance, size=size, newton=1.0))
 
     def paths(self, history: History) -> FloatArray:
@@ -231,9 +235,7 @@ class Simulator:
     def _integrated(self, method: Collocation, settings: StepSettings) -> History:
         pieces = self.moving.pieces(self.simulation.duration)
         still = np.zeros(self.model.size)
-        history = integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
-        _check_start(history, self.simulation)
-        return history
+        return integrated(self.model, pieces, self.start.x, still, method, settings, self._after_step)
 
     def _after_step(self, time: float, size: float) -> None:
         if self.tell is not None:
@@ -256,7 +258,7 @@ def _sufficient(coarse: float, distance: float, wanted: float) -> float:
 
 
 def simulate(
-    model: Model, *, start: Solution | None = None, simulation: Simulation | None = None, progress: TELL | None = None
+    model: Model, *, start: Solution | None = None, simulation: Simulation | None = None, progress: Tell | None = None
 ) -> Motion:
     """Motion of a model on its own modes and nodes: only the error of the time steps is controlled, and told.
 
@@ -278,10 +280,12 @@ def simulate(
     simulator = Simulator(model, asked, began, tell=progress)
     tolerance = tolerance_of(model, asked)
     timed = simulator.to_tolerance(tolerance, first=tolerance)
-    outcome = outcome_of(timed.history)
-    if outcome is MotionOutcome.COMPLETED and unresolved(timed.history, asked.duration):
-        outcome = MotionOutcome.UNRESOLVED
-    return motion_of(simulator, timed.history, outcome, timed.error, message_of(timed.history, outcome))
+    if not timed.history.completed:
+        return ended_early(simulator, timed.history)
+    bound = tolerance
+    if asked.step is not None:
+        bound = LARGEST_SHAPE_ERROR
+    return judged(simulator, timed.history, timed.error, bound)
 
 
 def tolerance_of(model: Model, simulation: Simulation) -> float:
@@ -334,25 +338,6 @@ def _without_mass(rod: Rod, index: int) -> Problem:
     if rod.material is None:
         return Problem(f"rods[{index}].linear_density", what, "give the mass per length, kg/m")
     return Problem(f"rods[{index}].material.density", what, "give the density, kg/m³")
-
-
-def _check_start(history: History, simulation: Simulation) -> None:
-    """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
-
-    Raises:
-        SceneError: supports or joints are not closed, or would be torn open at once.
-    """
-    start = history.legs[0].start
-    problems = []
-    if start.position_error > CONSISTENT:
-        what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
-        problems.append(Problem("simulation.start", what, "start from an equilibrium"))
-    if start.velocity_error * simulation.duration > CONSISTENT:
-        what = "an input that moves supports, joints or cables has a speed at t = 0, where the scene is at rest"
-        remedy = 'let it start at rest: wave = "one_minus_cosine", or a table with interpolation = "cubic"'
-        problems.append(Problem("motions", what, remedy))
-    if problems:
-        raise SceneError(*problems)
 
 
 def unresolved(history: History, duration: float) -> bool:
@@ -408,6 +393,35 @@ def most_violent(history: History) -> str:
         kind = "rod " if block.kind is BlockKind.STRAIN else ""
         largest[f"{kind}{block.owner}"] = float(accelerations[entries].max(initial=0.0))
     return max(largest, key=lambda owner: largest[owner])
+
+
+def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
+    """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
+
+    Args:
+        simulator: that computed it.
+        history: the motion.
+        error: estimated error of the paths over the length; no finite number where none could be made.
+        bound: error up to which it is the motion that was asked for.
+    """
+    outcome = MotionOutcome.COMPLETED
+    message = message_of(history, outcome)
+    if unresolved(history, simulator.simulation.duration):
+        outcome = MotionOutcome.UNRESOLVED
+        message = message_of(history, outcome)
+    elif not error <= bound:
+        outcome = MotionOutcome.UNRESOLVED
+        found = f"The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."
+        if not np.isfinite(error):
+            found = "The error of the paths could not be estimated."
+        message = f"{outcome.value} {found}"
+    return motion_of(simulator, history, outcome, error, message)
+
+
+def ended_early(simulator: Simulator, history: History) -> Motion:
+    """The motion as far as it was computed; of a part no error is estimated."""
+    outcome = outcome_of(history)
+    return motion_of(simulator, history, outcome, float("nan"), message_of(history, outcome))
 
 
 def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, error: float, message: str) -> Motion:

@@ -17,10 +17,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
-from cosserat_casadi.plots.canvas import FLAT, SPACE, Canvas, Plane
+from cosserat_casadi.plots.canvas import Canvas, Plane
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.plots.moving_shapes import PLANES
+from cosserat_casadi.plots.moving_shapes import plane_of
 from cosserat_casadi.plots.scenery import CLAMP
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
@@ -175,12 +175,7 @@ class _ModeLines:
         """The first coordinate plane that holds all points, or None."""
         if self.arms:
             return None
-        extents = np.ptp(self.points, axis=0)
-        for plane in PLANES:
-            (across,) = set(SPACE) - set(plane)
-            if extents[across] <= FLAT * self.size:
-                return plane
-        return None
+        return plane_of(self.points, self.size)
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:

@@ -51,12 +51,22 @@ class MovingShapes:
     @property
     def plane(self) -> Plane | None:
         """The plane along two world axes that holds the whole motion; None where there is none."""
-        extents = np.ptp(self.points, axis=0)
-        for plane in PLANES:
-            (across,) = set(SPACE) - set(plane)
-            if extents[across] <= FLAT * self.size:
-                return plane
-        return None
+        return plane_of(self.points, self.size)
+
+
+def plane_of(points: FloatArray, size: float) -> Plane | None:
+    """The first plane along two world axes that holds all points; None where there is none.
+
+    Args:
+        points: shape (n, 3), m.
+        size: extent beside which a thickness is rounding, m.
+    """
+    extents = np.ptp(points, axis=0)
+    for plane in PLANES:
+        (across,) = set(SPACE) - set(plane)
+        if extents[across] <= FLAT * size:
+            return plane
+    return None
 
 
 def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatArray) -> MovingShapes:

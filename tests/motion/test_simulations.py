@@ -234,3 +234,24 @@ def test_interrupted_search_keeps_the_best_whole_motion() -> None:
     assert motion.outcome is MotionOutcome.INTERRUPTED
     assert len(motion.times) == 101
     assert "whole" in motion.message
+
+
+def test_steps_whose_error_is_not_known_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motion is whole, and yet not the one that was asked for, where nothing says how exact it is."""
+    monkeypatch.setattr("cosserat_casadi.motion.simulate.MOST_TIGHTENINGS", 0)
+    scene = {**transients.line_load(tolerance=1e-3, times=[0.0, 0.5]), "accuracy": {"modes": 4, "nodes": 12}}
+    motion = simulate(moving_model(scene))
+    assert motion.outcome is MotionOutcome.UNRESOLVED
+    assert "could not be estimated" in motion.message
+    assert len(motion.times) == 2
+
+
+def test_a_start_that_is_refused_takes_no_step() -> None:
+    """Before anything is integrated: the support of this rod is not where its unloaded tip is."""
+    support = {"rod": "rod", "kind": "pinned", "position": [0.5, 0.0, 0.5]}
+    scene = {**transients.line_load(start="unloaded"), "supports": [support]}
+    scene["accuracy"] = {"modes": 4, "nodes": 12}
+    steps: list[MotionProgress] = []
+    with pytest.raises(SceneError, match="open by"):
+        simulate(moving_model(scene), progress=steps.append)
+    assert steps == []
