@@ -95,9 +95,9 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     size, room = model.size, words["input_room"]
     entries = words["stage_entries"] * (2 * len(MATRICES) + 4) + words["most_motion_entries"]
     matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
-    vectors = 12 * size + 7 * room + 4 * size + 12 * size
+    vectors = 12 * size + 7 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
-    rooms = 2 * words["front_room"] + 2 * words["interface_room"]
+    rooms = 8 * (words["front_room"] + words["interface_room"] + size)
     return int(entries + matrices + vectors + remembered + rooms)
 
 
