@@ -47,6 +47,8 @@ WITHOUT: Words = {
     "motion_members": "",
     "motion_header": "",
     "motion_config": "",
+    "motion_cmake": "",
+    "motion_readme": "",
     "motion_reals": 0,
     "motion_integers": 0,
 }
@@ -85,6 +87,9 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "motion_members": render("motion_workspace.h.in", words),
         "motion_header": render("motion.h.in", words),
         "motion_config": render("motion_config.h.in", words),
+        "motion_cmake": render("motion_cmake.in", words),
+        "motion_readme": render("motion_readme.md.in", words),
+        "load_room": max(len(model.scene.loads), 1),
         "motion_reals": _workspace_reals(model, motion, words),
         "motion_integers": 3 * model.size + 1,
     }
