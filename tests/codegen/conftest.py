@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.codegen.libraries import RECIPES, Exported, Recipe, exported
+from tests.codegen.motions import MovingRecipe
 
 
 @pytest.fixture(scope="session")
@@ -28,6 +29,17 @@ def library(workshop: Path) -> Callable[[str], Exported]:
     @cache
     def made(name: str) -> Exported:
         return exported(name, RECIPES[name], workshop)
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def motion_library(workshop: Path) -> Callable[[str], Exported]:
+    """An exported library with motions by the name of its family."""
+
+    @cache
+    def made(family: str) -> Exported:
+        return exported("moving_" + family.replace(" ", "_"), MovingRecipe(family), workshop)
 
     return made
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -72,6 +72,7 @@ class Recipe:
     modes: int
     nodes: int
     transport: str = "magnus4"
+    dynamics: bool = False
 
     def model(self) -> Model:
         return build(self.scene, discretise(self.scene, self.modes, self.nodes, self.transport))
@@ -196,11 +197,20 @@ class Exported:
         return scale * rng.uniform(-2.0, 2.0, (count, self.model.inputs.size))
 
 
-def exported(name: str, recipe: Recipe, folder: Path) -> Exported:
+class HasModel(Protocol):
+    """What a library is made from."""
+
+    @property
+    def dynamics(self) -> bool: ...
+
+    def model(self) -> Model: ...
+
+
+def exported(name: str, recipe: HasModel, folder: Path) -> Exported:
     """Export a recipe below a folder; processes that share the folder share the work."""
     model, scratch = recipe.model(), folder / f"{name}-build"
     scratch.mkdir(parents=True, exist_ok=True)
-    once(folder / name, lambda path: export(model, path, name))
+    once(folder / name, lambda path: export(model, path, name, dynamics=recipe.dynamics))
     return Exported(name, model, folder / name, scratch)
 
 

@@ -31,8 +31,6 @@ static matrix_kind matrix_of_masses(void) {
 
 /* Vectors have as many lanes as a matrix has planes, which lie one after the other, or FOUR: those of four right-hand sides
    of a real matrix, which lie side by side. */
-enum { FOUR = 4 };
-
 /* Rows of b less the columns first to last times the entries of b there. Some rows stay in registers. */
 static void subtract_real(const real *a, int order, int first, int last, int from, int to, real *b) {
   int i = from;
@@ -206,12 +204,12 @@ static int eliminate_columns(int planes, real tiny, real *a, int order, int coun
     for (int j = 0; best != k && j <= k; j++) swap_entries(planes, order, k, best, a + j * planes * order);
     /* Not "size <= bound": a pivot that is no number has to end this too. */
     if (!(size_of(planes, order, column + k) > tiny)) return 0;
-    const real part = column[k];
+    const real whole = column[k];
     const real imaginary = planes == 1 ? 0 : column[order + k];
-    const real square = part * part + imaginary * imaginary;
-    column[k] = part / square;
+    const real square = whole * whole + imaginary * imaginary;
+    column[k] = whole / square;
     if (planes == 2) column[order + k] = -imaginary / square;
-    for (int i = k + 1; i < order; i++) scale(planes, order, i, part / square, -imaginary / square, column);
+    for (int i = k + 1; i < order; i++) scale(planes, order, i, whole / square, -imaginary / square, column);
   }
   return 1;
 }

@@ -46,4 +46,10 @@ typedef struct {
 
 typedef solver_instant instant;
 
-enum { STAGES = 2, STAGE_ENTRIES = SOLVER_STAGE_ENTRIES, MATRICES = 3 /* stiffness, damping, mass */ };
+enum {
+  STAGES = 2,
+  STAGED = 2 * SOLVER_UNKNOWNS, /* unknowns of all stages */
+  FOUR = 4,                     /* right-hand sides that are solved for together */
+  MATRICES = 3,                 /* stiffness, damping, mass */
+  STAGE_ENTRIES = SOLVER_STAGE_ENTRIES
+};

@@ -75,7 +75,7 @@ static void motion_in(const step_start *start, real share, const real *values, c
 }
 
 static void stage_at(const step_start *start, int stage, const real *unknowns, instant *at) {
-  const real values[STAGES] = {stage == 0, stage == 1};
+  const real values[STAGES] = {(real)(stage == 0), (real)(stage == 1)};
   motion_in(start, STAGE_NODES[stage], values, STAGE_MATRIX[stage], STAGE_MATRIX_SQUARED[stage], unknowns, at);
 }
 
@@ -120,15 +120,15 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
   }
   solve_system(complex_matrix(), 2, factors, solution, work);
   for (int i = 0; i < N; i++) {
-    real part = solution[i];
+    real whole = solution[i];
     real imaginary = solution[N + i];
     if (IS_SHAPE[i]) {
       /* A change of position is so many times one of h^2 a. */
-      part = SHARE[0] * solution[i] - SHARE[1] * solution[N + i];
+      whole = SHARE[0] * solution[i] - SHARE[1] * solution[N + i];
       imaginary = SHARE[0] * solution[N + i] + SHARE[1] * solution[i];
     }
     for (int stage = 0; stage < STAGES; stage++) {
-      corrections[stage * N + i] = FROM_EIGENVECTOR[stage][1] * imaginary - FROM_EIGENVECTOR[stage][0] * part;
+      corrections[stage * N + i] = FROM_EIGENVECTOR[stage][1] * imaginary - FROM_EIGENVECTOR[stage][0] * whole;
     }
   }
 }
@@ -149,12 +149,12 @@ static real dot_of_stages(const real *a, const real *b) { return dot(a, b) + dot
 static void apply_updates(int count, real *corrections, const workspace *work) {
   for (int k = 0; k + 1 < count; k++) {
     const real share = dot_of_stages(work->duals[k], corrections);
-    for (int i = 0; i < STAGES * N; i++) corrections[i] += share * work->taken[k + 1][i];
+    for (int i = 0; i < STAGED; i++) corrections[i] += share * work->taken[k + 1][i];
   }
   if (count > 0) {
     /* The last update contains what it is applied for. */
     const real share = 1 - dot_of_stages(work->duals[count - 1], corrections);
-    for (int i = 0; i < STAGES * N; i++) corrections[i] /= share;
+    for (int i = 0; i < STAGED; i++) corrections[i] /= share;
   }
 }
 
@@ -162,8 +162,8 @@ static void apply_updates(int count, real *corrections, const workspace *work) {
 static void take_correction(int count, const real *corrections, real *changes, workspace *work) {
   real *dual = work->duals[count];
   real square = 0;
-  memcpy(work->taken[count], corrections, STAGES * N * sizeof *corrections);
-  for (int i = 0; i < STAGES * N; i++) {
+  memcpy(work->taken[count], corrections, STAGED * sizeof *corrections);
+  for (int i = 0; i < STAGED; i++) {
     const real weight = DISPLACEMENTS[i % N];
     changes[i] *= weight;
     square += changes[i] * changes[i];
@@ -206,15 +206,15 @@ static solver_motion_status solve_stages(const step_start *start, const stage_fa
       stage_at(start, stage, unknowns, &work->at);
       motion_residual_at(&work->at, residuals + stage * N, work);
     }
-    for (int i = 0; i < STAGES * N; i++) {
+    for (int i = 0; i < STAGED; i++) {
       if (!(ABSOLUTE(residuals[i]) <= info->residual)) info->residual = ABSOLUTE(residuals[i]);
     }
     corrections_of(factors, residuals, corrections, work);
     apply_updates(count, corrections, work);
     velocity_changes(corrections, changes);
-    const real length = weighted_length(changes, STAGES * N);
-    if (!isfinite(length) || !isfinite(info->residual) || !all_finite(corrections, STAGES * N)) return SOLVER_MOTION_NOT_FINITE;
-    for (int i = 0; i < STAGES * N; i++) unknowns[i] += IS_SHAPE[i % N] ? corrections[i] / (start->size * start->size) : corrections[i];
+    const real length = weighted_length(changes, STAGED);
+    if (!isfinite(length) || !isfinite(info->residual) || !all_finite(corrections, STAGED)) return SOLVER_MOTION_NOT_FINITE;
+    for (int i = 0; i < STAGED; i++) unknowns[i] += IS_SHAPE[i % N] ? corrections[i] / (start->size * start->size) : corrections[i];
     if (count > 0) contraction = length / length_before;
     const newton_course course = course_of(length, count > 0 ? longest : length, count > 0 ? contraction : 0, allowed, &info->error_left);
     if (course == CONVERGES) return SOLVER_MOTION_DONE;
@@ -293,10 +293,10 @@ static int continues(const solver_step_memory *memory, const solver_state *state
 }
 
 /* The inputs with which a part of a step begins. */
-static void part_inputs(const step_start *whole, int part, real size, real *inputs) {
+static void part_inputs(const step_start *whole, int number, real size, real *inputs) {
   for (int i = 0; i < INPUTS; i++) {
     const real rate = whole->inputs_rate ? whole->inputs_rate[i] : 0;
-    inputs[i] = whole->inputs[i] + (real)part * size * rate;
+    inputs[i] = whole->inputs[i] + (real)number * size * rate;
   }
 }
 
@@ -306,11 +306,11 @@ static solver_motion_status take_parts(int count, const step_start *whole, const
                                        workspace *work, solver_step_info *info) {
   step_start start = {work->end.x, work->end.v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
   work->end = *state;
-  for (int part = 0; part < count; part++) {
-    real *unknowns = work->parts_unknowns[part];
-    part_inputs(whole, part, start.size, work->part_of_inputs);
-    if (part > 0) {
-      guess_stages(unknowns - STAGES * N, 1, &work->end, unknowns);
+  for (int number = 0; number < count; number++) {
+    real *unknowns = work->parts_unknowns[number];
+    part_inputs(whole, number, start.size, work->part_of_inputs);
+    if (number > 0) {
+      guess_stages(unknowns - STAGED, 1, &work->end, unknowns);
     } else if (count == 1 && continues(memory, state)) {
       guess_stages(memory->unknowns, start.size / memory->size, state, unknowns);
     } else {

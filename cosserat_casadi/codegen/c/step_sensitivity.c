@@ -70,11 +70,11 @@ static void differentiate_columns(void (*change)(real, int, real *, const worksp
                                   const stage_factors *factors, real *columns, workspace *work) {
   real *stages = work->stage_solution;
   for (int j = first; j < last; j += FOUR) {
-    memset(stages, 0, FOUR * STAGES * N * sizeof *stages);
-    for (int lane = 0; lane < FOUR && j + lane < last; lane++) change(size, j + lane, stages + lane * STAGES * N, work);
+    memset(stages, 0, FOUR * STAGED * sizeof *stages);
+    for (int lane = 0; lane < FOUR && j + lane < last; lane++) change(size, j + lane, stages + lane * STAGED, work);
     solve_system(matrix_of_stages(), FOUR, factors, stages, work);
     for (int lane = 0; lane < FOUR && j + lane < last; lane++) {
-      end_changes(size, stages + lane * STAGES * N, columns + (j + lane - first) * 2 * N);
+      end_changes(size, stages + lane * STAGED, columns + (j + lane - first) * 2 * N);
     }
   }
 }
@@ -139,11 +139,11 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
 static int differentiate_step(const step_start *whole, int count, const step_derivatives *wanted, workspace *work) {
   const step_derivatives later = {work->by_start, work->by_inputs, work->by_inputs_rate};
   step_start start = {whole->x, whole->v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
-  for (int part = 0; part < count; part++) {
-    const real *unknowns = work->parts_unknowns[part];
-    part_inputs(whole, part, start.size, work->part_of_inputs);
-    if (!differentiate_part(&start, unknowns, part == 0 ? wanted : &later, work)) return 0;
-    if (part > 0) {
+  for (int number = 0; number < count; number++) {
+    const real *unknowns = work->parts_unknowns[number];
+    part_inputs(whole, number, start.size, work->part_of_inputs);
+    if (!differentiate_part(&start, unknowns, number == 0 ? wanted : &later, work)) return 0;
+    if (number > 0) {
       if (wanted->by_start) carry_on(later.by_start, 2 * N, wanted->by_start, work);
       if (wanted->by_inputs) {
         carry_on(later.by_start, INPUTS, wanted->by_inputs, work);
@@ -152,7 +152,7 @@ static int differentiate_step(const step_start *whole, int count, const step_der
       if (wanted->by_inputs_rate) {
         carry_on(later.by_start, INPUTS, wanted->by_inputs_rate, work);
         add_columns(later.by_inputs_rate, 1, wanted->by_inputs_rate);
-        add_columns(later.by_inputs, (real)part * start.size, wanted->by_inputs_rate);
+        add_columns(later.by_inputs, (real)number * start.size, wanted->by_inputs_rate);
       }
     }
     stage_at(&start, STAGES - 1, unknowns, &work->at);

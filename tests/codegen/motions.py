@@ -1,0 +1,119 @@
+"""Scenes in motion as exported folders, and the same steps in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import Model
+from cosserat_casadi.codegen.compiled_motion import CompiledStep, StepOptions, StepState
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, solve_stages
+from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at
+from cosserat_casadi.numerics.step_matrices import step_matrices
+from tests import moving_scenes
+from tests.codegen.libraries import Exported
+
+MotionLibrary = Callable[[str], Exported]
+
+EXACT = StepOptions(tolerance=0.0, iterations=20)
+"""Newton's method to rounding."""
+
+
+@dataclass(frozen=True)
+class MovingRecipe:
+    """A family of scenes in motion."""
+
+    family: str
+    dynamics: bool = True
+
+    def model(self) -> Model:
+        return moving_scenes.model_of(self.family)
+
+
+@dataclass(frozen=True)
+class Drive:
+    """Inputs that move linearly in each of several equal steps.
+
+    Attributes:
+        dt: length of a step, s.
+        inputs: at the start of each, shape (steps, inputs).
+        rates: in each, shape (steps, inputs).
+    """
+
+    dt: float
+    inputs: FloatArray
+    rates: FloatArray
+
+
+def drive(model: Model, dt: float, steps: int, seed: int = 0) -> Drive:
+    """Forces, lengths and poses that begin to move where the consistent state says."""
+    state = moving_scenes.consistent_state(model, seed)
+    times = dt * np.arange(steps + 1)[:, None]
+    values = state.inputs + np.sin(2.0 * times) / 2.0 * state.inputs_rate
+    return Drive(dt, values[:-1], np.diff(values, axis=0) / dt)
+
+
+def equations(model: Model, inputs: FloatArray, rate: FloatArray) -> MotionEquations:
+    """The equations of motion in a step that begins at t = 0."""
+    still = np.zeros_like(rate)
+
+    def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+        return np.asarray(model.inverse_dynamics(x, v, a, inputs + t * rate, rate, still).full().ravel())
+
+    def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, inputs + t * rate, rate, still)
+        return stiffness.full(), damping.full(), mass.full()
+
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+
+
+def python_steps(model: Model, state: StepState, driven: Drive) -> list[Step]:
+    """The steps of numerics.time_steps with two stages of Radau IIA, each with a Jacobian of its own, to rounding."""
+    differential = model.discrete.unknowns.differential
+    method = radau(2)
+    bounds = NewtonBounds(np.where(differential, displacements(model), 0.0), 0.0, 40)
+    now = Instant(0.0, state.x, state.v, state.a)
+    steps = list[Step]()
+    for inputs, rate in zip(driven.inputs, driven.rates, strict=True):
+        system = equations(model, inputs, rate)
+        guess = np.tile(np.where(differential, now.a, now.x), (2, 1))
+        if steps:
+            guess = extrapolated(steps[-1], driven.dt)
+        middle = motion_at(method, differential, now, driven.dt, guess, 0.5, driven.dt / 2.0)
+        matrices = step_matrices(method, driven.dt, system.linearised(middle), differential)
+        assert matrices is not None
+        found = solve_stages(system, matrices, now, guess, bounds)
+        assert found.outcome is StageOutcome.CONVERGED
+        # Each step has a clock of its own.
+        end = end_of(method, differential, now, driven.dt, found.unknowns, 0.0)
+        nothing = {"error": 0.0, "iterations": 0, "residual": 0.0, "contraction": 0.0}
+        steps.append(Step(method, differential, now, driven.dt, found.unknowns, end, **nothing))  # type: ignore[arg-type]
+        now = end
+    return steps
+
+
+def compiled_steps(
+    made: Exported, state: StepState, driven: Drive, options: StepOptions | None = EXACT
+) -> Sequence[CompiledStep]:
+    """The same steps in C."""
+    memory = made.compiled.step_memory()
+    taken = list[CompiledStep]()
+    for inputs, rate in zip(driven.inputs, driven.rates, strict=True):
+        step = made.compiled.step(state, driven.dt, inputs, rate, memory=memory, options=options)
+        assert step.done, step.status.value
+        state = step.state
+        taken.append(step)
+    return taken
+
+
+def start_of(model: Model, seed: int = 0) -> StepState:
+    """A state with closed constraints, in motion."""
+    state = moving_scenes.consistent_state(model, seed)
+    differential = model.discrete.unknowns.differential
+    return StepState(state.x, np.where(differential, state.v, 0.0), np.zeros(model.size))

@@ -1,0 +1,224 @@
+"""A step of a motion in C: against the same step in Python, bounded, and honest where it fails."""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.codegen.compiled_motion import StepOptions, StepState
+from cosserat_casadi.codegen.motion_status import MotionStatus
+from cosserat_casadi.numerics.consistent_start import consistent_start
+from tests import moving_scenes
+from tests.codegen.motions import MotionLibrary, compiled_steps, drive, equations, python_steps, start_of
+
+FAMILIES = ["planar", "kirchhoff", "fixed joint", "carried", "free with body", "given length", "driven and held"]
+"""Rods alone and jointed, a floating base, constraints, cables, moving bases and lengths."""
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_steps_vs_python(motion_library: MotionLibrary, family: str) -> None:
+    """The same discrete motion to rounding."""
+    made = motion_library(family)
+    driven = drive(made.model, 2e-3, 8)
+    start = start_of(made.model)
+    steps = python_steps(made.model, start, driven)
+    taken = compiled_steps(made, start, driven)
+    differential = made.model.discrete.unknowns.differential
+    for theirs, ours in zip(steps, taken, strict=True):
+        assert ours.parts == 1
+        for name, tolerance in (("x", 1e-12), ("v", 1e-12), ("a", 1e-11)):
+            wanted = getattr(theirs.end, name)
+            found = getattr(ours.state, name)
+            size = 1.0 + np.abs(wanted[differential]).max()
+            assert_allclose(found[differential], wanted[differential], rtol=0, atol=tolerance * size, err_msg=name)
+        # Multipliers belong to accelerations: they have as many digits.
+        others = theirs.end.x[~differential]
+        size = 1.0 + np.abs(others).max(initial=0.0)
+        assert_allclose(ours.state.x[~differential], others, rtol=0, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint"])
+def test_steps_to_the_default_tolerance_are_as_near_as_they_say(motion_library: MotionLibrary, family: str) -> None:
+    made = motion_library(family)
+    driven = drive(made.model, 1e-3, 8)
+    start = start_of(made.model)
+    exact = compiled_steps(made, start, driven)
+    near = compiled_steps(made, start, driven, None)
+    differential = made.model.discrete.unknowns.differential
+    assert all(step.error_left <= 1e-11 for step in near)
+    apart = np.abs(near[-1].state.x - exact[-1].state.x)[differential]
+    assert apart.max() < 1e-9
+    # One Jacobian serves several steps.
+    assert sum(step.jacobians for step in near) < len(near)
+    assert sum(step.iterations for step in near) < sum(step.iterations for step in exact)
+
+
+@pytest.mark.parametrize("family", ["fixed joint", "pinned tip", "given length"])
+def test_loops_stay_closed(motion_library: MotionLibrary, family: str) -> None:
+    """After 200 steps, constraints are open by no more than 1e-10 of the length."""
+    made = motion_library(family)
+    driven = drive(made.model, 2e-3, 200)
+    end = compiled_steps(made, start_of(made.model), driven, None)[-1].state
+    inputs = driven.inputs[-1] + driven.dt * driven.rates[-1]
+    held = moving_scenes.constrained_rows(made.model)
+    if made.model.discrete.cables:
+        held[[made.model.discrete.tension(cable).start for cable in made.model.discrete.cables]] = True
+    gaps = made.model.residual(end.x, inputs).full().ravel()[held]
+    assert gaps.size > 0
+    assert np.abs(gaps).max() <= 1e-10
+
+
+def test_inputs_are_held_where_no_rate_is_given(motion_library: MotionLibrary) -> None:
+    made = motion_library("kirchhoff")
+    start = start_of(made.model)
+    inputs = made.model.pack()
+    held = made.compiled.step(start, 1e-3, inputs)
+    with_zeros = made.compiled.step(start, 1e-3, inputs, np.zeros_like(inputs))
+    assert_allclose(held.state.x, with_zeros.state.x, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("dt", [0.0, -1e-3, np.nan, np.inf])
+def test_bad_length_of_a_step(motion_library: MotionLibrary, dt: float) -> None:
+    made = motion_library("kirchhoff")
+    start = start_of(made.model)
+    taken = made.compiled.step(start, dt, made.model.pack())
+    assert taken.status is MotionStatus.BAD_STEP
+    assert taken.iterations == 0
+    assert_allclose(taken.state.x, start.x, rtol=0, atol=0)
+
+
+def test_numbers_that_are_not_finite_are_refused_and_leave_the_memory_of_use(motion_library: MotionLibrary) -> None:
+    made = motion_library("kirchhoff")
+    start = start_of(made.model)
+    inputs = made.model.pack()
+    memory = made.compiled.step_memory()
+    first = made.compiled.step(start, 1e-3, inputs, memory=memory)
+    spoilt = StepState(np.where(np.arange(made.model.size) == 1, np.nan, start.x), start.v, start.a)
+    for state, given, rate in (
+        (spoilt, inputs, None),
+        (first.state, inputs * np.inf, None),
+        (first.state, inputs, inputs * np.nan),
+    ):
+        taken = made.compiled.step(state, 1e-3, given, rate, memory=memory)
+        assert taken.status is MotionStatus.NOT_FINITE
+        assert_allclose(taken.state.v, state.v, rtol=0, atol=0)
+    assert made.compiled.step(first.state, 1e-3, inputs, memory=memory).done
+
+
+def test_a_step_too_long_is_cut_and_says_so(motion_library: MotionLibrary) -> None:
+    """What it ends with are the parts, taken one by one; where it may not be cut, nothing moves."""
+    made = motion_library("kirchhoff")
+    start = start_of(made.model)
+    inputs = 8.0 * made.model.pack()
+    dt = 0.4
+    refused = made.compiled.step(start, dt, inputs, options=StepOptions(iterations=5, parts=1))
+    assert refused.status is MotionStatus.NOT_SOLVED
+    assert_allclose(refused.state.x, start.x, rtol=0, atol=0)
+    cut = made.compiled.step(start, dt, inputs, options=StepOptions(tolerance=1e-13, iterations=5, parts=32))
+    assert cut.done
+    assert cut.parts > 1
+    state = start
+    for _ in range(cut.parts):
+        state = made.compiled.step(state, dt / cut.parts, inputs, options=StepOptions(1e-13, 20, 1)).state
+    assert_allclose(cut.state.x, state.x, rtol=0, atol=1e-10)
+    assert_allclose(cut.state.v, state.v, rtol=0, atol=1e-8)
+
+
+def test_work_is_bounded(motion_library: MotionLibrary) -> None:
+    made = motion_library("kirchhoff")
+    inputs = 1e9 * made.model.pack()
+    for iterations, parts in ((1, 1), (3, 2), (5, 8), (0, 0), (1000, 1000)):
+        taken = made.compiled.step(start_of(made.model), 10.0, inputs, options=StepOptions(0.0, iterations, parts))
+        most = min(max(iterations, 1), 20)
+        cuts = 2 * min(max(parts, 1), 32) - 1
+        assert not taken.done
+        assert taken.iterations <= 2 * most * cuts
+        assert taken.jacobians <= cuts
+
+
+# A start
+
+
+def test_rest_in_equilibrium(motion_library: MotionLibrary) -> None:
+    """Nothing moves: neither at the start nor in steps."""
+    made = motion_library("kirchhoff")
+    inputs = made.model.pack()
+    solved = made.compiled.solve(inputs)
+    state = made.compiled.rest(inputs, solved.x)
+    assert state is not None
+    assert not state.v.any()
+    assert not state.a.any()
+    end = made.compiled.step(state, 1e-2, inputs)
+    assert_allclose(end.state.x, solved.x, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "free with body"])
+def test_rest_out_of_balance_vs_python(motion_library: MotionLibrary, family: str) -> None:
+    """Let go from a shape with closed constraints: accelerations and multipliers are those of Python's start."""
+    made = motion_library(family)
+    model = made.model
+    x = moving_scenes.consistent_state(model).x
+    inputs = model.pack()
+    system = equations(model, inputs, np.zeros_like(inputs))
+    wanted = consistent_start(system, 0.0, x, np.zeros(model.size), 1e-3)
+    state = made.compiled.rest(inputs, x)
+    assert state is not None
+    assert_allclose(state.a, wanted.instant.a, rtol=0, atol=1e-7 * np.abs(wanted.instant.a).max())
+    assert_allclose(state.x, wanted.instant.x, rtol=0, atol=1e-7 * np.abs(wanted.instant.x).max())
+    assert np.abs(made.compiled.inverse_dynamics(state, inputs)).max() < 1e-7
+
+
+def test_rest_where_a_support_is_open(motion_library: MotionLibrary) -> None:
+    made = motion_library("pinned tip")
+    assert made.compiled.rest() is None
+
+
+# The equations
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_equations_of_motion_vs_python(motion_library: MotionLibrary, family: str) -> None:
+    made = motion_library(family)
+    drawn = moving_scenes.drawn_state(made.model)
+    state = StepState(drawn.x, drawn.v, drawn.a)
+    stiffness, damping, mass, residual = made.model.dynamics_jacobian(*drawn.all)
+    found = made.compiled.inverse_dynamics(state, drawn.inputs, drawn.inputs_rate, drawn.inputs_acceleration)
+    size = np.abs(residual.full()).max()
+    assert_allclose(found, residual.full().ravel(), rtol=0, atol=1e-13 * size)
+    stiffness, damping, mass, _ = made.model.dynamics_jacobian(*drawn.all[:5], 0 * drawn.inputs)
+    linear = made.compiled.linearise(state, drawn.inputs, drawn.inputs_rate)
+    for matrix, wanted in ((linear.stiffness, stiffness), (linear.damping, damping), (linear.mass, mass)):
+        assert_allclose(matrix, wanted.full(), rtol=0, atol=1e-13 * np.abs(wanted.full()).max())
+    energies = made.compiled.energies(*drawn.velocities)
+    for ours, theirs in zip(energies, made.model.energies(*drawn.velocities), strict=True):
+        assert_allclose(ours.full(), theirs.full(), rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length", "driven and held"])
+def test_derivatives_by_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
+    made = motion_library(family)
+    drawn = moving_scenes.drawn_state(made.model)
+    state = StepState(drawn.x, drawn.v, drawn.a)
+    linear = made.compiled.linearise(state, drawn.inputs, drawn.inputs_rate)
+    for matrix, which in ((linear.by_inputs, 0), (linear.by_inputs_rate, 1)):
+        for j in range(len(drawn.inputs)):
+            given = [drawn.inputs, drawn.inputs_rate]
+            span = 1e-6 * (1.0 + abs(given[which][j]))
+            change = span * (np.arange(len(drawn.inputs)) == j)
+            values = []
+            for sign in (1, -1):
+                moved = [value + sign * change * (k == which) for k, value in enumerate(given)]
+                values.append(made.compiled.inverse_dynamics(state, *moved))
+            slope = (values[0] - values[1]) / (2 * span)
+            assert_allclose(matrix[:, j], slope, rtol=0, atol=1e-7 * (1.0 + np.abs(values[0]).max() / span * 1e-6))
+
+
+def test_units_of_the_residual(motion_library: MotionLibrary) -> None:
+    """Multiplied by them, the residual has the power of the motion: of a free kick, the rate of the kinetic energy."""
+    made = motion_library("kirchhoff")
+    units = np.zeros(made.model.size)
+    made.handle[f"{made.name}_residual_units"](units.ctypes.data_as(ctypes.c_void_p))
+    assert_allclose(units, made.model.discrete.unknowns.units, rtol=0, atol=0)
