@@ -11,7 +11,15 @@ from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
 from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.compiled_motion import (
+    CompiledStep,
+    LinearMotion,
+    StepOptions,
+    StepSensitivity,
+    StepState,
+)
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
@@ -41,17 +49,20 @@ __version__ = version("cosserat-casadi")
 
 __all__ = [
     "Compiled",
+    "CompiledStep",
     "CosseratError",
     "Discretisation",
     "EquilibriumPath",
     "ExportError",
     "Inverse",
     "LinearModel",
+    "LinearMotion",
     "Mode",
     "Model",
     "Modes",
     "Motion",
     "MotionOutcome",
+    "MotionStatus",
     "Outcome",
     "PathEvent",
     "PathOutcome",
@@ -60,6 +71,9 @@ __all__ = [
     "SceneError",
     "Solution",
     "SolveError",
+    "StepOptions",
+    "StepSensitivity",
+    "StepState",
     "Sweep",
     "Tuning",
     "acados_expressions",

@@ -110,6 +110,7 @@ CONCEPTS = (
         "Export and load",
         "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md).",
         ("export", "load", "Compiled", "ExportError"),
+        ("StepState", "StepOptions", "CompiledStep", "StepSensitivity", "LinearMotion", "MotionStatus"),
     ),
     Concept(
         "results",
