@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.maths.typing import FloatArray
@@ -95,7 +96,7 @@ class LinearMotion:
 
 @dataclass(frozen=True)
 class StepOptions:
-    """Budget of one step; see the folder's header for the defaults in C, which these are.
+    """Budget of one step.
 
     Attributes:
         tolerance: displacement over the length that Newton's method may leave; 0 for what rounding allows.
@@ -103,9 +104,9 @@ class StepOptions:
         parts: most parts that a step is cut into.
     """
 
-    tolerance: float = 1e-11
-    iterations: int = 12
-    parts: int = 8
+    tolerance: float = STEP_TOLERANCE
+    iterations: int = STEP_ITERATIONS
+    parts: int = STEP_PARTS
 
 
 class _Options(ctypes.Structure):

@@ -6,6 +6,7 @@ import errno
 import os
 import re
 import tempfile
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -146,7 +147,12 @@ def _without_queries(source: str) -> str:
 
 def _without_unused_patterns(source: str) -> str:
     """A source without the sparsity patterns that no function reads."""
-    for pattern in re.findall(r"^static const casadi_int (casadi_s\d+)\[", source, re.M):
-        if len(re.findall(rf"\b{pattern}\b", source)) == 2:
-            source = re.sub(rf"^(#define {pattern} |static const casadi_int {pattern}\[).*\n", "", source, flags=re.M)
-    return source
+    used = Counter(re.findall(r"\bcasadi_s\d+\b", source))
+    defined = re.findall(r"^static const casadi_int (casadi_s\d+)\[", source, re.M)
+    # Once as a macro, once as an array.
+    unused = {pattern for pattern in defined if used[pattern] == 2}
+
+    def kept(line: re.Match[str]) -> str:
+        return "" if line[1] in unused else line[0]
+
+    return re.sub(r"^(?:#define |static const casadi_int )(casadi_s\d+)[ \[].*\n", kept, source, flags=re.M)

@@ -262,6 +262,12 @@ static solver_motion_status renew_jacobian(const step_start *start, const real *
   return SOLVER_MOTION_DONE;
 }
 
+/* Whether a Jacobian serves the next step too: few iterations are left to save, or hardly more are needed than it took
+   when it was new. */
+static int serves_on(const solver_step_memory *memory, int iterations) {
+  return iterations <= FEW_ITERATIONS || iterations <= memory->first_iterations + 1;
+}
+
 /* Solves one step from a guess in unknowns, with the kept Jacobian if there is one for its size, else with a new one.
    Where it is not solved with a kept one, it is tried again with a new one. */
 static solver_motion_status solve_step(const step_start *start, const solver_step_options *options, real *unknowns,
@@ -277,7 +283,9 @@ static solver_motion_status solve_step(const step_start *start, const solver_ste
       if (status != SOLVER_MOTION_DONE) return status;
     }
     status = solve_stages(start, &factors, options, work->iterate, work, info);
-    if (status != SOLVER_MOTION_DONE || info->iterations - iterations > FEW_ITERATIONS) memory->jacobian_size = 0;
+    const int needed = info->iterations - iterations;
+    if (attempt == 1) memory->first_iterations = needed;
+    if (status != SOLVER_MOTION_DONE || !serves_on(memory, needed)) memory->jacobian_size = 0;
   }
   memcpy(unknowns, work->iterate, sizeof work->iterate);
   return status;

@@ -173,7 +173,9 @@ static void keep_jacobian_of_stages(real size, solver_step_memory *memory, works
   for (int k = 0; k < MATRICES * STAGE_ENTRIES; k++) {
     work->matrices[0][k] = (real)0.5 * (work->matrices[0][k] + work->matrices[1][k]);
   }
-  if (factorise_step(work->matrices[0], size, &factors, work)) memory->jacobian_size = size;
+  if (!factorise_step(work->matrices[0], size, &factors, work)) return;
+  memory->jacobian_size = size;
+  memory->first_iterations = 0;
 }
 
 solver_motion_status solver_step_sensitivity(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
