@@ -12,15 +12,21 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
-def largest_room(generated: Mapping[str, str], kind: str) -> int:
+OF_MOTION = "_k_motion_"
+"""What the names of kernels hold that are called with a workspace alone, however large it is."""
+
+
+def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = False) -> int:
     """The most that any kernel asks its caller for: of numbers ("W"), of integers ("IW").
 
     Args:
         generated: source and header of the kernels by file name.
         kind: "W" or "IW".
+        on_stack: whether kernels are left out that never find it on the stack.
     """
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
-    return max(int(size) for size in re.findall(rf"_SZ_{kind} (\d+)", header))
+    rooms = re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)
+    return max(int(size) for name, size in rooms if not on_stack or OF_MOTION not in name)
 
 
 def stack_bytes(generated: Mapping[str, str]) -> int:
@@ -35,7 +41,7 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     source = "".join(text for file, text in generated.items() if file.endswith(".c"))
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     locals_of_largest = max(_locals(function) for function in functions)
-    return REAL * (locals_of_largest + largest_room(generated, "W")) + FRAMES
+    return REAL * (locals_of_largest + largest_room(generated, "W", on_stack=True)) + FRAMES
 
 
 def _locals(function: str) -> int:

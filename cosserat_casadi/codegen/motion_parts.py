@@ -49,7 +49,7 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
     Raises:
         ExportError: they cannot be computed in motion.
     """
-    _check(model)
+    check_motion(model)
     state, inputs, factor, arguments = _symbols(model)
     matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
     pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
@@ -66,8 +66,8 @@ def motion_in_c(model: Model, names: Names) -> MotionInC:
     )
 
 
-def _check(model: Model) -> None:
-    """Refuse what has no motion.
+def check_motion(model: Model) -> None:
+    """Refuse a scene that has no motion.
 
     Raises:
         ExportError: with every fault.

@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, build, read_scene, solve
+from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.solution_file import result_text
 from tests.conftest import ROOT
@@ -341,6 +342,26 @@ def test_export_with_derivatives(wire: Path) -> None:
     assert plain.returncode == with_derivatives.returncode == 0
     extra = {path.name for path in (wire / "whole").iterdir()} - {path.name for path in (wire / "plain").iterdir()}
     assert extra == {"wire_derivatives.c"}
+
+
+def test_export_with_motions(wire: Path) -> None:
+    fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=10")
+    plain = cosserat("export", "wire.toml", "--output", "plain", *fixed, cwd=wire)
+    with_motions = cosserat("export", "wire.toml", "--output", "whole", "--dynamics", *fixed, cwd=wire)
+    assert plain.returncode == with_motions.returncode == 0, with_motions.stderr
+    extra = {path.name for path in (wire / "whole").iterdir()} - {path.name for path in (wire / "plain").iterdir()}
+    assert extra == {*MOTION_FILES, "wire_motion_demo.c"}
+    assert "wire_step(" in (wire / "whole" / "wire.h").read_text()
+    assert "wire_step" not in (wire / "plain" / "wire.h").read_text()
+
+
+def test_export_with_motions_of_a_scene_without_mass(wire: Path) -> None:
+    """Refused before it is solved; nothing is written."""
+    (wire / "wire.toml").write_text(SCENE.replace(", density = 6450.0", ""))
+    refused = cosserat("export", "wire.toml", "--output", "c", "--dynamics", cwd=wire)
+    assert refused.returncode == 2
+    assert "has no mass" in refused.stderr
+    assert not (wire / "c").exists()
 
 
 def test_export_with_changes_and_a_name_over_an_earlier_export(wire: Path) -> None:

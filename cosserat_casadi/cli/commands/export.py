@@ -15,8 +15,10 @@ from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
+from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene import read_scene
 
 
@@ -43,6 +45,7 @@ def export(
     exported_scene = read_scene(scene, tuple(settings or ()))
     if dynamics:
         exported_scene = exported_scene.with_motion_inputs()
+        check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
     scene_names(name, exported_scene)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
