@@ -149,6 +149,15 @@ class Origins:
             numbers[np.array(constants) == 0.0] = 0
         return Value(pattern, numbers)
 
+    @property
+    def count(self) -> int:
+        """How many numbers there are."""
+        return self._count
+
+    def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
+        """Which of these are constants."""
+        return self._constant[self._things(numbers)]
+
     def numbers(self, thing: int) -> Numbers:
         """Numbers of all entries of a thing."""
         first = int(self._first[thing])
@@ -237,12 +246,9 @@ class _Reading:
         self.function = function
         self.origins = Origins()
         self.steps: list[Step] = []
-        self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
-        self._output_numbers = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
         self._ordered = set[bytes]()
-        self._values = dict[int, Value]()
-        for k in range(function.n_instructions()):
-            self._read(k)
+        self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
+        self.outputs = self._read(function, self.inputs)
 
     @property
     def program(self) -> Program:
@@ -251,32 +257,34 @@ class _Reading:
         arguments = []
         for i, value in enumerate(self.inputs):
             arguments.append(Argument(function.name_in(i), value.pattern, [value]))
-        results = {}
-        for i, numbers in enumerate(self._output_numbers):
-            results[function.name_out(i)] = Value(function.sparsity_out(i), numbers)
+        results = dict(zip(function.name_out(), self.outputs, strict=True))
         return Program(function.name(), self.origins, arguments, self.steps, results)
 
-    def _read(self, k: int) -> None:
-        """Read the k-th instruction."""
-        code = self.function.instruction_id(k)
-        node = self.function.instruction_MX(k)
-        given = self.function.instruction_input(k)
-        if code == ca.OP_OUTPUT:
-            info = node.info()
-            numbers = self._values[given[0]].numbers
-            self._output_numbers[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
-            return
-        if code == ca.OP_INPUT:
-            info = node.info()
-            numbers = self.inputs[info["ind"]].numbers
-            results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
-        elif code == ca.OP_CONST:
-            results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
-        else:
-            operands = [self._values[variable] for variable in given]
-            results = _moved(code, node, operands) or self._computed(code, node, operands)
-        for variable, result in zip(self.function.instruction_output(k), results, strict=True):
-            self._values[variable] = result
+    def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
+        """Results of a function of matrices for these arguments."""
+        outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
+        values = dict[int, Value]()
+        for k in range(function.n_instructions()):
+            code = function.instruction_id(k)
+            node = function.instruction_MX(k)
+            given = function.instruction_input(k)
+            if code == ca.OP_OUTPUT:
+                info = node.info()
+                numbers = values[given[0]].numbers
+                outputs[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
+                continue
+            if code == ca.OP_INPUT:
+                info = node.info()
+                numbers = arguments[info["ind"]].numbers
+                results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
+            elif code == ca.OP_CONST:
+                results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
+            else:
+                operands = [values[variable] for variable in given]
+                results = _moved(code, node, operands) or self._computed(code, node, operands)
+            for variable, result in zip(function.instruction_output(k), results, strict=True):
+                values[variable] = result
+        return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
 
     def _computed(self, code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
         """Results of an instruction that computes."""
@@ -284,6 +292,8 @@ class _Reading:
             return [self._product(*operands)]
         if code == ca.OP_CALL:
             function = node.which_function()
+            if function.is_a("MXFunction"):
+                return self._read(function, operands)
             return self._step(function, operands, _length(function), called=True)
         if node.is_unary() or node.is_binary():
             return [self._elementwise(code, node, operands)]
