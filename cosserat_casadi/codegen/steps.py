@@ -15,15 +15,16 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.routines import ROWS_AT_ONCE
-
 Numbers = npt.NDArray[np.int64]
 
 DENSE_RATE = 8.0
 """Products a nanosecond that are added to long dense columns."""
 
-SHORT_RATE = 2.5
-"""The same for columns shorter than what the routine takes at once."""
+LONG = 6
+"""Entries from which on a column is long: its sums do not wait for each other."""
+
+SHORT_RATE = 4.5
+"""The same for shorter columns."""
 
 SPARSE_RATE = 1.0
 """The same where every entry is looked up."""
@@ -413,7 +414,7 @@ class _Reading:
     def _time(self, left: Value, right: Value) -> float:
         """Time of a product of which left is dense, ns."""
         rows = left.pattern.shape[0]
-        rate = DENSE_RATE if rows >= ROWS_AT_ONCE[1] else SHORT_RATE
+        rate = DENSE_RATE if rows >= LONG else SHORT_RATE
         if rows < 2:
             rate = SPARSE_RATE
         return rows * len(right.numbers) / rate + self._move_time(left, right)
