@@ -76,7 +76,7 @@ def _with_fast_products(source: str) -> str:
         rows = sorted({int(found[2]) for found in re.finditer(pattern, source)})
         made = "".join(routine.format(rows=count, sums=_sums(count, column)) for count in rows)
         source = re.sub(rf"^static void {name}\(.*?^\}}\n", made, source, flags=re.M | re.S)
-        source = re.sub(pattern, lambda found, name=name: f"{name}_{found[2]}({found[1]}, {found[3]});", source)
+        source = re.sub(pattern, rf"{name}_\2(\1, \3);", source)
     return source
 
 
