@@ -33,6 +33,9 @@ from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.tangent import Tangent
 
+ORDERS = 3
+"""Derivatives with z, with ż and with z̈."""
+
 
 @dataclass(frozen=True)
 class Jet:
@@ -108,10 +111,11 @@ class MotionTangent:
         The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
         base and the force on it.
         """
+        matrices = self._matrices
         return MotionMatrices(
-            stiffness=self._ordered(self._blocks("stiffness")),
-            damping=self._ordered(self._blocks("damping")),
-            mass=self._ordered(self._mass_blocks),
+            stiffness=self._ordered(matrices.stiffness),
+            damping=self._ordered(matrices.damping),
+            mass=self._ordered(matrices.mass),
         )
 
     @cached_property
@@ -125,6 +129,12 @@ class MotionTangent:
         alike = ca.sparsify(ca.DM(np.kron(np.eye(3), np.ones((len(self._nodes), 1)))))
         turns = [alike, ca.DM(rows, 3), ca.DM(rows, 3)]
         return Jet(*(ca.horzcat(columns, turn) for columns, turn in zip(orders, turns, strict=True)))
+
+    @cached_property
+    def _rotations(self) -> Matrix:
+        """The rates of δθ from the highest order on beneath each other, 9m×turning columns."""
+        theta = self.rotation
+        return ca.vertcat(theta.acceleration, theta.rate, theta.value)
 
     @cached_property
     def _nodes(self) -> list[int]:
@@ -144,20 +154,15 @@ class MotionTangent:
 
     # Positions, r = p + S t: with δt = δθ × t on the turning columns, and the stretch on the others.
 
+    # What depends on z̈, ż and z by an operator on Θ̈, Θ̇ and Θ stands beneath each other, stiffness, damping and mass:
+    # one product has long sums, and gives all three.
+
     @cached_property
-    def _acceleration(self) -> MotionMatrices:
-        """What ẗ at the nodes that turn has of δθ by its turning columns: with Θ = δθ, −(t^ Θ) for z̈ and so on."""
-        theta = self.rotation
+    def _accelerations(self) -> Matrix:
+        """Derivatives of ẗ at the nodes that turn with z, ż and z̈, 9m×turning columns: δt = δθ × t."""
         # The transpose of a hat is its negative.
         t, t_rate, t_acceleration = (hat_operator(field[:, self._nodes]).T for field in self._tangents)
-        twice_t, twice_t_rate = 2 * t, 2 * t_rate
-        return MotionMatrices(
-            mass=t @ theta.value,
-            damping=sum_of_products((twice_t, theta.rate), (twice_t_rate, theta.value)),
-            stiffness=sum_of_products(
-                (t, theta.acceleration), (twice_t_rate, theta.rate), (t_acceleration, theta.value)
-            ),
-        )
+        return _operators(t, 2 * t_rate, t_acceleration) @ self._rotations
 
     @property
     def _tangents(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -167,7 +172,7 @@ class MotionTangent:
 
     @cached_property
     def _stretch(self) -> MotionMatrices | None:
-        """The same of the other columns, at all nodes: ℓ d δΓ along directors that turn; None without any.
+        """The same by the other columns, at all nodes: ℓ d δΓ along directors that turn; None without any.
 
         With a floating base there is one more row for each component: its shift.
         """
@@ -211,51 +216,45 @@ class MotionTangent:
         weighted = (rod.node_lengths * self.inertia.masses.mass)[:, None] * integrate
         return np.asarray(integrate.T @ weighted) / self.unit
 
-    def _gram_of(self, rows: FloatArray) -> ca.DM:
-        """Some rows and columns of the Gram matrix for all components."""
-        return ca.sparsify(ca.DM(np.kron(np.eye(3), rows)))
+    def _gram_of(self, rows: FloatArray, times: int = 1) -> ca.DM:
+        """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
+        return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), rows)))
 
     # The parts of the matrices by rows and columns: turning ones, then the others.
 
-    def _pulled(self, word: str) -> Matrix:
-        """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns."""
-        turning = self._gram_of(self._gram[np.ix_(self._nodes, self._nodes)])
-        forces = turning @ getattr(self._acceleration, word)
-        return sum_of_products((self._levers, forces), *self._rotary_products(word))
-
-    def _pulled_of_others(self, word: str) -> Matrix:
-        """The same by the other columns."""
-        forces: Matrix = self._gram_of(self._gram[self._nodes]) @ getattr(self._stretch, word)
-        return self._levers @ forces
+    @cached_property
+    def _wrenches(self) -> Matrix:
+        """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns, 9m×turning columns."""
+        gram = self._gram_of(self._gram[np.ix_(self._nodes, self._nodes)], ORDERS)
+        forces = gram @ self._accelerations
+        levers = ca.diagcat(*[self._levers] * ORDERS)
+        if not self.inertia.masses.second_moments:
+            return levers @ forces
+        return sum_of_products((levers, forces), (_operators(*self._rotary_operators), self._rotations))
 
     @cached_property
     def _levers(self) -> Matrix:
         """Moments of forces on the tangents of the sections that turn."""
         return hat_operator(self.motion.shape.tangent[:, self._nodes])
 
-    def _blocks(self, word: str) -> list[list[Matrix]]:
-        """Blocks of stiffness or damping."""
-        turned = self._left_of_turning.T
-        blocks = [[turned @ self._pulled(word)]]
-        if self._stretch is not None:
-            of_others = getattr(self._stretch, word)
-            blocks[0].append(turned @ self._pulled_of_others(word))
-            blocks.append(
-                [self._others_on_turning @ getattr(self._acceleration, word), self._others_on_others @ of_others]
-            )
-        return blocks
-
     @cached_property
-    def _mass_blocks(self) -> list[list[Matrix]]:
-        """Blocks of the mass matrix, which is symmetric."""
+    def _matrices(self) -> MotionMatrices:
+        """The matrices, turning rows and columns first."""
+        rows = 3 * len(self._nodes)
         turned = self._left_of_turning.T
-        product = turned @ self._pulled("mass")
-        blocks = [[ca.triu2symm(ca.triu(product))]]
-        if self._stretch is not None:
-            coupling = self._others_on_turning @ self._acceleration.mass
-            blocks[0].append(coupling.T)
-            blocks.append([coupling, self._others_on_others @ self._stretch.mass])
-        return blocks
+        stiffness, damping, mass = (turned @ wrenches for wrenches in ca.vertsplit(self._wrenches, rows))
+        mass = ca.triu2symm(ca.triu(mass))
+        others = self._stretch
+        if others is None:
+            return MotionMatrices(stiffness, damping, mass)
+        of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
+        gram = self._gram_of(self._gram[self._nodes])
+        columns = [others.stiffness, others.damping, others.mass]
+        by_others = [turned @ (self._levers @ (gram @ field)) for field in columns[:2]]
+        by_others.append(of_turning[2].T)
+        of_others = [self._others_on_others @ field for field in columns]
+        blocks = zip((stiffness, damping, mass), by_others, of_turning, of_others, strict=True)
+        return MotionMatrices(*(ca.blockcat([[one, two], [three, four]]) for one, two, three, four in blocks))
 
     @cached_property
     def _left_of_turning(self) -> Matrix:
@@ -278,9 +277,8 @@ class MotionTangent:
         pulled = self._gram_of(self._gram) @ self._stretch.mass
         return self.inertia.ratio * pulled.T
 
-    def _ordered(self, blocks: list[list[Matrix]]) -> Matrix:
-        """A matrix of its blocks, in the order of the coordinates: turns of the base follow all strains."""
-        matrix = ca.blockcat(blocks)
+    def _ordered(self, matrix: Matrix) -> Matrix:
+        """A matrix in the order of the coordinates: turns of the base follow all strains."""
         if not self.floating:
             return matrix
         turning = self.tangent.angular_size
@@ -290,21 +288,6 @@ class MotionTangent:
         shifts = list(range(matrix.shape[0] - 3, matrix.shape[0]))
         order = [*strains, *turns, *shifts]
         return matrix[order, order]
-
-    # Rotations
-
-    def _rotary_products(self, word: str) -> list[tuple[Matrix, Matrix]]:
-        """P₂ Θ̈ + P₁ Θ̇ + P₀ Θ for the stiffness and so on, of the module's docstring; nothing without rotary inertia."""
-        if not self.inertia.masses.second_moments:
-            return []
-        p2, twice_p2, p1, p0 = self._rotary_operators
-        theta = self.rotation
-        products = {
-            "mass": [(p2, theta.value)],
-            "damping": [(twice_p2, theta.rate), (p1, theta.value)],
-            "stiffness": [(p2, theta.acceleration), (p1, theta.rate), (p0, theta.value)],
-        }
-        return products[word]
 
     @cached_property
     def _section_rotations(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -323,17 +306,14 @@ class MotionTangent:
             self.motion.section_angular_velocity[:, :-1],
             self.motion.section_angular_acceleration[:, :-1],
         )
-        turns = self.tangent.turn_matrix.unfolded
-        rates = []
-        for number, block in enumerate(blocks):
-            operator = block_diagonal(block, kernel.sparsity_out(number))
-            rates.append(cumulative_sum(operator @ turns, count))
-        first, second = rates
+        operators = [block_diagonal(block, kernel.sparsity_out(number)) for number, block in enumerate(blocks)]
+        added = ca.vertcat(*operators) @ self.tangent.turn_matrix.unfolded
+        first, second = ca.vertsplit(cumulative_sum(added, count), 3 * count)
         return self.tangent.section_rotation, first, second
 
     @cached_property
-    def _rotary_operators(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """P₂, 2 P₂, P₁ and P₀ of the module's docstring on stacked fields, 3m×3m, times the lengths of the nodes."""
+    def _rotary_operators(self) -> tuple[Matrix, Matrix, Matrix]:
+        """P₂, P₁ and P₀ of the module's docstring on stacked fields, 3m×3m, times the lengths of the nodes."""
         nodes = self._nodes
         totals: list[Matrix] = [ca.DM(3 * len(nodes), 3 * len(nodes))] * 3
         lengths = self.tangent.rod.node_lengths / self.unit
@@ -348,7 +328,21 @@ class MotionTangent:
             skew = _outer(director, acceleration, weights) - _outer(acceleration, director, weights)
             totals = [total + part for total, part in zip(totals, (inertia, transport, skew), strict=True)]
         p2, p1, p0 = totals
-        return p2, 2 * p2, p1, p0
+        return p2, p1, p0
+
+
+def _operators(on_acceleration: Matrix, on_rate: Matrix, on_value: Matrix) -> Matrix:
+    """Operator on Θ̈, Θ̇ and Θ beneath each other whose rows are derivatives with z, with ż and with z̈.
+
+    With y = A Θ̈ + B Θ̇ + C Θ along δz, that is also the derivative with z; with ż it is 2 A Θ̇ + B Θ, with z̈ A Θ.
+    """
+    none = ca.DM(*on_acceleration.shape)
+    rows = [
+        [on_acceleration, on_rate, on_value],
+        [none, 2 * on_acceleration, on_rate],
+        [none, none, on_acceleration],
+    ]
+    return ca.blockcat(rows)
 
 
 def _weighted(operator: Matrix, weights: FloatArray) -> Matrix:
