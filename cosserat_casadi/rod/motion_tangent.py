@@ -298,11 +298,9 @@ class MotionTangent:
             return none, none, none
         count = self.tangent.intervals
         kernel = motion_kernels(rod).variation
-        turn = self.motion.shape.interval_arguments[0]
         blocks = kernel.map(count)(
-            turn,
+            *self.motion.shape.interval_arguments,
             *self.motion.turn_rates,
-            self.motion.shape.interval_begins,
             self.motion.section_angular_velocity[:, :-1],
             self.motion.section_angular_acceleration[:, :-1],
         )
