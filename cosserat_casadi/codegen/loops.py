@@ -22,6 +22,9 @@ from cosserat_casadi.codegen.steps import Argument, Numbers, Program, Step, Unkn
 FEW_PIECES = 8
 """Pieces of other vectors of which a vector is put together one by one."""
 
+LONG_PIECES = 8
+"""Entries of such pieces from which on it is put together one by one however many they are."""
+
 LONGEST = 3000
 """Instructions up to which small steps are written together: compilers take more than twice as long for two."""
 
@@ -206,7 +209,7 @@ class _Writing:
             return ca.MX(0, 1)
         owners = self.origins.owners(numbers)
         starts = np.flatnonzero(np.diff(owners, prepend=-1))
-        if len(starts) <= FEW_PIECES:
+        if len(starts) <= max(FEW_PIECES, len(numbers) // LONG_PIECES):
             pieces = np.split(numbers, starts[1:])
             return ca.vertcat(*[self._piece(int(owners[i]), piece) for i, piece in zip(starts, pieces, strict=True)])
         pool = []

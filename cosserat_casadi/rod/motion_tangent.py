@@ -242,7 +242,8 @@ class MotionTangent:
         """The matrices, turning rows and columns first."""
         rows = 3 * len(self._nodes)
         turned = self._left_of_turning.T
-        stiffness, damping, mass = (turned @ wrenches for wrenches in ca.vertsplit(self._wrenches, rows))
+        every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
+        stiffness, damping, mass = ca.vertsplit(every, every.shape[0] // ORDERS)
         mass = ca.triu2symm(ca.triu(mass))
         others = self._stretch
         if others is None:
