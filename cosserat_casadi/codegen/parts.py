@@ -90,7 +90,7 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         made = shared_program([programs[i] for i in group], f"{name}_{number}")
         kernels.append(_short_or_in_loops(made.program))
         for i, constants in zip(group, made.constants, strict=True):
-            parts.append(Part(number, programs[i].reads, constants, places[i]))
+            parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
     return Parted(kernels, parts)
 
 

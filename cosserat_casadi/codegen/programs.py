@@ -36,14 +36,16 @@ class PartialProgram:
     """The steps of a part in numbers of its own: 0 for zero, then what is read of each argument, then results of steps.
 
     Attributes:
+        entries: which entries of the result it gives.
         arguments: names of the arguments.
         reads: entries that are read of each argument.
         steps: the steps.
         constants: for each operand of each step the constants among its entries, in order.
-        outputs: the entries of the result that it gives.
+        outputs: these entries.
         output_constants: the constants among them.
     """
 
+    entries: list[int]
     arguments: list[str]
     reads: list[list[int]]
     steps: list[Step]
@@ -97,7 +99,9 @@ def _lines(function: ca.Function) -> Stream:
 def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
     """The part of a program that gives some of the stored entries of its one result."""
     (result,) = program.results.values()
-    wanted = result.numbers[[*entries]]
+    # In the order in which they are computed they need not be brought into another.
+    ordered = sorted(entries, key=result.numbers.__getitem__)
+    wanted = result.numbers[ordered]
     origins = program.origins
     needed, kept = _needed(program, wanted)
     kept = _ordered(kept, wanted, origins.count)
@@ -126,7 +130,7 @@ def partial_program(program: Program, entries: Sequence[int]) -> PartialProgram:
             results.append(Value(result.pattern, local[result.numbers]))
         steps.append(replace(step, operands=operands, results=results))
     names = [argument.name for argument in program.arguments]
-    return PartialProgram(names, reads, steps, constants, local[wanted], _constants(origins, wanted))
+    return PartialProgram(ordered, names, reads, steps, constants, local[wanted], _constants(origins, wanted))
 
 
 def alike(programs: Sequence[PartialProgram]) -> list[list[int]]:
