@@ -16,7 +16,8 @@ from cosserat_casadi.maths.magnus import Increment, horner
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 
-TERMS = 11
+TERMS = 12
+"""Of the series of the factors, whose second derivatives are exact to rounding with as many for θ ≤ 2."""
 
 
 def _derivatives(coefficients: list[float]) -> tuple[list[float], list[float]]:

@@ -243,7 +243,8 @@ class MotionTangent:
         rows = 3 * len(self._nodes)
         turned = self._left_of_turning.T
         every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
-        stiffness, damping, mass = ca.vertsplit(every, every.shape[0] // ORDERS)
+        count = turned.shape[0]
+        stiffness, damping, mass = (every[k * count : (k + 1) * count, :] for k in range(ORDERS))
         mass = ca.triu2symm(ca.triu(mass))
         others = self._stretch
         if others is None:
