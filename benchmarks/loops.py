@@ -39,7 +39,7 @@ static double now_us(void) {
   clock_gettime(CLOCK_MONOTONIC, &t);
   return 1e6 * (double)t.tv_sec + 1e-3 * (double)t.tv_nsec;
 }
-static double given[1000], found[8][200000], room[timed_SZ_W + 1];
+static double given[20000], found[8][200000], room[timed_SZ_W + 1];
 static int integers[timed_SZ_IW + 1];
 int main(void) {
   const double *arguments[timed_SZ_ARG + 1];
@@ -47,7 +47,7 @@ int main(void) {
   int i;
   for (i = 0; i < timed_SZ_ARG; i++) arguments[i] = given;
   for (i = 0; i < timed_SZ_RES; i++) results[i] = found[i % 8];
-  for (i = 0; i < 1000; i++) given[i] = 0.1 * (i * 37 % 11) - 0.5;
+  for (i = 0; i < 20000; i++) given[i] = 0.1 * (i * 37 % 11) - 0.5;
   while (now_us() - begin < 3e5) {
     double took = now_us();
     timed(arguments, results, integers, room, 0);

@@ -2,13 +2,7 @@
 
 CasADi writes a loop in C for every instruction of an MX function: one for each transpose, slice and stack, and for a
 product one over sparsity patterns that looks up every entry. Here a function is first turned into steps on numbered
-entries, and these are written again.
-
-* What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
-  into order when a step asks for them.
-* A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
-  routine of routines.py runs along them without looking anything up.
-* Small steps between the large ones are written without loops, together.
+entries (steps.py), and these are written again; small steps between the large ones without loops, together.
 
 The results are those of the function itself, to the order of a sum.
 """
@@ -17,425 +11,45 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-from cosserat_casadi.codegen.routines import ROWS_AT_ONCE, TOGETHER
-
-Numbers = npt.NDArray[np.int64]
-
-DENSE_RATE = 8.0
-"""Products a nanosecond that are added to long dense columns."""
-
-SHORT_RATE = 2.5
-"""The same for columns shorter than what the routine takes at once."""
-
-SPARSE_RATE = 1.0
-"""The same where every entry is looked up."""
-
-MOVE_RATE = 1.5
-"""Entries a nanosecond that are brought into order."""
+from cosserat_casadi.codegen.routines import TOGETHER
+from cosserat_casadi.codegen.steps import Argument, Numbers, Program, Step, UnknownInstructionError, Value, program_of
 
 FEW_PIECES = 8
 """Pieces of other vectors of which a vector is put together one by one."""
 
-WORTH_SPLITTING = 0.2
-"""Share of zeros from which on a sum is formed of the other entries alone."""
-
-SMALL = 400
-"""Instructions up to which a step is written without a loop."""
+LONG_PIECES = 8
+"""Entries of such pieces from which on it is put together one by one however many they are."""
 
 LONGEST = 3000
 """Instructions up to which small steps are written together: compilers take more than twice as long for two."""
-
-SUMS = {ca.OP_ADD, ca.OP_SUB}
-SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
-SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
-SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
 
 
 def in_loops(function: ca.Function) -> ca.Function:
     """The same function, written for loops in C.
 
-    A function that is made of scalars stays as it is, and so does one of which an instruction can only be taken over
-    whole and reads one of several results: CasADi has no way to give that other operands.
+    A function that is made of scalars stays as it is, and so does one that is not known as a program.
     """
     if function.is_a("SXFunction"):
         return function
     try:
-        return _Writing(_Steps(function)).result
-    except _UnknownInstructionError:
+        return written(program_of(function))
+    except UnknownInstructionError:
         return function
 
 
-class _UnknownInstructionError(Exception):
-    """An instruction that can not be given other operands."""
+def written(program: Program) -> ca.Function:
+    """A program as an MX function whose code in loops is fast."""
+    return _Writing(program).result
 
 
-@dataclass(frozen=True, eq=False)
-class _Value:
-    """A matrix as entries that were computed before.
-
-    Attributes:
-        pattern: sparsity.
-        numbers: for each stored entry the number of what was computed; 0 for a zero.
-    """
-
-    pattern: ca.Sparsity
-    numbers: Numbers
-
-    @property
-    def transposed(self) -> _Value:
-        """The transpose."""
-        return _of_matrix(self._matrix.T)
-
-    def projected(self, pattern: ca.Sparsity) -> _Value:
-        """The entries of another pattern."""
-        return _of_matrix(ca.project(self._matrix, pattern))
-
-    @property
-    def dense(self) -> _Value:
-        """All entries."""
-        return self.projected(ca.Sparsity.dense(*self.pattern.shape))
-
-    @property
-    def _matrix(self) -> ca.DM:
-        return ca.DM(self.pattern, self.numbers.astype(np.float64))
-
-
-def _of_matrix(matrix: ca.DM) -> _Value:
-    numbers = np.array(matrix.nonzeros(), dtype=np.int64)
-    return _Value(matrix.sparsity(), numbers)
-
-
-def _column(numbers: Numbers) -> _Value:
-    return _Value(ca.Sparsity.dense(len(numbers)), numbers)
-
-
-@dataclass(frozen=True, eq=False)
-class _Step:
-    """A computation.
-
-    Attributes:
-        function: what is computed.
-        operands: its arguments.
-        results: its results, each with numbers one after the other.
-        instructions: length without a loop.
-        called: whether it stays a function of its own.
-    """
-
-    function: ca.Function
-    operands: list[_Value]
-    results: list[_Value]
-    instructions: float
-    called: bool = False
-
-    def of(self, arguments: Sequence[ca.MX]) -> list[ca.MX]:
-        """The results for these arguments."""
-        return list(self.function.call(arguments, not self.called, self.called))
-
-    @property
-    def small(self) -> bool:
-        """Whether it is written without a loop."""
-        return self.instructions <= SMALL
-
-
-class _Origins:
-    """What the numbers stand for: entry after entry of arguments, constants and results of steps.
-
-    Number 0 is a zero, and the first of these things.
-    """
-
-    def __init__(self) -> None:
-        # Arrays of things with room for more, which is doubled when it is full.
-        self._first = np.zeros(64, dtype=np.int64)
-        self._constant = np.zeros(64, dtype=np.bool_)
-        self._values: list[list[float] | None] = []
-        self.sizes: list[int] = []
-        self._count = 0
-        self.add(ca.Sparsity.dense(1), [0.0])
-
-    def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> _Value:
-        """Number the entries of one more thing, of constants with their values."""
-        thing = len(self.sizes)
-        if thing == len(self._first):
-            self._first = np.concatenate([self._first, np.zeros_like(self._first)])
-            self._constant = np.concatenate([self._constant, np.zeros_like(self._constant)])
-        self._first[thing] = self._count
-        self._constant[thing] = constants is not None
-        self._values.append(constants)
-        self.sizes.append(pattern.nnz())
-        numbers = np.arange(self._count, self._count + pattern.nnz())
-        self._count += pattern.nnz()
-        if constants is not None:
-            numbers[np.array(constants) == 0.0] = 0
-        return _Value(pattern, numbers)
-
-    def numbers(self, thing: int) -> Numbers:
-        """Numbers of all entries of a thing."""
-        first = int(self._first[thing])
-        return np.arange(first, first + self.sizes[thing])
-
-    def entries(self, thing: int, numbers: Numbers) -> Numbers:
-        """Which entries of a thing these are."""
-        return numbers - int(self._first[thing])
-
-    def owners(self, numbers: Numbers) -> Numbers:
-        """For each number the thing that it is an entry of; 0 for all constants."""
-        owners = self._things(numbers)
-        return np.where(self._constant[owners], 0, owners)
-
-    def _things(self, numbers: Numbers) -> Numbers:
-        return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
-
-    def is_whole(self, numbers: Numbers) -> bool:
-        """Whether these are all entries of one thing in their order, or constants."""
-        if len(numbers) == 0:
-            return True
-        owners = self.owners(numbers)
-        owner = int(owners[0])
-        if np.any(owners != owner):
-            return False
-        return owner == 0 or (len(numbers) == self.sizes[owner] and bool(np.all(np.diff(numbers) == 1)))
-
-    def constants(self, numbers: Numbers) -> list[float]:
-        """Values of constants."""
-        values = []
-        for thing, number in zip(self._things(numbers).tolist(), numbers.tolist(), strict=True):
-            of_thing = self._values[thing]
-            assert of_thing is not None, "asked for of constants alone"
-            values.append(of_thing[number - int(self._first[thing])])
-        return values
-
-
-class _Steps:
-    """The steps of a function, on numbered entries."""
-
-    def __init__(self, function: ca.Function) -> None:
-        self.function = function
-        self.origins = _Origins()
-        self.steps: list[_Step] = []
-        self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
-        self._output_numbers = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
-        self._ordered = set[bytes]()
-        self._values = dict[int, _Value]()
-        for k in range(function.n_instructions()):
-            self._read(k)
-
-    @cached_property
-    def outputs(self) -> list[_Value]:
-        """The outputs."""
-        patterns = [self.function.sparsity_out(i) for i in range(self.function.n_out())]
-        return [_Value(pattern, numbers) for pattern, numbers in zip(patterns, self._output_numbers, strict=True)]
-
-    def _read(self, k: int) -> None:
-        """Read the k-th instruction."""
-        code = self.function.instruction_id(k)
-        node = self.function.instruction_MX(k)
-        given = self.function.instruction_input(k)
-        if code == ca.OP_OUTPUT:
-            info = node.info()
-            numbers = self._values[given[0]].numbers
-            self._output_numbers[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
-            return
-        if code == ca.OP_INPUT:
-            info = node.info()
-            numbers = self.inputs[info["ind"]].numbers
-            results = [_Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
-        elif code == ca.OP_CONST:
-            results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
-        else:
-            operands = [self._values[variable] for variable in given]
-            results = _moved(code, node, operands) or self._computed(code, node, operands)
-        for variable, result in zip(self.function.instruction_output(k), results, strict=True):
-            self._values[variable] = result
-
-    def _computed(self, code: int, node: ca.MX, operands: Sequence[_Value]) -> list[_Value]:
-        """Results of an instruction that computes."""
-        if code == ca.OP_MTIMES:
-            return [self._product(*operands)]
-        if code == ca.OP_CALL:
-            function = node.which_function()
-            return self._step(function, operands, _length(function), called=True)
-        if node.is_unary() or node.is_binary():
-            return [self._elementwise(code, node, operands)]
-        if code == ca.OP_SETNONZEROS:
-            return [self._added(node, *operands)]
-        before = [node.dep(i) for i in range(node.n_dep())]
-        if any(operand.is_output() for operand in before):
-            raise _UnknownInstructionError
-        symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
-        as_it_is = ca.Function("instruction", symbols, ca.graph_substitute([node], before, symbols))
-        return self._step(as_it_is, operands, np.inf)
-
-    def _step(
-        self, function: ca.Function, operands: Sequence[_Value], instructions: float, *, called: bool = False
-    ) -> list[_Value]:
-        results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
-        self.steps.append(_Step(function, list(operands), results, instructions, called))
-        self._ordered |= {operand.numbers.tobytes() for operand in operands}
-        return results
-
-    # Entry by entry
-
-    def _elementwise(self, code: int, node: ca.MX, operands: Sequence[_Value]) -> _Value:
-        """An operation entry by entry, in the order in which its operands lie."""
-        count = node.nnz()
-        if code in SUMS and all(len(operand.numbers) == count for operand in operands):
-            return _Value(node.sparsity(), self._sum(code, operands[0].numbers, operands[1].numbers))
-        vectors = [operand.numbers for operand in operands if operand.pattern.numel() > 1]
-        order = self._order(count, vectors)
-        arguments = []
-        for operand in operands:
-            scalar = operand.pattern.numel() == 1
-            arguments.append(operand.dense if scalar else _column(operand.numbers[order]))
-        numbers = np.empty(count, dtype=np.int64)
-        numbers[order] = self._operation(code, arguments)
-        return _Value(node.sparsity(), numbers)
-
-    def _sum(self, code: int, left: Numbers, right: Numbers) -> Numbers:
-        """Sums or differences of entries; where there is only one it is the sum itself."""
-        alone = right == 0
-        numbers = np.where(alone, left, 0)
-        if code == ca.OP_ADD:
-            alone = alone | (left == 0)
-            numbers = np.where(left == 0, right, numbers)
-        if np.count_nonzero(alone) < WORTH_SPLITTING * len(alone):
-            alone[:] = False
-        both = np.flatnonzero(~alone)
-        order = both[self._order(len(both), [left[both], right[both]])]
-        if len(order):
-            numbers[order] = self._operation(code, [_column(left[order]), _column(right[order])])
-        return numbers
-
-    def _operation(self, code: int, operands: Sequence[_Value]) -> Numbers:
-        """Numbers of the results of an operation on columns and scalars."""
-        symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
-        result = ca.MX.unary(code, *symbols) if len(symbols) == 1 else ca.MX.binary(code, *symbols)
-        return self._step(ca.Function("operation", symbols, [result]), operands, result.nnz())[0].numbers
-
-    def _order(self, count: int, vectors: Sequence[Numbers]) -> Numbers:
-        """An order of entries in which the fewest must be moved."""
-        candidates = [np.arange(count), *(np.argsort(numbers, kind="stable") for numbers in vectors)]
-        costs = [sum(self._cost(numbers[order]) for numbers in vectors) for order in candidates]
-        return candidates[int(np.argmin(costs))]
-
-    def _cost(self, numbers: Numbers) -> float:
-        """Entries that must be moved to have them in this order."""
-        if self.origins.is_whole(numbers) or numbers.tobytes() in self._ordered:
-            return 0
-        # Of two orders the one that keeps more neighbours: what comes next may have it for nothing.
-        breaks = np.count_nonzero(np.diff(numbers) != 1)
-        return len(numbers) + breaks / len(numbers)
-
-    def _added(self, node: ca.MX, whole: _Value, part: _Value) -> _Value:
-        """Entries of a part added to some of the whole; several may be added to one."""
-        numbers = whole.numbers.copy()
-        places = _taken(node)
-        left = np.arange(len(places))
-        while len(left):
-            _, first = np.unique(places[left], return_index=True)
-            now = left[first]
-            numbers[places[now]] = self._sum(ca.OP_ADD, numbers[places[now]], part.numbers[now])
-            left = np.delete(left, first)
-        return _Value(node.sparsity(), numbers)
-
-    # Products
-
-    def _product(self, added: _Value, left: _Value, right: _Value) -> _Value:
-        """The sum added + left right."""
-        turned_left = left.transposed
-        turned_right = right.transposed.dense
-        along_rows = self._time(turned_right, turned_left)
-        along_columns = self._time(left.dense, right)
-        if min(along_rows, along_columns) > self._sparse_time(left, right):
-            return self._multiplied(added, left, right)
-        if along_rows < along_columns:
-            turned = self._multiplied(added.transposed.dense, turned_right, turned_left)
-            return turned.transposed.projected(added.pattern)
-        return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
-
-    def _multiplied(self, added: _Value, left: _Value, right: _Value) -> _Value:
-        operands = [left, right]
-        symbols = [ca.MX.sym("factor", operand.pattern) for operand in operands]
-        if added.numbers.any():
-            operands.append(added)
-            symbols.append(ca.MX.sym("added", added.pattern))
-            result = ca.mac(*symbols)
-        else:
-            result = ca.mac(*symbols, ca.MX(ca.DM(added.pattern, 0.0)))
-        function = ca.Function("product", symbols, [result])
-        return self._step(function, operands, 2 * _multiplications(left, right))[0]
-
-    def _time(self, left: _Value, right: _Value) -> float:
-        """Time of a product of which left is dense, ns."""
-        rows = left.pattern.shape[0]
-        rate = DENSE_RATE if rows >= ROWS_AT_ONCE[1] else SHORT_RATE
-        if rows < 2:
-            rate = SPARSE_RATE
-        return rows * len(right.numbers) / rate + self._move_time(left, right)
-
-    def _sparse_time(self, left: _Value, right: _Value) -> float:
-        """Time of a product that looks up every entry, ns."""
-        return _multiplications(left, right) / SPARSE_RATE + self._move_time(left, right)
-
-    def _move_time(self, *values: _Value) -> float:
-        return sum(self._cost(value.numbers) for value in values) / MOVE_RATE
-
-
-def _moved(code: int, node: ca.MX, operands: Sequence[_Value]) -> list[_Value]:
-    """Results of an instruction that only moves entries; none of one that computes."""
-    first = operands[0]
-    numbers = first.numbers
-    if code in SPLITS:
-        ends = node.info()["offset"]
-        patterns = [node.get_output(i).sparsity() for i in range(len(ends) - 1)]
-        return [_Value(pattern, numbers[ends[i] : ends[i + 1]]) for i, pattern in enumerate(patterns)]
-    if code == ca.OP_TRANSPOSE:
-        return [first.transposed]
-    if code == ca.OP_PROJECT:
-        return [first.projected(node.sparsity())]
-    if code in SIDE_BY_SIDE:
-        numbers = np.concatenate([operand.numbers for operand in operands])
-    elif code == ca.OP_HORZREPMAT:
-        numbers = np.tile(numbers, node.size2() // first.pattern.size2())
-    elif code == ca.OP_GETNONZEROS:
-        numbers = numbers[_taken(node)]
-    elif code == ca.OP_SETNONZEROS and not node.info()["add"]:
-        numbers = numbers.copy()
-        numbers[_taken(node)] = operands[1].numbers
-    elif code not in SAME_ENTRIES:
-        return []
-    return [_Value(node.sparsity(), numbers)]
-
-
-def _taken(node: ca.MX) -> Numbers:
-    """Entries that an instruction takes out of a matrix, or puts into it."""
-    return np.array(node.mapping().nonzeros(), dtype=np.int64)
-
-
-def _multiplications(left: _Value, right: _Value) -> int:
-    in_columns = np.diff(left.pattern.colind())
-    return int(in_columns[right.pattern.row()].sum())
-
-
-def _length(function: ca.Function) -> float:
-    """Instructions of a function without a loop; infinite where it is long, or has no such form."""
-    if function.nnz_in() + function.nnz_out() > SMALL:
-        return np.inf
-    try:
-        return float(function.expand().n_instructions())
-    except RuntimeError:
-        return np.inf
-
-
-def _bundles(steps: Sequence[_Step]) -> list[list[_Step]]:
+def _bundles(steps: Sequence[Step]) -> list[list[Step]]:
     """Small steps in bundles that are written together."""
-    bundles: list[list[_Step]] = [[]]
+    bundles: list[list[Step]] = [[]]
     length = 0.0
     for step in steps:
         length += step.instructions
@@ -449,23 +63,34 @@ def _bundles(steps: Sequence[_Step]) -> list[list[_Step]]:
 class _Writing:
     """Steps on their way to an MX function."""
 
-    def __init__(self, steps: _Steps) -> None:
-        self.steps = steps
-        self.origins = steps.origins
-        function = steps.function
-        self.symbols = [ca.MX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.origins = program.origins
         self._computed = dict[int, ca.MX]()
         self._ordered = dict[bytes, ca.MX]()
-        for value, symbol in zip(steps.inputs, self.symbols, strict=True):
-            self._keep(value, symbol)
+        self._symbols = [self._argument(argument) for argument in program.arguments]
         self._write()
 
     @property
     def result(self) -> ca.Function:
         """The function."""
-        function = self.steps.function
-        results = [self._matrix(value) for value in self.steps.outputs]
-        return ca.Function(function.name(), self.symbols, results, function.name_in(), function.name_out())
+        program = self.program
+        results = [self._matrix(value) for value in program.results.values()]
+        names = [argument.name for argument in program.arguments]
+        return ca.Function(program.name, self._symbols, results, names, list(program.results))
+
+    def _argument(self, argument: Argument) -> ca.MX:
+        """The symbol of an argument: that of its one piece, or a column of those of its pieces."""
+        if len(argument.pieces) == 1:
+            symbol = ca.MX.sym(argument.name, argument.pattern)
+            self._keep(argument.pieces[0], symbol)
+            return symbol
+        symbols = []
+        for piece in argument.pieces:
+            symbol = ca.MX.sym(argument.name, piece.pattern)
+            self._keep(piece, symbol)
+            symbols.append(symbol)
+        return ca.vertcat(*symbols)
 
     def _write(self) -> None:
         """Write all steps: in turns the small ones that are due, and the large ones."""
@@ -477,12 +102,12 @@ class _Writing:
                     self._write_each(steps)
             self._write_each(large)
 
-    def _layers(self) -> list[tuple[list[_Step], list[_Step]]]:
+    def _layers(self) -> list[tuple[list[Step], list[Step]]]:
         """Small and large steps in layers: small ones need large ones of earlier layers alone."""
         layer_of = defaultdict[int, int](int)
         large_in = set[int]()
-        layers: list[tuple[list[_Step], list[_Step]]] = []
-        for step in self.steps.steps:
+        layers: list[tuple[list[Step], list[Step]]] = []
+        for step in self.program.steps:
             layer = 0
             for owner in self._needed(step):
                 after_large = step.small and owner in large_in
@@ -496,23 +121,23 @@ class _Writing:
                     large_in.add(owner)
         return layers
 
-    def _needed(self, step: _Step) -> list[int]:
+    def _needed(self, step: Step) -> list[int]:
         """What a step takes its operands from."""
         numbers = [operand.numbers for operand in step.operands]
         owners = self.origins.owners(np.concatenate([np.zeros(1, dtype=np.int64), *numbers]))
         return [int(owner) for owner in np.unique(owners) if owner]
 
-    def _made(self, step: _Step) -> list[int]:
+    def _made(self, step: Step) -> list[int]:
         first = [result.numbers[:1] for result in step.results]
         return [int(owner) for owner in self.origins.owners(np.concatenate(first))]
 
-    def _write_each(self, steps: Sequence[_Step]) -> None:
+    def _write_each(self, steps: Sequence[Step]) -> None:
         for step in steps:
             arguments = [self._matrix(operand) for operand in step.operands]
             for result, computed in zip(step.results, step.of(arguments), strict=True):
                 self._keep(result, computed)
 
-    def _write_together(self, steps: Sequence[_Step]) -> None:
+    def _write_together(self, steps: Sequence[Step]) -> None:
         """Write steps as one function without loops."""
         made = [owner for step in steps for owner in self._made(step)]
         operands = np.concatenate([operand.numbers for step in steps for operand in step.operands])
@@ -526,7 +151,7 @@ class _Writing:
             arguments = [self._scalars(operand, entry_of) for operand in step.operands]
             for result, computed in zip(step.results, step.function.call(arguments), strict=True):
                 entry_of |= zip(result.numbers.tolist(), computed.nonzeros(), strict=True)
-        inside = set[_Step | None](steps)
+        inside = set[Step | None](steps)
         kept = [owner for owner in made if self._users[owner] - inside]
         results = [ca.vertcat(*[entry_of[number] for number in self.origins.numbers(owner).tolist()]) for owner in kept]
         together = ca.Function(TOGETHER, symbols, ca.cse(results))
@@ -541,18 +166,18 @@ class _Writing:
         return whole if 2 * len(needed) > len(whole) else needed
 
     @cached_property
-    def _users(self) -> dict[int, set[_Step | None]]:
+    def _users(self) -> dict[int, set[Step | None]]:
         """For each thing the steps that need it; None stands for the outputs."""
-        users = defaultdict[int, set[_Step | None]](set)
-        for step in self.steps.steps:
+        users = defaultdict[int, set[Step | None]](set)
+        for step in self.program.steps:
             for owner in self._needed(step):
                 users[owner].add(step)
-        for value in self.steps.outputs:
+        for value in self.program.results.values():
             for owner in np.unique(self.origins.owners(value.numbers)).tolist():
                 users[owner].add(None)
         return users
 
-    def _scalars(self, value: _Value, entry_of: dict[int, ca.SX]) -> ca.SX:
+    def _scalars(self, value: Value, entry_of: dict[int, ca.SX]) -> ca.SX:
         entries = []
         for number in value.numbers.tolist():
             if number not in entry_of:
@@ -562,12 +187,12 @@ class _Writing:
 
     # Entries
 
-    def _keep(self, value: _Value, computed: ca.MX) -> None:
+    def _keep(self, value: Value, computed: ca.MX) -> None:
         if len(value.numbers):
             owner = int(self.origins.owners(value.numbers[:1])[0])
             self._computed[owner] = ca.vec(ca.sparsity_cast(computed, ca.Sparsity.dense(computed.nnz())))
 
-    def _matrix(self, value: _Value) -> ca.MX:
+    def _matrix(self, value: Value) -> ca.MX:
         """A matrix of these entries."""
         matrix: ca.MX = ca.sparsity_cast(self._vector(value.numbers), value.pattern)
         return matrix
@@ -584,7 +209,7 @@ class _Writing:
             return ca.MX(0, 1)
         owners = self.origins.owners(numbers)
         starts = np.flatnonzero(np.diff(owners, prepend=-1))
-        if len(starts) <= FEW_PIECES:
+        if len(starts) <= max(FEW_PIECES, len(numbers) // LONG_PIECES):
             pieces = np.split(numbers, starts[1:])
             return ca.vertcat(*[self._piece(int(owners[i]), piece) for i, piece in zip(starts, pieces, strict=True)])
         pool = []

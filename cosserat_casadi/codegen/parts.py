@@ -2,6 +2,7 @@
 
 Each part reads few unknowns and inputs. Two parts compute alike where their instructions are the same but for
 constants: those become arguments, unless they are the same in all. So six legs of a robot are one piece of code.
+Where that is too long without loops, programs.py does the same with steps in place of instructions.
 """
 
 from __future__ import annotations
@@ -12,9 +13,15 @@ from dataclasses import dataclass
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.loops import in_loops
+from cosserat_casadi.codegen.loops import in_loops, written
+from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
+from cosserat_casadi.codegen.steps import Program, UnknownInstructionError, program_of
+from cosserat_casadi.codegen.streams import Line, Stream, names_of_part, scalars, shared, stacked
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
+
+FORESEEN_WITHIN = 4
+"""Straight-line code may be this much shorter than it is foreseen to be: what is longer is not written out."""
 
 
 @dataclass(frozen=True)
@@ -23,17 +30,25 @@ class Part:
 
     Attributes:
         kernel: number of the function that computes them.
-        x: unknowns that it reads, in the order of its argument.
-        inputs: inputs that it reads.
+        reads: entries that it reads of each argument, in the order of its own arguments.
         constants: its constants.
         entries: numbers of the entries of the whole, in the order of its result.
     """
 
     kernel: int
-    x: list[int]
-    inputs: list[int]
+    reads: list[list[int]]
     constants: list[float]
     entries: list[int]
+
+    @property
+    def x(self) -> list[int]:
+        """Unknowns that it reads, the first argument."""
+        return self.reads[0]
+
+    @property
+    def inputs(self) -> list[int]:
+        """Inputs that it reads, the second argument of the functions of statics."""
+        return self.reads[1]
 
 
 @dataclass(frozen=True)
@@ -41,7 +56,7 @@ class Parted:
     """A function in parts.
 
     Attributes:
-        kernels: maps (x, inputs, factor, constants) ↦ entries.
+        kernels: maps (x, inputs, factor, constants) ↦ entries, or of other arguments than the first three.
         parts: which kernel gives which entries.
     """
 
@@ -58,34 +73,69 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         name: what the kernels are called, before their numbers.
 
     Returns:
-        the parts as straight-line code; where one is too long for that the whole as a single part in loops.
+        the parts as straight-line code; where one is too long for that, long ones in loops. A function that is not
+        known as a program is a single part then.
     """
+    places = _by_owner(owners)
+    programs = _programs(function, places)
+    if programs is None or max(program.foreseen for program in programs) <= FORESEEN_WITHIN * STRAIGHT:
+        straight = _straight(function, places, name)
+        if all(kernel.n_instructions() <= STRAIGHT for kernel in straight.kernels):
+            return straight
+    if programs is None:
+        return _whole(function, f"{name}_0")
+    kernels = list[ca.Function]()
+    parts = list[Part]()
+    for number, group in enumerate(alike(programs)):
+        made = shared_program([programs[i] for i in group], f"{name}_{number}")
+        kernels.append(_short_or_in_loops(made.program))
+        for i, constants in zip(group, made.constants, strict=True):
+            parts.append(Part(number, programs[i].reads, constants, programs[i].entries))
+    return Parted(kernels, parts)
+
+
+def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> Parted:
+    """Parts as straight-line code."""
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(3)]
     entries = function.call(symbols)[0].nonzeros()
-    groups: dict[tuple[Line, ...], list[tuple[_Stream, list[int]]]] = {}
-    for own in _by_owner(owners):
-        stream = _Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *_names(ARGUMENTS[:3])))
+    named = names_of_part(ARGUMENTS[:3])
+    groups: dict[tuple[Line, ...], list[tuple[Stream, list[int]]]] = {}
+    for own in places:
+        stream = Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *named))
         groups.setdefault(stream.key, []).append((stream, own))
     kernels = list[ca.Function]()
     parts = list[Part]()
     for number, group in enumerate(groups.values()):
-        kernel, constants = _shared([stream for stream, _ in group], f"{name}_{number}")
+        kernel, constants = shared([stream for stream, _ in group], f"{name}_{number}")
         kernels.append(kernel)
         for (stream, own), values in zip(group, constants, strict=True):
-            parts.append(Part(number, stream.x, stream.inputs, values, own))
-    if any(kernel.n_instructions() > STRAIGHT for kernel in kernels):
-        return _whole(function, f"{name}_0")
+            parts.append(Part(number, stream.reads, values, own))
     return Parted(kernels, parts)
+
+
+def _programs(function: ca.Function, places: Sequence[list[int]]) -> list[PartialProgram] | None:
+    """The steps of each part; None of a function that is not known as a program."""
+    if function.is_a("SXFunction"):
+        return None
+    try:
+        program = program_of(function)
+    except UnknownInstructionError:
+        return None
+    return [partial_program(program, own) for own in places]
+
+
+def _short_or_in_loops(program: Program) -> ca.Function:
+    """Straight-line code if that is short, else loops."""
+    in_loops = written(program)
+    symbols = [ca.SX.sym(in_loops.name_in(i), in_loops.sparsity_in(i)) for i in range(in_loops.n_in())]
+    results = ca.cse(list(in_loops.call(symbols)))
+    straight = ca.Function(program.name, symbols, results, in_loops.name_in(), in_loops.name_out())
+    return straight if straight.n_instructions() <= STRAIGHT else in_loops
 
 
 def _by_owner(owners: Sequence[int]) -> list[list[int]]:
     """For each owner in turn the places where it stands."""
     return [[i for i, entry_owner in enumerate(owners) if entry_owner == owner] for owner in sorted(set(owners))]
-
-
-def _names(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Names of the arguments of a part, and of its one result."""
-    return [*arguments], ["entries"]
 
 
 def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], name: str) -> list[ca.Function]:
@@ -97,16 +147,16 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
         name: what the functions that they call are called, before their numbers.
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
-    streams = [_Stream(_stacked(function)) for function in functions]
+    streams = [Stream(stacked(function)) for function in functions]
     groups: dict[tuple[Line, ...], list[int]] = {}
     for i, stream in enumerate(streams):
         groups.setdefault(stream.key, []).append(i)
     result = list(kernels)
     for number, members in enumerate(groups.values()):
         if len(members) > 1:
-            shared, constants = _shared([streams[i] for i in members], f"{name}_{number}")
+            made, constants = shared([streams[i] for i in members], f"{name}_{number}")
             for i, values in zip(members, constants, strict=True):
-                result[i] = _calling(functions[i], kernels[i].name(), shared, streams[i].reads, values)
+                result[i] = _calling(functions[i], kernels[i].name(), made, streams[i].reads, values)
     return result
 
 
@@ -118,34 +168,21 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
         owners: for each entry of the result whose it is.
         name: what it is called.
     """
-    symbols, (result,) = _scalars(function)
+    symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
     places = _by_owner(owners)
     pieces = []
     kernels = []
     for own in places:
         piece = ca.vertcat(*[entries[i] for i in own])
-        pieces.append(ca.Function("piece", symbols, [piece], *_names(function.name_in())))
-        kernels.append(ca.Function("piece", symbols, [ca.cse(piece)], *_names(function.name_in())))
+        pieces.append(ca.Function("piece", symbols, [piece], *names_of_part(function.name_in())))
+        kernels.append(ca.Function("piece", symbols, [ca.cse(piece)], *names_of_part(function.name_in())))
     arguments = function.mx_in()
     columns = [piece.call(arguments)[0] for piece in sharing(pieces, kernels, f"{name}_part")]
     order = [i for own in places for i in own]
     back = sorted(range(len(order)), key=order.__getitem__)
     whole = ca.vertcat(*columns)[back]
     return ca.Function(name, arguments, [whole], function.name_in(), function.name_out())
-
-
-def _scalars(function: ca.Function) -> tuple[list[ca.SX], list[ca.SX]]:
-    """Arguments and results as scalars, without entries that are zero whatever the arguments."""
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    return symbols, [ca.sparsify(result) for result in function.call(symbols)]
-
-
-def _stacked(function: ca.Function) -> ca.Function:
-    """The entries of all results in one column, as scalars."""
-    symbols, results = _scalars(function)
-    entries = [entry for result in results for entry in result.nonzeros()]
-    return ca.Function("stacked", symbols, [ca.vertcat(*entries)], *_names(function.name_in()))
 
 
 def _calling(
@@ -165,7 +202,7 @@ def _calling(
     column = shared.call([*given, ca.DM(constants)], False, True)[0]
     results = []
     start = 0
-    for result in _scalars(function)[1]:
+    for result in scalars(function)[1]:
         pattern = result.sparsity()
         entries = column[start : start + pattern.nnz()]
         start += pattern.nnz()
@@ -181,173 +218,8 @@ def _whole(function: ca.Function, name: str) -> Parted:
     kernel = in_loops(ca.Function(name, [*symbols, no_constants], [ca.densify(result)], ARGUMENTS, ["entries"]))
     part = Part(
         kernel=0,
-        x=list(range(function.size1_in(0))),
-        inputs=list(range(function.size1_in(1))),
+        reads=[list(range(function.size1_in(i))) for i in range(3)],
         constants=[],
         entries=list(range(function.nnz_out(0))),
     )
     return Parted([kernel], [part])
-
-
-FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
-"""Operations that CasADi writes for a product with a constant; 1/x stands for such a quotient."""
-
-Line = tuple[int, tuple[int, ...], int]
-"""Operation, operands, number of results. Operands are numbers of earlier values, CONSTANT for the next constant, or
-what is read or written."""
-
-CONSTANT = -1
-
-
-class _Stream:
-    """The instructions of a scalar function, each value numbered once, with constants apart.
-
-    CasADi's own instructions write to work variables that are used again, and hold constants as instructions. Two legs
-    of a robot give the same lines here although their constants differ. For the map x ↦ 3 x₀ + x₄, say,
-
-    ========================  ================================  ==================
-    CasADi                    line                              constants
-    ========================  ================================  ==================
-    a0 = 3
-    a1 = input[0][0]          (OP_INPUT, (0, 0), 1): value 0
-    a0 = a0 * a1              (OP_MUL, (CONSTANT, 0), 1): 1     [3]
-    a1 = input[0][4]          (OP_INPUT, (0, 1), 1): value 2
-    a0 = a0 + a1              (OP_ADD, (1, 2), 1): value 3
-    output[0][0] = a0         (OP_OUTPUT, (3, 0), 0)
-    ========================  ================================  ==================
-
-    x₄ is read as the second of the unknowns that this part reads, x = [0, 4].
-
-    Attributes:
-        function: map (x, inputs, factor) ↦ entries.
-        reads: for each argument the entries that are read; an argument of one entry is read whole.
-        lines: the instructions.
-        constants: value of every use of a constant, in order.
-    """
-
-    def __init__(self, function: ca.Function) -> None:
-        self.function = function
-        self.lines: list[Line] = []
-        self.constants: list[float] = []
-        codes = [function.instruction_id(k) for k in range(function.n_instructions())]
-        read = {tuple(function.instruction_input(k)) for k, code in enumerate(codes) if code == ca.OP_INPUT}
-        self.reads = [sorted(entry for number, entry in read if number == i) for i in range(function.n_in())]
-        for i in range(function.n_in()):
-            if function.numel_in(i) == 1:
-                self.reads[i] = [0]
-        self._local = [{entry: i for i, entry in enumerate(entries)} for entries in self.reads]
-        self._value_of: dict[int, int] = {}
-        self._constant_of: dict[int, float] = {}
-        self._value_count = 0
-        for k, code in enumerate(codes):
-            self._add(k, code)
-
-    @property
-    def x(self) -> list[int]:
-        """Unknowns that are read, the first argument."""
-        return self.reads[0]
-
-    @property
-    def inputs(self) -> list[int]:
-        """Inputs that are read, the second argument."""
-        return self.reads[1]
-
-    @property
-    def key(self) -> tuple[Line, ...]:
-        """What streams share that compute alike."""
-        return tuple(self.lines)
-
-    def _add(self, k: int, code: int) -> None:
-        """Append the line of the k-th instruction."""
-        inputs = self.function.instruction_input(k)
-        outputs = self.function.instruction_output(k)
-        if code == ca.OP_CONST:
-            self._constant_of[outputs[0]] = self.function.instruction_constant(k)
-        elif code == ca.OP_INPUT:
-            argument, entry = inputs
-            self._write(code, (argument, self._local[argument][entry]), outputs)
-        elif code == ca.OP_OUTPUT:
-            self.lines.append((code, (self._operand(inputs[0]), outputs[1]), 0))
-        elif code in FACTORS:
-            self._write(ca.OP_MUL, (self._constant(FACTORS[code]), self._operand(inputs[0])), outputs)
-        elif code == ca.OP_INV:
-            self._write(ca.OP_DIV, (self._constant(1.0), self._operand(inputs[0])), outputs)
-        else:
-            self._write(code, tuple(self._operand(variable) for variable in inputs), outputs)
-
-    def _write(self, code: int, operands: tuple[int, ...], outputs: Sequence[int]) -> None:
-        self.lines.append((code, operands, len(outputs)))
-        for variable in outputs:
-            self._constant_of.pop(variable, None)
-            self._value_of[variable] = self._value_count
-            self._value_count += 1
-
-    def _operand(self, variable: int) -> int:
-        if variable in self._constant_of:
-            return self._constant(self._constant_of[variable])
-        return self._value_of[variable]
-
-    def _constant(self, value: float) -> int:
-        self.constants.append(value)
-        return CONSTANT
-
-
-def _shared(streams: Sequence[_Stream], name: str) -> tuple[ca.Function, list[list[float]]]:
-    """One function for streams that compute alike, and the constants of each.
-
-    Constants that are the same in all streams stay in the code; uses that vary alike share one argument.
-    """
-    first = streams[0]
-    uses = list(zip(*(stream.constants for stream in streams), strict=True))
-    varied = list(dict.fromkeys(values for values in uses if len(set(values)) > 1))
-    arguments = [*first.function.name_in(), "constants"]
-    sizes = [*map(len, first.reads), len(varied)]
-    symbols = [ca.SX.sym(argument, size) for argument, size in zip(arguments, sizes, strict=True)]
-    symbol_of = dict(zip(varied, _entries(symbols[-1]), strict=True))
-    constants = [symbol_of[values] if values in symbol_of else ca.SX(values[0]) for values in uses]
-    kernel = ca.Function(name, symbols, ca.cse([_replay(first, symbols, constants)]), *_names(arguments))
-    return kernel, [[values[i] for values in varied] for i in range(len(streams))]
-
-
-def _replay(stream: _Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
-    """The result of a stream in new symbols and constants."""
-    next_constant = iter(constants)
-    # A call is known by the number of its arguments and results alone.
-    called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in stream.function.find_functions(0)}
-    arguments = [_entries(symbol) for symbol in symbols]
-    values = list[ca.SX]()
-    results = [ca.SX(0.0)] * stream.function.nnz_out(0)
-    for code, operands, count in stream.lines:
-        if code == ca.OP_INPUT:
-            argument, entry = operands
-            values.append(arguments[argument][entry])
-        elif code == ca.OP_OUTPUT:
-            value, entry = operands
-            results[entry] = next(next_constant) if value == CONSTANT else values[value]
-        else:
-            given = [next(next_constant) if value == CONSTANT else values[value] for value in operands]
-            if code == ca.OP_CALL:
-                values += _call(called[len(given), count], given)
-            else:
-                values.append(_apply(code, given))
-    return ca.vertcat(*results)
-
-
-def _apply(code: int, arguments: Sequence[ca.SX]) -> ca.SX:
-    return ca.SX.unary(code, *arguments) if len(arguments) == 1 else ca.SX.binary(code, *arguments)
-
-
-def _entries(vector: ca.SX) -> list[ca.SX]:
-    return ca.vertsplit(vector) if vector.numel() else []
-
-
-def _call(function: ca.Function, arguments: Sequence[ca.SX]) -> list[ca.SX]:
-    """Entries of all results of a function that is called with these entries."""
-    shaped = list[ca.SX]()
-    start = 0
-    for i in range(function.n_in()):
-        pattern = function.sparsity_in(i)
-        end = start + pattern.nnz()
-        shaped.append(ca.SX(pattern, ca.vertcat(*arguments[start:end])))
-        start = end
-    return [entry for result in function.call(shaped, False, True) for entry in result.nonzeros()]

@@ -2,6 +2,7 @@
 
 CasADi adds column after column to a column in memory, entry by entry. Here some rows of a column stay in registers
 until all their products are summed, two in each register where the processor can. Sums and their order are the same.
+There is a routine for each number of rows: the bunches fill them, and none is left that waits for single sums.
 
 CasADi asks before every entry that it reads or writes whether there is such an argument or result. Steps that are
 written together are called with all of them, and compilers spend most of their time on these questions.
@@ -11,42 +12,38 @@ from __future__ import annotations
 
 import re
 
-ROWS_AT_ONCE = (12, 6, 4, 3, 2, 1)
-"""Rows that are summed together, most first: twelve doubles are six registers of two, the factors fill the rest."""
+ROWS_AT_ONCE = 16
+"""Most rows that are summed together: sixteen doubles are eight registers of two, the factors fill some of the rest."""
 
-SPARSE = """static void casadi_mtimes_dense_sparse(const casadi_real* x, casadi_int n,
+SPARSE = """static void casadi_mtimes_dense_sparse_{rows}(const casadi_real* x,
     const casadi_real* y, const casadi_int* sp_y, casadi_real* z) {{
   const casadi_int columns = sp_y[1], *colind = sp_y + 2, *row = colind + columns + 1;
   casadi_int c, k, r;
-  for (c = 0; c < columns; ++c, z += n) {{
+  for (c = 0; c < columns; ++c, z += {rows}) {{
     const casadi_int begin = colind[c], end = colind[c + 1];
-    r = 0;
 {sums}
   }}
 }}
 """
 
-DENSE = """static void casadi_mtimes_dense(const casadi_real* x, casadi_int n, casadi_int inner,
-    const casadi_real* y, casadi_int columns, casadi_real* z, casadi_int tr) {{
+DENSE = """static void casadi_mtimes_dense_{rows}(const casadi_real* x, casadi_int inner,
+    const casadi_real* y, casadi_int columns, casadi_real* z) {{
   casadi_int c, k, r;
-  (void)tr;
-  for (c = 0; c < columns; ++c, y += inner, z += n) {{
+  for (c = 0; c < columns; ++c, y += inner, z += {rows}) {{
     const casadi_int begin = 0, end = inner;
-    r = 0;
 {sums}
   }}
 }}
 """
 
-SUMS = """    for (; r + {rows} <= n; r += {rows}) {{
+SUMS = """    for (r = {first}; r < {last}; r += {count}) {{
       casadi_real {begun};
       for (k = begin; k < end; ++k) {{
-        const casadi_real f = y[k], *s = x + {column} * n + r;
+        const casadi_real f = y[k], *s = x + {column} * {rows} + r;
         {added}
       }}
       {stored}
     }}"""
-
 
 TOGETHER = "steps"
 """What functions are called that steps are written together in."""
@@ -68,26 +65,46 @@ def _without_checks(source: str) -> str:
 
 
 def _with_fast_products(source: str) -> str:
-    """A source with the routines below in place of CasADi's own."""
-    routines = {
-        "casadi_mtimes_dense_sparse": SPARSE.format(sums=_sums("row[k]")),
-        "casadi_mtimes_dense": DENSE.format(sums=_sums("k")),
-    }
-    for name, routine in routines.items():
-        source = re.sub(rf"^static void {name}\(.*?^\}}\n", routine, source, flags=re.M | re.S)
+    """A source with the routines above, one for each number of rows that it asks for, in place of CasADi's own."""
+    for name, routine, column in (
+        ("casadi_mtimes_dense_sparse", SPARSE, "row[k]"),
+        ("casadi_mtimes_dense", DENSE, "k"),
+    ):
+        # CasADi's last argument of a dense product says that x is transposed, which it never is.
+        end = r", 0\);" if routine is DENSE else r"\);"
+        pattern = rf"\b{name}\(([^,\n]+), (\d+), (.*){end}"
+        rows = sorted({int(found[2]) for found in re.finditer(pattern, source)})
+        made = "".join(routine.format(rows=count, sums=_sums(count, column)) for count in rows)
+        source = re.sub(rf"^static void {name}\(.*?^\}}\n", made, source, flags=re.M | re.S)
+        source = re.sub(pattern, rf"{name}_\2(\1, \3);", source)
     return source
 
 
-def _sums(column: str) -> str:
-    """The sums of the rows of one column of the result, where ``column`` is the column of x that meets y[k]."""
-    return "\n".join(_sum(rows, column) for rows in ROWS_AT_ONCE)
+def _sums(rows: int, column: str) -> str:
+    """The sums of the rows of one column of the result, in bunches of nearly the same size.
+
+    Args:
+        rows: their number.
+        column: the column of x that meets y[k].
+    """
+    bunches = -(-rows // ROWS_AT_ONCE)
+    size, larger = divmod(rows, bunches)
+    middle = larger * (size + 1)
+    parts = []
+    for first, last, count in ((0, middle, size + 1), (middle, rows, size)):
+        if first < last:
+            parts.append(_sum(rows, first, last, count, column))
+    return "\n".join(parts)
 
 
-def _sum(rows: int, column: str) -> str:
+def _sum(rows: int, first: int, last: int, count: int, column: str) -> str:
     return SUMS.format(
         rows=rows,
+        first=first,
+        last=last,
+        count=count,
         column=column,
-        begun=", ".join(f"a{i} = z[r + {i}]" for i in range(rows)),
-        added=" ".join(f"a{i} += f * s[{i}];" for i in range(rows)),
-        stored=" ".join(f"z[r + {i}] = a{i};" for i in range(rows)),
+        begun=", ".join(f"a{i} = z[r + {i}]" for i in range(count)),
+        added=" ".join(f"a{i} += f * s[{i}];" for i in range(count)),
+        stored=" ".join(f"z[r + {i}] = a{i};" for i in range(count)),
     )

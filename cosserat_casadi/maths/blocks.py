@@ -67,6 +67,18 @@ def hat_operator(field: AnyMatrix) -> AnyMatrix:
     return ca.blockcat(rows)
 
 
+def sum_of_products(*factors: tuple[Matrix, Matrix]) -> Matrix:
+    """Sum of products, each added to the ones before while it is formed."""
+    patterns = [ca.mtimes(left.sparsity(), right.sparsity()) for left, right in factors]
+    pattern = patterns[0]
+    for other in patterns[1:]:
+        pattern = pattern + other
+    total: Matrix = ca.DM(pattern, 0.0)
+    for left, right in factors:
+        total = ca.mac(left, right, total)
+    return total
+
+
 def cumulative_sum(columns: AnyMatrix, points: int) -> AnyMatrix:
     """Running sums over the points of stacked fields, one field a column."""
     # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.

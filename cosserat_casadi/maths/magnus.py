@@ -193,7 +193,7 @@ class Increment:
     @property
     def tangent(self) -> Matrix:
         """T = 1 + b Ω^ + c Ω^² with δ(exp Ω^) = (T δΩ)^ exp Ω^ and b = (1 − cos θ)/θ², 3×3."""
-        linear = hat(self._linear * self.omega)
+        linear = hat(self.linear * self.omega)
         cubic = hat(self.cubic * self.omega)
         return ca.DM.eye(3) + linear + cubic @ hat(self.omega)
 
@@ -201,7 +201,7 @@ class Increment:
         """The product Tᵀ M: what a moment M (3×1, in the frame in which the increment begins) does on δΩ, 3×1."""
         # Horner's rule in Ω^: Tᵀ = 1 − b Ω^ + c Ω^² = 1 + Ω^ (c Ω^ − b).
         turned = self.cubic * cross(self.omega, moment)
-        bent = turned - self._linear * moment
+        bent = turned - self.linear * moment
         return moment + cross(self.omega, bent)
 
     def stiffness(self, moment: Matrix) -> Matrix:
@@ -225,7 +225,7 @@ class Increment:
         return hat(moment / 2) + product + product.T
 
     @property
-    def _linear(self) -> Matrix:
+    def linear(self) -> Matrix:
         """The factor b = (1 − cos θ)/θ²."""
         return self.half_sine**2 / 2
 

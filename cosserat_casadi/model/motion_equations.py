@@ -87,26 +87,29 @@ class MotionEquations:
         """What the inertia of a rod adds to the rows of its strains and of its base, if that floats."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
-        tangent = MotionTangent(self.system.tangents[rod], self.system.inertias[rod], floating=base is not None)
         unit = discrete.rods[rod].energy_unit
+        floating = base is not None
+        tangent = MotionTangent(self.system.tangents[rod], self.system.inertias[rod], floating=floating, unit=unit)
         strains = discrete.unknowns.strain(rod)
         if base is None:
-            return [(strains, strains, _divided(tangent.matrices, unit))]
+            return [(strains, strains, tangent.matrices)]
         whole = tangent.matrices.along(self._to_unknowns(rod, base))
         deviation = discrete.deviation(base)
         count = discrete.rods[rod].size
         ranges = {"strain": slice(0, count), "base": slice(count, None)}
         places = {"strain": strains, "base": deviation}
-        units = {"strain": unit, "base": discrete.frames[base].unit}
+        # Rows of a frame have a unit of their own.
+        factors = {"strain": 1.0, "base": unit / discrete.frames[base].unit}
         blocks = []
         for row, rows in places.items():
             for column, columns in places.items():
+                factor = factors[row]
                 part = MotionMatrices(
-                    stiffness=whole.stiffness[ranges[row], ranges[column]],
-                    damping=whole.damping[ranges[row], ranges[column]],
-                    mass=whole.mass[ranges[row], ranges[column]],
+                    stiffness=factor * whole.stiffness[ranges[row], ranges[column]],
+                    damping=factor * whole.damping[ranges[row], ranges[column]],
+                    mass=factor * whole.mass[ranges[row], ranges[column]],
                 )
-                blocks.append((rows, columns, _divided(part, units[row])))
+                blocks.append((rows, columns, part))
         return blocks
 
     def _to_unknowns(self, rod: str, base: FrameName) -> Jet:
@@ -120,8 +123,3 @@ class MotionEquations:
             rate=ca.diagcat(still, moved.rate),
             acceleration=ca.diagcat(still, moved.acceleration),
         )
-
-
-def _divided(matrices: MotionMatrices, unit: float) -> MotionMatrices:
-    """Derivatives of forces in J as derivatives of rows without unit."""
-    return MotionMatrices(matrices.stiffness / unit, matrices.damping / unit, matrices.mass / unit)

@@ -99,7 +99,9 @@ class System:
     @cached_property
     def tangents(self) -> dict[str, Tangent]:
         """Variations of every rod's fields."""
-        return {name: Tangent(igm) for name, igm in self.rods.items()}
+        # In motion there is so much more of it that it is loops.
+        in_loops = self.arguments.motion is not None
+        return {name: Tangent(igm, in_loops) for name, igm in self.rods.items()}
 
     @cached_property
     def frame_poses(self) -> dict[FrameName, FramePose]:

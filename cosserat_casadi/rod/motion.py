@@ -13,13 +13,13 @@ from functools import cache, cached_property
 
 import casadi as ca
 
-from cosserat_casadi.maths import magnus
+from cosserat_casadi.maths.increment_rates import IncrementRates
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.strain import DiscreteRod, Ratio
-from cosserat_casadi.rod.transport import KEPT, IntervalKernels, interval_kernels, interval_turns
+from cosserat_casadi.rod.transport import ARGUMENTS, KEPT, IntervalKernels, interval_kernels, interval_turns
 
 
 @dataclass(frozen=True)
@@ -77,12 +77,16 @@ NO_CHANGE = ca.DM(1, 1)
 """Rate of a length that is fixed: it takes the intrinsic strain out of the rates of strains."""
 
 
+SPINS = ("angular_velocity", "angular_acceleration")
+"""Further arguments of a kernel of an interval in motion: of the section at which it begins."""
+
+
 @dataclass(frozen=True)
 class MotionKernels:
     """Functions of one interval in motion.
 
-    All take the Taylor coefficients of the interval's turn with their first and second rates, and the rotation of the
-    section at which it begins.
+    All take what the kernels of an interval at rest take of its turn, the Taylor coefficients of the turn with Ω and
+    the factors of the derivatives; the rates of the coefficients; and the rotation of the section at which it begins.
 
     Attributes:
         intervals: the functions of an interval at rest.
@@ -92,64 +96,73 @@ class MotionKernels:
 
     @cached_property
     def rates(self) -> ca.Function:
-        """The map (turn, turn_rate, turn_acceleration, rotation) ↦ (R b, R ḃ), b = T Ω̇, in the axes of the base."""
-        symbols = self._symbols()
-        turn, turn_rate, turn_acceleration, rotation = symbols
-        spin = self._turning(turn) @ turn_rate
-        spin_rate = self._rate(spin, turn, turn_rate, turn_acceleration)
-        outputs = [ca.sparsify(output) for output in ca.cse([rotation @ spin, rotation @ spin_rate])]
-        names = ["turn", "turn_rate", "turn_acceleration", "rotation"]
-        return ca.Function("rates", symbols, outputs, names, ["spin", "spin_rate"], KEPT)
+        """The map (turn, …, rotation, turn_rate, turn_acceleration) ↦ (R b, R ḃ), b = T Ω̇, in the axes of the base."""
+        interval = _MovingInterval(self.intervals)
+        rotation = interval.at_rest.rotation
+        increment = interval.increment
+        outputs = [rotation @ increment.spin, rotation @ increment.spin_rate]
+        return interval.function("rates", [], outputs, ["spin", "spin_rate"])
 
     @cached_property
     def variation(self) -> ca.Function:
         """First and second rate of A, the δθ of the interval with its turn, in the axes of the base, 3×size each.
 
-        (turn, turn_rate, turn_acceleration, rotation, ω, α) ↦ (Ȧ, Ä), with ω and α of the section at which the
-        interval begins: A = R B, Ȧ = ω^ A + R Ḃ, Ä = (α^ + ω^ ω^) A + 2 ω^ R Ḃ + R B̈.
+        (turn, …, rotation, turn_rate, turn_acceleration, ω, α) ↦ (Ȧ, Ä), with ω and α of the section at which the
+        interval begins: A = X J with J = ∂Ω/∂turn and X = R T, so that Ẋ = ω^ X + R Ṫ and
+        Ẍ = (α^ + ω^ ω^) X + 2 ω^ R Ṫ + R T̈.
         """
-        symbols = self._symbols()
-        turn, turn_rate, turn_acceleration, rotation = symbols
-        omega = ca.SX.sym("angular_velocity", 3)
-        alpha = ca.SX.sym("angular_acceleration", 3)
-        local = self._turning(turn)
-        local_rate = self._rate(local, turn, turn_rate, turn_acceleration)
-        local_acceleration = self._rate(local_rate, turn, turn_rate, turn_acceleration)
-        turning = rotation @ local
-        turned = rotation @ local_rate
-        spun = hat(omega) @ turning
-        first = spun + turned
-        second = hat(alpha) @ turning + hat(omega) @ (spun + 2 * turned) + rotation @ local_acceleration
-        outputs = ca.cse([first, second])
-        names = ["turn", "turn_rate", "turn_acceleration", "rotation", "omega", "alpha"]
-        return ca.Function(
-            "motion_variation",
-            [*symbols, omega, alpha],
-            [ca.sparsify(output) for output in outputs],
-            names,
-            ["A_rate", "A_acceleration"],
-            KEPT,
-        )
-
-    def _symbols(self) -> list[ca.SX]:
-        size = self.intervals.size
-        return [
-            ca.SX.sym("turn", size),
-            ca.SX.sym("turn_rate", size),
-            ca.SX.sym("turn_acceleration", size),
-            ca.SX.sym("rotation", self.intervals.rotation_pattern),
+        interval = _MovingInterval(self.intervals)
+        omega = ca.SX.sym("omega", 3)
+        alpha = ca.SX.sym("alpha", 3)
+        value, turned, twice_turned = (interval.at_rest.rotation @ order for order in interval.increment.tangent)
+        spin = hat(omega)
+        first = spin @ value + turned
+        second = (hat(alpha) + spin @ spin) @ value + 2 * (spin @ turned) + twice_turned
+        by_turn, by_turn_rate, by_turn_acceleration = interval.by_turn
+        outputs = [
+            first @ by_turn + value @ by_turn_rate,
+            second @ by_turn + 2 * (first @ by_turn_rate) + value @ by_turn_acceleration,
         ]
+        return interval.function("motion_variation", [omega, alpha], outputs, ["A_rate", "A_acceleration"])
 
-    def _turning(self, turn: ca.SX) -> ca.SX:
-        """B = T ∂Ω/∂turn, 3×size: δθ of the interval in the axes of the section at which it begins."""
-        omega = self.intervals.rotation_vector(turn)
-        return magnus.increment(omega).tangent @ ca.jacobian(omega, turn)
 
-    @staticmethod
-    def _rate(value: ca.SX, turn: ca.SX, turn_rate: ca.SX, turn_acceleration: ca.SX) -> ca.SX:
+class _MovingInterval:
+    """One interval in symbols, with the rates of its turn.
+
+    Attributes:
+        at_rest: symbols of the interval at rest.
+    """
+
+    def __init__(self, kernels: IntervalKernels) -> None:
+        self._kernels = kernels
+        self.at_rest = kernels.symbols()
+        self._turn_rate = ca.SX.sym("turn_rate", kernels.size)
+        self._turn_acceleration = ca.SX.sym("turn_acceleration", kernels.size)
+
+    @cached_property
+    def by_turn(self) -> tuple[ca.SX, ca.SX, ca.SX]:
+        """∂Ω/∂turn and its rates, 3×size each."""
+        value = ca.jacobian(self._kernels.rotation_vector(self.at_rest.turn), self.at_rest.turn)
+        first = self._rate(value)
+        return value, first, self._rate(first)
+
+    @cached_property
+    def increment(self) -> IncrementRates:
+        """The rotation of the interval in motion."""
+        first = self._rate(self._kernels.rotation_vector(self.at_rest.turn))
+        return IncrementRates(self.at_rest.increment, first, self._rate(first))
+
+    def function(self, name: str, more: list[ca.SX], outputs: list[ca.SX], names: list[str]) -> ca.Function:
+        """A function of the symbols of this interval, of its rates and of more."""
+        symbols = [*self.at_rest.listed[:-1], self._turn_rate, self._turn_acceleration, *more]
+        results = [ca.sparsify(output) for output in ca.cse(outputs)]
+        arguments = [*ARGUMENTS[:-1], "turn_rate", "turn_acceleration", *SPINS[: len(more)]]
+        return ca.Function(name, symbols, results, arguments, names, KEPT)
+
+    def _rate(self, value: ca.SX) -> ca.SX:
         """Time derivative of a function of the turn and its rate, of the same shape."""
-        state = ca.vertcat(turn, turn_rate)
-        direction = ca.vertcat(turn_rate, turn_acceleration)
+        state = ca.vertcat(self.at_rest.turn, self._turn_rate)
+        direction = ca.vertcat(self._turn_rate, self._turn_acceleration)
         rate = ca.jtimes(ca.vec(value), state, direction)
         return ca.reshape(rate, *value.shape)
 
@@ -266,9 +279,8 @@ class RodMotion:
         count = len(self.rod.grid.left_ends)
         if not self.rod.properties.turning_axes:
             return ca.DM(3, count), ca.DM(3, count)
-        turn = self.shape.interval_arguments[0]
         kernel = motion_kernels(self.rod).rates.map(count)
-        spin, spin_rate = kernel(turn, *self.turn_rates, self.shape.interval_begins)
+        spin, spin_rate = kernel(*self.shape.interval_arguments, *self.turn_rates)
         return spin, spin_rate
 
     def _at_nodes(self, sections: Matrix) -> Matrix:

@@ -27,11 +27,14 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator
+from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator, sum_of_products
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
 from cosserat_casadi.rod.tangent import Tangent
+
+ORDERS = 3
+"""Derivatives with z, with ż and with z̈."""
 
 
 @dataclass(frozen=True)
@@ -79,17 +82,22 @@ class MotionMatrices:
 class MotionTangent:
     """Variations of a rod's fields and of their rates.
 
-    Columns: the n strain coordinates; with a floating base then three turns and three shifts of the base.
+    Columns: the n strain coordinates; with a floating base then three turns and three shifts of the base. Those that
+    turn sections, curvatures, torsion and turns of the base, stand apart from the others here, linear strains and
+    shifts, of which δθ has none. Sections that nothing turns, the base of a rod that does not float, have no rows
+    in δθ.
 
     Attributes:
         tangent: variations of the rod's fields at rest.
         inertia: the rod in motion.
         floating: whether the base floats.
+        unit: energy that the forces are divided by, J.
     """
 
     tangent: Tangent
     inertia: RodInertia
     floating: bool
+    unit: float = 1.0
 
     @property
     def motion(self) -> RodMotion:
@@ -98,165 +106,222 @@ class MotionTangent:
 
     @cached_property
     def matrices(self) -> MotionMatrices:
-        """What inertia adds to ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z beside frozen wrenches, in J.
+        """What inertia adds to ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z beside frozen wrenches, in units of ``unit``.
 
-        The forces are minus the virtual work of the inertia: the rows of the residual, before they are divided by a
-        unit, and minus the moment about the base and the force on it.
+        The forces are minus the virtual work of the inertia: the rows of the residual, and minus the moment about the
+        base and the force on it.
         """
-        by_position = self._of_positions()
-        by_rotation = self._of_rotations()
-        if by_rotation is None:
-            return by_position
+        matrices = self._matrices
         return MotionMatrices(
-            stiffness=by_position.stiffness + by_rotation.stiffness,
-            damping=by_position.damping + by_rotation.damping,
-            mass=by_position.mass + by_rotation.mass,
+            stiffness=self._ordered(matrices.stiffness),
+            damping=self._ordered(matrices.damping),
+            mass=self._ordered(matrices.mass),
         )
 
     @cached_property
     def rotation(self) -> Jet:
-        """δθ at the nodes with its rates, 3M×columns, rad."""
-        turning = self.tangent.rotation
-        jets = Jet(turning, *self._turning_rates)
-        return self._with_other_columns(jets)
-
-    @cached_property
-    def tangent_jet(self) -> Jet:
-        """δt at the nodes with its rates, 3M×columns, m."""
-        theta = self.rotation
-        t, t_rate, t_acceleration = self._hats(
-            self.motion.shape.tangent, self.motion.tangent_rate, self.motion.tangent_acceleration
-        )
-        # δt = δθ × t + ℓ d δΓ, and its time derivatives.
-        value = -(t @ theta.value)
-        rate = -(t @ theta.rate + t_rate @ theta.value)
-        acceleration = -(t @ theta.acceleration + 2 * (t_rate @ theta.rate) + t_acceleration @ theta.value)
-        stretch = self._stretch_columns
-        return Jet(value + stretch.value, rate + stretch.rate, acceleration + stretch.acceleration)
-
-    def _of_positions(self) -> MotionMatrices:
-        """Σ Yᵀ μ (Y, 2 Ẏ, Ÿ) of the positions r = p + S t: three products with the constant Sᵀ μ S."""
-        value, rate, acceleration = self._position_columns(self.tangent_jet)
-        gram = self._gram
-        mass = gram @ value
-        damping = 2 * (gram @ rate)
-        stiffness = gram @ acceleration
-        pulled = self.inertia.ratio * value.T
-        return MotionMatrices(pulled @ stiffness, pulled @ damping, pulled @ mass)
-
-    def _of_rotations(self) -> MotionMatrices | None:
-        """Σ Θᵀ (P₂ Θ̈ + P₁ Θ̇ + P₀ Θ) and so on of the module's docstring; None without rotary inertia."""
-        if not self.inertia.masses.second_moments:
-            return None
-        p2, p1, p0 = self._rotary_operators
-        theta = self.rotation
-        mass = p2 @ theta.value
-        damping = 2 * (p2 @ theta.rate) + p1 @ theta.value
-        stiffness = p2 @ theta.acceleration + p1 @ theta.rate + p0 @ theta.value
-        pulled = self.inertia.ratio * theta.value.T
-        return MotionMatrices(pulled @ stiffness, pulled @ damping, pulled @ mass)
-
-    @cached_property
-    def _turning_rates(self) -> tuple[Matrix, Matrix]:
-        """Rates of δθ at the nodes with the angular coordinates, 3M×n_a each."""
-        rod = self.tangent.rod
-        if not self.tangent.kernels.axes:
-            none = ca.DM(3 * rod.grid.size, self.tangent.angular_size)
-            return none, none
-        count = self.tangent.intervals
-        kernel = motion_kernels(rod).variation
-        turn = self.motion.shape.interval_arguments[0]
-        blocks = kernel.map(count)(
-            turn,
-            *self.motion.turn_rates,
-            self.motion.shape.interval_begins,
-            self.motion.section_angular_velocity[:, :-1],
-            self.motion.section_angular_acceleration[:, :-1],
-        )
-        turns = self.tangent.turn_matrix.unfolded
-        rates = []
-        for number, block in enumerate(blocks):
-            operator = block_diagonal(block, kernel.sparsity_out(number))
-            at_sections = cumulative_sum(operator @ turns, count)
-            rates.append(self.tangent.at_nodes(at_sections))
-        first, second = rates
-        return first, second
-
-    @cached_property
-    def _stretch_columns(self) -> Jet:
-        """ℓ d δΓ at the nodes with its rates, 3M×columns: linear strains move along directors that turn."""
-        orders: list[list[Matrix]] = [[], [], []]
-        rod = self.tangent.rod
-        for component in rod.linear:
-            axis = component - 3
-            director = self.motion.shape.directors[axis]
-            fields = (director, self.motion.director_rate(axis), self.motion.director_acceleration(axis))
-            stretch = ca.DM(rod.length * rod.at_nodes[component])
-            for columns, field in zip(orders, fields, strict=True):
-                rows = [ca.diag(row) @ stretch for row in ca.vertsplit(field)]
-                columns.append(ca.vertcat(*rows))
-        before = ca.DM(3 * rod.grid.size, self.tangent.angular_size)
-        after = ca.DM(3 * rod.grid.size, self._base_columns)
-        value, rate, acceleration = (ca.horzcat(before, *columns, after) for columns in orders)
-        return Jet(value, rate, acceleration)
-
-    def _with_other_columns(self, angular: Jet) -> Jet:
-        """δθ with all coordinates: none with linear strains, all of a turn of the base, none of its shift."""
-        rows = angular.value.shape[0]
-        linear = ca.DM(rows, self.tangent.rod.size - self.tangent.angular_size)
+        """δθ at the nodes that turn with its rates, 3m×turning columns, rad."""
+        orders = [self._at_turning_nodes(order) for order in self._section_rotations]
         if not self.floating:
-            return Jet(*(ca.horzcat(columns, linear) for columns in angular.orders))
-        points = self.tangent.rod.grid.size
+            return Jet(*orders)
         # The base turns all sections alike, and a turn about fixed axes of the world has no rate.
-        alike = ca.kron(ca.DM.eye(3), ca.DM.ones(points, 1))
-        turn = [ca.DM(alike), ca.DM(rows, 3), ca.DM(rows, 3)]
-        shift = ca.DM(rows, 3)
-        orders = zip(angular.orders, turn, strict=True)
-        return Jet(*(ca.horzcat(columns, linear, by_turn, shift) for columns, by_turn in orders))
+        rows = orders[0].shape[0]
+        alike = ca.sparsify(ca.DM(np.kron(np.eye(3), np.ones((len(self._nodes), 1)))))
+        turns = [alike, ca.DM(rows, 3), ca.DM(rows, 3)]
+        return Jet(*(ca.horzcat(columns, turn) for columns, turn in zip(orders, turns, strict=True)))
 
-    def _position_columns(self, jet: Jet) -> tuple[Matrix, Matrix, Matrix]:
-        """δt with its rates, and beneath each component the shift of a floating base, that the rates do not have."""
-        if not self.floating:
-            return jet.orders
-        points = self.tangent.rod.grid.size
-        columns = jet.value.shape[1]
-        results = []
-        for order, matrix in enumerate(jet.orders):
-            parts: list[Matrix] = []
-            for component, rows in enumerate(ca.vertsplit(matrix, points)):
-                shift = ca.DM(1, columns)
-                if order == 0:
-                    shift[0, columns - 3 + component] = 1.0
-                parts += [rows, shift]
-            results.append(ca.vertcat(*parts))
-        value, rate, acceleration = results
-        return value, rate, acceleration
+    @cached_property
+    def _rotations(self) -> Matrix:
+        """The rates of δθ from the highest order on beneath each other, 9m×turning columns."""
+        theta = self.rotation
+        return ca.vertcat(theta.acceleration, theta.rate, theta.value)
+
+    @cached_property
+    def _nodes(self) -> list[int]:
+        """Nodes whose sections turn."""
+        section_of_node = self.tangent.rod.grid.section_of_node
+        if self.floating:
+            return list(range(len(section_of_node)))
+        return np.flatnonzero(section_of_node > 0).tolist()
+
+    def _at_turning_nodes(self, sections: Matrix) -> Matrix:
+        """Variations at the nodes that turn, 3m×k, from those of the sections beyond the base; stacked."""
+        nodes = self.tangent.rod.grid.size
+        components = ca.vertsplit(self.tangent.at_nodes(sections), nodes)
+        if len(self._nodes) == nodes:
+            return ca.vertcat(*components)
+        return ca.vertcat(*[component[self._nodes, :] for component in components])
+
+    # Positions, r = p + S t: with δt = δθ × t on the turning columns, and the stretch on the others.
+
+    # What depends on z̈, ż and z by an operator on Θ̈, Θ̇ and Θ stands beneath each other, stiffness, damping and mass:
+    # one product has long sums, and gives all three.
+
+    @cached_property
+    def _accelerations(self) -> Matrix:
+        """Derivatives of ẗ at the nodes that turn with z, ż and z̈, 9m×turning columns: δt = δθ × t."""
+        # The transpose of a hat is its negative.
+        t, t_rate, t_acceleration = (hat_operator(field[:, self._nodes]).T for field in self._tangents)
+        return _operators(t, 2 * t_rate, t_acceleration) @ self._rotations
 
     @property
-    def _base_columns(self) -> int:
-        return 6 if self.floating else 0
+    def _tangents(self) -> tuple[Matrix, Matrix, Matrix]:
+        """Tangents at the nodes with their rates, 3×M, m."""
+        motion = self.motion
+        return motion.shape.tangent, motion.tangent_rate, motion.tangent_acceleration
 
     @cached_property
-    def _gram(self) -> Matrix:
-        """Sᵀ μ S for each component, where S integrates tangents, and with a floating base adds its shift."""
+    def _stretch(self) -> MotionMatrices | None:
+        """The same by the other columns, at all nodes: ℓ d δΓ along directors that turn; None without any.
+
+        With a floating base there is one more row for each component: its shift.
+        """
+        rod = self.tangent.rod
+        fields: dict[str, list[Matrix]] = {"mass": [], "damping": [], "stiffness": []}
+        for component in rod.linear:
+            axis = component - 3
+            stretch = ca.DM(rod.length * rod.at_nodes[component])
+            orders = {
+                "mass": self.motion.shape.directors[axis],
+                "damping": 2 * self.motion.director_rate(axis),
+                "stiffness": self.motion.director_acceleration(axis),
+            }
+            for word, director in orders.items():
+                rows = [self._with_shift_row(ca.diag(row) @ stretch) for row in ca.vertsplit(director)]
+                fields[word].append(ca.vertcat(*rows))
+        if self.floating:
+            nodes = rod.grid.size
+            shift_rows = [(nodes + 1) * component + nodes for component in range(3)]
+            by_shift = ca.DM(ca.Sparsity.triplet(3 * (nodes + 1), 3, shift_rows, [0, 1, 2]), 1.0)
+            fields["mass"].append(by_shift)
+            fields["damping"].append(ca.DM(*by_shift.shape))
+            fields["stiffness"].append(ca.DM(*by_shift.shape))
+        if not fields["mass"]:
+            return None
+        return MotionMatrices(**{word: ca.horzcat(*columns) for word, columns in fields.items()})
+
+    def _with_shift_row(self, rows: Matrix) -> Matrix:
+        """One component at the nodes, with a row for the shift of a floating base, that it does not have."""
+        if not self.floating:
+            return rows
+        return ca.vertcat(rows, ca.DM(1, rows.shape[1]))
+
+    @cached_property
+    def _gram(self) -> FloatArray:
+        """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift."""
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
         weighted = (rod.node_lengths * self.inertia.masses.mass)[:, None] * integrate
-        gram = integrate.T @ weighted
-        return ca.sparsify(ca.DM(np.kron(np.eye(3), gram)))
+        return np.asarray(integrate.T @ weighted) / self.unit
+
+    def _gram_of(self, rows: FloatArray, times: int = 1) -> ca.DM:
+        """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
+        return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), rows)))
+
+    # The parts of the matrices by rows and columns: turning ones, then the others.
+
+    @cached_property
+    def _wrenches(self) -> Matrix:
+        """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns, 9m×turning columns."""
+        gram = self._gram_of(self._gram[np.ix_(self._nodes, self._nodes)], ORDERS)
+        forces = gram @ self._accelerations
+        levers = ca.diagcat(*[self._levers] * ORDERS)
+        if not self.inertia.masses.second_moments:
+            return levers @ forces
+        return sum_of_products((levers, forces), (_operators(*self._rotary_operators), self._rotations))
+
+    @cached_property
+    def _levers(self) -> Matrix:
+        """Moments of forces on the tangents of the sections that turn."""
+        return hat_operator(self.motion.shape.tangent[:, self._nodes])
+
+    @cached_property
+    def _matrices(self) -> MotionMatrices:
+        """The matrices, turning rows and columns first."""
+        rows = 3 * len(self._nodes)
+        turned = self._left_of_turning.T
+        every = ca.diagcat(*[turned] * ORDERS) @ self._wrenches
+        count = turned.shape[0]
+        stiffness, damping, mass = (every[k * count : (k + 1) * count, :] for k in range(ORDERS))
+        mass = ca.triu2symm(ca.triu(mass))
+        others = self._stretch
+        if others is None:
+            return MotionMatrices(stiffness, damping, mass)
+        of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
+        gram = self._gram_of(self._gram[self._nodes])
+        columns = [others.stiffness, others.damping, others.mass]
+        by_others = [turned @ (self._levers @ (gram @ field)) for field in columns[:2]]
+        by_others.append(of_turning[2].T)
+        of_others = [self._others_on_others @ field for field in columns]
+        blocks = zip((stiffness, damping, mass), by_others, of_turning, of_others, strict=True)
+        return MotionMatrices(*(ca.blockcat([[one, two], [three, four]]) for one, two, three, four in blocks))
+
+    @cached_property
+    def _left_of_turning(self) -> Matrix:
+        """Θ, times the ratio of the lengths: a longer rod has more mass."""
+        if self.motion.shape.ratio is None:
+            return self.rotation.value
+        return self.motion.shape.ratio * self.rotation.value
+
+    @cached_property
+    def _others_on_turning(self) -> Matrix:
+        """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
+        assert self._stretch is not None, "asked for with other columns"
+        pulled = self._gram_of(self._gram[self._nodes]) @ self._stretch.mass
+        return self.inertia.ratio * pulled.T
+
+    @cached_property
+    def _others_on_others(self) -> Matrix:
+        """The same, at accelerations of all nodes."""
+        assert self._stretch is not None, "asked for with other columns"
+        pulled = self._gram_of(self._gram) @ self._stretch.mass
+        return self.inertia.ratio * pulled.T
+
+    def _ordered(self, matrix: Matrix) -> Matrix:
+        """A matrix in the order of the coordinates: turns of the base follow all strains."""
+        if not self.floating:
+            return matrix
+        turning = self.tangent.angular_size
+        linear = self.tangent.rod.size - turning
+        strains = [*range(turning), *range(turning + 3, turning + 3 + linear)]
+        turns = list(range(turning, turning + 3))
+        shifts = list(range(matrix.shape[0] - 3, matrix.shape[0]))
+        order = [*strains, *turns, *shifts]
+        return matrix[order, order]
+
+    @cached_property
+    def _section_rotations(self) -> tuple[Matrix, Matrix, Matrix]:
+        """δθ of the sections beyond the base and its rates with the angular coordinates, (3·intervals)×n_a each."""
+        rod = self.tangent.rod
+        if not self.tangent.kernels.axes:
+            none = ca.DM(3 * self.tangent.intervals, self.tangent.angular_size)
+            return none, none, none
+        count = self.tangent.intervals
+        kernel = motion_kernels(rod).variation
+        blocks = kernel.map(count)(
+            *self.motion.shape.interval_arguments,
+            *self.motion.turn_rates,
+            self.motion.section_angular_velocity[:, :-1],
+            self.motion.section_angular_acceleration[:, :-1],
+        )
+        operators = [block_diagonal(block, kernel.sparsity_out(number)) for number, block in enumerate(blocks)]
+        added = ca.vertcat(*operators) @ self.tangent.turn_matrix.unfolded
+        first, second = ca.vertsplit(cumulative_sum(added, count), 3 * count)
+        return self.tangent.section_rotation, first, second
 
     @cached_property
     def _rotary_operators(self) -> tuple[Matrix, Matrix, Matrix]:
-        """P₂, P₁ and P₀ of the module's docstring on stacked fields, 3M×3M, times the lengths of the nodes."""
-        totals: list[Matrix] = [ca.DM(3 * self.tangent.rod.grid.size, 3 * self.tangent.rod.grid.size)] * 3
-        lengths = self.tangent.rod.node_lengths
+        """P₂, P₁ and P₀ of the module's docstring on stacked fields, 3m×3m, times the lengths of the nodes."""
+        nodes = self._nodes
+        totals: list[Matrix] = [ca.DM(3 * len(nodes), 3 * len(nodes))] * 3
+        lengths = self.tangent.rod.node_lengths / self.unit
         for axis, second_moment in self.inertia.masses.second_moments.items():
-            weights = lengths * second_moment
-            director = self.motion.shape.directors[axis]
-            rate = self.motion.director_rate(axis)
-            acceleration = self.motion.director_acceleration(axis)
+            weights = (lengths * second_moment)[nodes]
+            director = self.motion.shape.directors[axis][:, nodes]
+            rate = self.motion.director_rate(axis)[:, nodes]
+            acceleration = self.motion.director_acceleration(axis)[:, nodes]
             hat = hat_operator(director)
             inertia = -(_weighted(hat, weights) @ hat)
             transport = -2 * _outer(rate, director, weights)
@@ -265,9 +330,19 @@ class MotionTangent:
         p2, p1, p0 = totals
         return p2, p1, p0
 
-    @staticmethod
-    def _hats(*fields: Matrix) -> list[Matrix]:
-        return [hat_operator(field) for field in fields]
+
+def _operators(on_acceleration: Matrix, on_rate: Matrix, on_value: Matrix) -> Matrix:
+    """Operator on Θ̈, Θ̇ and Θ beneath each other whose rows are derivatives with z, with ż and with z̈.
+
+    With y = A Θ̈ + B Θ̇ + C Θ along δz, that is also the derivative with z; with ż it is 2 A Θ̇ + B Θ, with z̈ A Θ.
+    """
+    none = ca.DM(*on_acceleration.shape)
+    rows = [
+        [on_acceleration, on_rate, on_value],
+        [none, 2 * on_acceleration, on_rate],
+        [none, none, on_acceleration],
+    ]
+    return ca.blockcat(rows)
 
 
 def _weighted(operator: Matrix, weights: FloatArray) -> Matrix:

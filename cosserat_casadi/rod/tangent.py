@@ -49,9 +49,11 @@ class Tangent:
 
     Attributes:
         igm: the rod's balance.
+        in_loops: whether it is written for loops: there sums and differences of mirrored rows cost more than they save.
     """
 
     igm: InverseGeometricModel
+    in_loops: bool = False
 
     @property
     def shape(self) -> Shape:
@@ -219,7 +221,8 @@ class Tangent:
         # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
         passing = self._moment_variation() + stiffness @ self.interval_variation
         pulled = turning.T @ passing + second @ self.turn_matrix.unfolded
-        product = (self.turn_matrix / -unit).T @ pulled
+        turns = self.turn_matrix / -unit
+        product = turns.unfolded.T @ pulled if self.in_loops else turns.T @ pulled
         matrix = ca.triu2symm(ca.triu(product))
         # The mirror lacks the skew part of couples: of dead ones below the diagonal, of followers above.
         dead = statics.couple_covector(follower=False)

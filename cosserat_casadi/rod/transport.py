@@ -78,7 +78,7 @@ class IntervalKernels:
         ``omega`` and ``factors`` are those of :attr:`increment`, ``rotation`` is the matrix R of the section at which
         the interval begins, ``moment`` what passes the interval, 3×1, N m, base frame.
         """
-        a = self._arguments()
+        a = self.symbols()
         omega = self.rotation_vector(a.turn)
         moment = a.rotation.T @ a.moment
         pulled = a.increment.pulled(moment)
@@ -94,7 +94,7 @@ class IntervalKernels:
         the moment fixed, by Aᵀ V A + H: V of :meth:`magnus.Increment.stiffness` in the base frame, 3×3, and H, the
         second derivative of Ω·(Tᵀ Rᵀ moment) at fixed Tᵀ Rᵀ moment, size×size.
         """
-        a = self._arguments()
+        a = self.symbols()
         omega = self.rotation_vector(a.turn)
         rates = ca.jacobian(omega, a.turn)
         turning = (a.rotation @ a.increment.tangent) @ rates
@@ -110,9 +110,10 @@ class IntervalKernels:
         outputs = [ca.sparsify(output) for output in ca.cse([turning, stiffness, second])]
         return ca.Function("variation", a.listed, outputs, ARGUMENTS, ["A", "V", "H"], KEPT)
 
-    def _arguments(self) -> _Symbols:
+    def symbols(self) -> IntervalSymbols:
+        """New symbols of the arguments."""
         omega_pattern = self.increment.sparsity_out(1)
-        return _Symbols(
+        return IntervalSymbols(
             turn=ca.SX.sym("turn", self.size),
             omega=ca.SX.sym("omega", omega_pattern),
             factors=ca.SX.sym("factors", 2),
@@ -134,7 +135,7 @@ class IntervalKernels:
 
 
 @dataclass(frozen=True)
-class _Symbols:
+class IntervalSymbols:
     """Arguments of the kernels of one interval.
 
     Attributes:

@@ -11,7 +11,8 @@ from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.parts import CONSTANT, _Stream, in_one, parted, sharing
+from cosserat_casadi.codegen.parts import in_one, parted, sharing
+from cosserat_casadi.codegen.streams import CONSTANT, Stream
 from tests.scenes import rod, scene
 
 
@@ -22,7 +23,7 @@ def function(expression: str) -> ca.Function:
 
 
 def test_lines_of_the_example() -> None:
-    stream = _Stream(function("3*x[0] + x[4]"))
+    stream = Stream(function("3*x[0] + x[4]"))
     assert (stream.x, stream.inputs, stream.constants) == ([0, 4], [], [3.0])
     assert stream.lines == [
         (ca.OP_INPUT, (0, 0), 1),
@@ -35,9 +36,9 @@ def test_lines_of_the_example() -> None:
 
 def test_casadi_writes_products_with_minus_one_and_two_and_quotients_of_one_as_operations_of_their_own() -> None:
     """Legs whose constants happen to be −1, 2 or 1 beside those of others must still give the same lines."""
-    lines = [_Stream(function(f"({c})*x[0]")).lines for c in ("-1", "2", "3.7")]
+    lines = [Stream(function(f"({c})*x[0]")).lines for c in ("-1", "2", "3.7")]
     assert lines[0] == lines[1] == lines[2]
-    lines = [_Stream(function(f"({c})/x[0]")).lines for c in ("1", "3.7")]
+    lines = [Stream(function(f"({c})/x[0]")).lines for c in ("1", "3.7")]
     assert lines[0] == lines[1]
 
 

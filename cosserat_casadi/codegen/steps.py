@@ -1,0 +1,480 @@
+"""An MX function as steps on numbered entries: which numbers a computation takes, and which it makes.
+
+* What only moves entries is no step. Of every matrix it is known which computed number each entry is: they are brought
+  into order when a step asks for them.
+* A product Z = X Y of which Y is dense is written Zᵀ = Yᵀ Xᵀ. The columns that are added up are dense then, and the
+  routine of routines.py runs along them without looking anything up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[np.int64]
+
+DENSE_RATE = 8.0
+"""Products a nanosecond that are added to long dense columns."""
+
+LONG = 6
+"""Entries from which on a column is long: its sums do not wait for each other."""
+
+SHORT_RATE = 4.5
+"""The same for shorter columns."""
+
+SPARSE_RATE = 1.0
+"""The same where every entry is looked up."""
+
+MOVE_RATE = 1.5
+"""Entries a nanosecond that are brought into order."""
+
+WORTH_SPLITTING = 0.2
+"""Share of zeros from which on a sum is formed of the other entries alone."""
+
+SMALL = 400
+"""Instructions up to which a step is written without a loop."""
+
+SUMS = {ca.OP_ADD, ca.OP_SUB}
+SAME_ENTRIES = {ca.OP_RESHAPE, ca.OP_SPARSITY_CAST}
+SIDE_BY_SIDE = {ca.OP_HORZCAT, ca.OP_VERTCAT, ca.OP_DIAGCAT}
+SPLITS = {ca.OP_HORZSPLIT, ca.OP_VERTSPLIT, ca.OP_DIAGSPLIT}
+
+
+class UnknownInstructionError(Exception):
+    """An instruction that can not be given other operands."""
+
+
+@dataclass(frozen=True, eq=False)
+class Value:
+    """A matrix as entries that were computed before.
+
+    Attributes:
+        pattern: sparsity.
+        numbers: for each stored entry the number of what was computed; 0 for a zero.
+    """
+
+    pattern: ca.Sparsity
+    numbers: Numbers
+
+    @property
+    def transposed(self) -> Value:
+        """The transpose."""
+        return _of_matrix(self._matrix.T)
+
+    def projected(self, pattern: ca.Sparsity) -> Value:
+        """The entries of another pattern."""
+        return _of_matrix(ca.project(self._matrix, pattern))
+
+    @property
+    def dense(self) -> Value:
+        """All entries."""
+        return self.projected(ca.Sparsity.dense(*self.pattern.shape))
+
+    @property
+    def _matrix(self) -> ca.DM:
+        return ca.DM(self.pattern, self.numbers.astype(np.float64))
+
+
+def _of_matrix(matrix: ca.DM) -> Value:
+    numbers = np.array(matrix.nonzeros(), dtype=np.int64)
+    return Value(matrix.sparsity(), numbers)
+
+
+def column(numbers: Numbers) -> Value:
+    """A column of these entries."""
+    return Value(ca.Sparsity.dense(len(numbers)), numbers)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A computation.
+
+    Attributes:
+        function: what is computed.
+        operands: its arguments.
+        results: its results, each with numbers one after the other.
+        instructions: length without a loop.
+        called: whether it stays a function of its own.
+        operation: CasADi's number of what is done entry by entry; None for any other computation.
+    """
+
+    function: ca.Function
+    operands: list[Value]
+    results: list[Value]
+    instructions: float
+    called: bool = False
+    operation: int | None = None
+
+    def of(self, arguments: Sequence[ca.MX]) -> list[ca.MX]:
+        """The results for these arguments."""
+        return list(self.function.call(arguments, not self.called, self.called))
+
+    @property
+    def small(self) -> bool:
+        """Whether it is written without a loop."""
+        return self.instructions <= SMALL
+
+
+class Origins:
+    """What the numbers stand for: entry after entry of arguments, constants and results of steps.
+
+    Number 0 is a zero, and the first of these things.
+    """
+
+    def __init__(self) -> None:
+        # Arrays of things with room for more, which is doubled when it is full.
+        self._first = np.zeros(64, dtype=np.int64)
+        self._constant = np.zeros(64, dtype=np.bool_)
+        self._values: list[list[float] | None] = []
+        self.sizes: list[int] = []
+        self._count = 0
+        self.add(ca.Sparsity.dense(1), [0.0])
+
+    def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> Value:
+        """Number the entries of one more thing, of constants with their values."""
+        thing = len(self.sizes)
+        if thing == len(self._first):
+            self._first = np.concatenate([self._first, np.zeros_like(self._first)])
+            self._constant = np.concatenate([self._constant, np.zeros_like(self._constant)])
+        self._first[thing] = self._count
+        self._constant[thing] = constants is not None
+        self._values.append(constants)
+        self.sizes.append(pattern.nnz())
+        numbers = np.arange(self._count, self._count + pattern.nnz())
+        self._count += pattern.nnz()
+        if constants is not None:
+            numbers[np.array(constants) == 0.0] = 0
+        return Value(pattern, numbers)
+
+    @property
+    def count(self) -> int:
+        """How many numbers there are."""
+        return self._count
+
+    def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
+        """Which of these are constants."""
+        return self._constant[self._things(numbers)]
+
+    def numbers(self, thing: int) -> Numbers:
+        """Numbers of all entries of a thing."""
+        first = int(self._first[thing])
+        return np.arange(first, first + self.sizes[thing])
+
+    def entries(self, thing: int, numbers: Numbers) -> Numbers:
+        """Which entries of a thing these are."""
+        return numbers - int(self._first[thing])
+
+    def owners(self, numbers: Numbers) -> Numbers:
+        """For each number the thing that it is an entry of; 0 for all constants."""
+        owners = self._things(numbers)
+        return np.where(self._constant[owners], 0, owners)
+
+    def _things(self, numbers: Numbers) -> Numbers:
+        return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
+
+    def is_whole(self, numbers: Numbers) -> bool:
+        """Whether these are all entries of one thing in their order, or constants."""
+        if len(numbers) == 0:
+            return True
+        owners = self.owners(numbers)
+        owner = int(owners[0])
+        if np.any(owners != owner):
+            return False
+        return owner == 0 or (len(numbers) == self.sizes[owner] and bool(np.all(np.diff(numbers) == 1)))
+
+    def constants(self, numbers: Numbers) -> list[float]:
+        """Values of constants."""
+        values = []
+        for thing, number in zip(self._things(numbers).tolist(), numbers.tolist(), strict=True):
+            of_thing = self._values[thing]
+            assert of_thing is not None, "asked for of constants alone"
+            values.append(of_thing[number - int(self._first[thing])])
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class Argument:
+    """An argument of a program.
+
+    Attributes:
+        name: what it is called.
+        pattern: sparsity.
+        pieces: its entries in columns that lie one after the other, each numbered as one thing.
+    """
+
+    name: str
+    pattern: ca.Sparsity
+    pieces: list[Value]
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A function as steps.
+
+    Attributes:
+        name: what it is called.
+        origins: what the numbers stand for.
+        arguments: its arguments.
+        steps: its computations in their order.
+        results: its results by name.
+    """
+
+    name: str
+    origins: Origins
+    arguments: list[Argument]
+    steps: list[Step]
+    results: dict[str, Value]
+
+
+def program_of(function: ca.Function) -> Program:
+    """A function as steps.
+
+    Raises:
+        UnknownInstructionError: an instruction can only be taken over whole and reads one of several results: CasADi
+            has no way to give that other operands.
+    """
+    return _Reading(function).program
+
+
+class _Reading:
+    """A function on its way to a program."""
+
+    def __init__(self, function: ca.Function) -> None:
+        self.function = function
+        self.origins = Origins()
+        self.steps: list[Step] = []
+        self._ordered = set[bytes]()
+        self.inputs = [self.origins.add(function.sparsity_in(i)) for i in range(function.n_in())]
+        self.outputs = self._read(function, self.inputs)
+
+    @property
+    def program(self) -> Program:
+        """The program."""
+        function = self.function
+        arguments = []
+        for i, value in enumerate(self.inputs):
+            arguments.append(Argument(function.name_in(i), value.pattern, [value]))
+        results = dict(zip(function.name_out(), self.outputs, strict=True))
+        return Program(function.name(), self.origins, arguments, self.steps, results)
+
+    def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
+        """Results of a function of matrices for these arguments."""
+        outputs = [np.zeros(function.nnz_out(i), dtype=np.int64) for i in range(function.n_out())]
+        values = dict[int, Value]()
+        for k in range(function.n_instructions()):
+            code = function.instruction_id(k)
+            node = function.instruction_MX(k)
+            given = function.instruction_input(k)
+            if code == ca.OP_OUTPUT:
+                info = node.info()
+                numbers = values[given[0]].numbers
+                outputs[info["ind"]][info["offset"] : info["offset"] + len(numbers)] = numbers
+                continue
+            if code == ca.OP_INPUT:
+                info = node.info()
+                numbers = arguments[info["ind"]].numbers
+                results = [Value(node.sparsity(), numbers[info["offset"] : info["offset"] + node.nnz()])]
+            elif code == ca.OP_CONST:
+                results = [self.origins.add(node.sparsity(), node.to_DM().nonzeros())]
+            else:
+                operands = [values[variable] for variable in given]
+                results = _moved(code, node, operands) or self._computed(code, node, operands)
+            for variable, result in zip(function.instruction_output(k), results, strict=True):
+                values[variable] = result
+        return [Value(function.sparsity_out(i), numbers) for i, numbers in enumerate(outputs)]
+
+    def _computed(self, code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
+        """Results of an instruction that computes."""
+        if code == ca.OP_MTIMES:
+            return [self._product(*operands)]
+        if code == ca.OP_CALL:
+            function = node.which_function()
+            if function.is_a("MXFunction"):
+                return self._read(function, operands)
+            return self._step(function, operands, _length(function), called=True)
+        if node.is_unary() or node.is_binary():
+            return [self._elementwise(code, node, operands)]
+        if code == ca.OP_SETNONZEROS:
+            return [self._added(node, *operands)]
+        before = [node.dep(i) for i in range(node.n_dep())]
+        if any(operand.is_output() for operand in before):
+            raise UnknownInstructionError
+        symbols = [ca.MX.sym("operand", operand.pattern) for operand in operands]
+        as_it_is = ca.Function("instruction", symbols, ca.graph_substitute([node], before, symbols))
+        return self._step(as_it_is, operands, np.inf)
+
+    def _step(
+        self,
+        function: ca.Function,
+        operands: Sequence[Value],
+        instructions: float,
+        *,
+        called: bool = False,
+        operation: int | None = None,
+    ) -> list[Value]:
+        results = [self.origins.add(function.sparsity_out(i)) for i in range(function.n_out())]
+        self.steps.append(Step(function, list(operands), results, instructions, called, operation))
+        self._ordered |= {operand.numbers.tobytes() for operand in operands}
+        return results
+
+    # Entry by entry
+
+    def _elementwise(self, code: int, node: ca.MX, operands: Sequence[Value]) -> Value:
+        """An operation entry by entry, in the order in which its operands lie."""
+        count = node.nnz()
+        if code in SUMS and all(len(operand.numbers) == count for operand in operands):
+            return Value(node.sparsity(), self._sum(code, operands[0].numbers, operands[1].numbers))
+        vectors = [operand.numbers for operand in operands if operand.pattern.numel() > 1]
+        order = self._order(count, vectors)
+        arguments = []
+        for operand in operands:
+            scalar = operand.pattern.numel() == 1
+            arguments.append(operand.dense if scalar else column(operand.numbers[order]))
+        numbers = np.empty(count, dtype=np.int64)
+        numbers[order] = self._operation(code, arguments)
+        return Value(node.sparsity(), numbers)
+
+    def _sum(self, code: int, left: Numbers, right: Numbers) -> Numbers:
+        """Sums or differences of entries; where there is only one it is the sum itself."""
+        alone = right == 0
+        numbers = np.where(alone, left, 0)
+        if code == ca.OP_ADD:
+            alone = alone | (left == 0)
+            numbers = np.where(left == 0, right, numbers)
+        if np.count_nonzero(alone) < WORTH_SPLITTING * len(alone):
+            alone[:] = False
+        both = np.flatnonzero(~alone)
+        order = both[self._order(len(both), [left[both], right[both]])]
+        if len(order):
+            numbers[order] = self._operation(code, [column(left[order]), column(right[order])])
+        return numbers
+
+    def _operation(self, code: int, operands: Sequence[Value]) -> Numbers:
+        """Numbers of the results of an operation on columns and scalars."""
+        function = entrywise(code, [operand.pattern for operand in operands])
+        return self._step(function, operands, function.nnz_out(0), operation=code)[0].numbers
+
+    def _order(self, count: int, vectors: Sequence[Numbers]) -> Numbers:
+        """An order of entries in which the fewest must be moved."""
+        candidates = [np.arange(count), *(np.argsort(numbers, kind="stable") for numbers in vectors)]
+        costs = [sum(self._cost(numbers[order]) for numbers in vectors) for order in candidates]
+        return candidates[int(np.argmin(costs))]
+
+    def _cost(self, numbers: Numbers) -> float:
+        """Entries that must be moved to have them in this order."""
+        if self.origins.is_whole(numbers) or numbers.tobytes() in self._ordered:
+            return 0
+        # Of two orders the one that keeps more neighbours: what comes next may have it for nothing.
+        breaks = np.count_nonzero(np.diff(numbers) != 1)
+        return len(numbers) + breaks / len(numbers)
+
+    def _added(self, node: ca.MX, whole: Value, part: Value) -> Value:
+        """Entries of a part added to some of the whole; several may be added to one."""
+        numbers = whole.numbers.copy()
+        places = _taken(node)
+        left = np.arange(len(places))
+        while len(left):
+            _, first = np.unique(places[left], return_index=True)
+            now = left[first]
+            numbers[places[now]] = self._sum(ca.OP_ADD, numbers[places[now]], part.numbers[now])
+            left = np.delete(left, first)
+        return Value(node.sparsity(), numbers)
+
+    # Products
+
+    def _product(self, added: Value, left: Value, right: Value) -> Value:
+        """The sum added + left right."""
+        turned_left = left.transposed
+        turned_right = right.transposed.dense
+        along_rows = self._time(turned_right, turned_left)
+        along_columns = self._time(left.dense, right)
+        if min(along_rows, along_columns) > self._sparse_time(left, right):
+            return self._multiplied(added, left, right)
+        if along_rows < along_columns:
+            turned = self._multiplied(added.transposed.dense, turned_right, turned_left)
+            return turned.transposed.projected(added.pattern)
+        return self._multiplied(added.dense, left.dense, right).projected(added.pattern)
+
+    def _multiplied(self, added: Value, left: Value, right: Value) -> Value:
+        operands = [left, right]
+        symbols = [ca.MX.sym("factor", operand.pattern) for operand in operands]
+        if added.numbers.any():
+            operands.append(added)
+            symbols.append(ca.MX.sym("added", added.pattern))
+            result = ca.mac(*symbols)
+        else:
+            result = ca.mac(*symbols, ca.MX(ca.DM(added.pattern, 0.0)))
+        function = ca.Function("product", symbols, [result])
+        return self._step(function, operands, 2 * _multiplications(left, right))[0]
+
+    def _time(self, left: Value, right: Value) -> float:
+        """Time of a product of which left is dense, ns."""
+        rows = left.pattern.shape[0]
+        rate = DENSE_RATE if rows >= LONG else SHORT_RATE
+        if rows < 2:
+            rate = SPARSE_RATE
+        return rows * len(right.numbers) / rate + self._move_time(left, right)
+
+    def _sparse_time(self, left: Value, right: Value) -> float:
+        """Time of a product that looks up every entry, ns."""
+        return _multiplications(left, right) / SPARSE_RATE + self._move_time(left, right)
+
+    def _move_time(self, *values: Value) -> float:
+        return sum(self._cost(value.numbers) for value in values) / MOVE_RATE
+
+
+def entrywise(code: int, patterns: Sequence[ca.Sparsity]) -> ca.Function:
+    """An operation on columns and scalars, entry by entry."""
+    symbols = [ca.MX.sym("operand", pattern) for pattern in patterns]
+    result = ca.MX.unary(code, *symbols) if len(symbols) == 1 else ca.MX.binary(code, *symbols)
+    return ca.Function("operation", symbols, [result])
+
+
+def _moved(code: int, node: ca.MX, operands: Sequence[Value]) -> list[Value]:
+    """Results of an instruction that only moves entries; none of one that computes."""
+    first = operands[0]
+    numbers = first.numbers
+    if code in SPLITS:
+        ends = node.info()["offset"]
+        patterns = [node.get_output(i).sparsity() for i in range(len(ends) - 1)]
+        return [Value(pattern, numbers[ends[i] : ends[i + 1]]) for i, pattern in enumerate(patterns)]
+    if code == ca.OP_TRANSPOSE:
+        return [first.transposed]
+    if code == ca.OP_PROJECT:
+        return [first.projected(node.sparsity())]
+    if code in SIDE_BY_SIDE:
+        numbers = np.concatenate([operand.numbers for operand in operands])
+    elif code == ca.OP_HORZREPMAT:
+        numbers = np.tile(numbers, node.size2() // first.pattern.size2())
+    elif code == ca.OP_GETNONZEROS:
+        numbers = numbers[_taken(node)]
+    elif code == ca.OP_SETNONZEROS and not node.info()["add"]:
+        numbers = numbers.copy()
+        numbers[_taken(node)] = operands[1].numbers
+    elif code not in SAME_ENTRIES:
+        return []
+    return [Value(node.sparsity(), numbers)]
+
+
+def _taken(node: ca.MX) -> Numbers:
+    """Entries that an instruction takes out of a matrix, or puts into it."""
+    return np.array(node.mapping().nonzeros(), dtype=np.int64)
+
+
+def _multiplications(left: Value, right: Value) -> int:
+    in_columns = np.diff(left.pattern.colind())
+    return int(in_columns[right.pattern.row()].sum())
+
+
+def _length(function: ca.Function) -> float:
+    """Instructions of a function without a loop; infinite where it is long, or has no such form."""
+    if function.nnz_in() + function.nnz_out() > SMALL:
+        return np.inf
+    try:
+        return float(function.expand().n_instructions())
+    except RuntimeError:
+        return np.inf
