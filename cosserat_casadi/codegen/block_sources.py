@@ -42,8 +42,8 @@ def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     split = partition.blocks
     parteds = {"residual": partition.residual, "jacobian": partition.jacobian, "input": partition.input_jacobian}
     words = {
-        "part_functions": "".join(_functions(render, parted) for parted in parteds.values()),
-        "part_tables": "".join(_tables(word, parted) for word, parted in parteds.items()),
+        "part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
+        "part_tables": "".join(part_tables("part", word, parted) for word, parted in parteds.items()),
         "front_tables": _fronts(split.fronts),
         "front_indices": numbers(split.front_indices),
         "dense_indices": numbers(split.dense_indices),
@@ -79,7 +79,8 @@ def block_words(render: Render, basics: Words, partition: Assembled) -> Words:
     }
 
 
-def _functions(render: Render, parted: Parted) -> str:
+def part_functions(render: Render, parted: Parted) -> str:
+    """Functions that call the kernels of parts."""
     names = [kernel.name() for kernel in parted.kernels]
     return "".join(render("part.c.in", {"function": _function(name), "kernel": name}) for name in names)
 
@@ -88,7 +89,14 @@ def _function(kernel: str) -> str:
     return f"call_{kernel}"
 
 
-def _tables(word: str, parted: Parted) -> str:
+def part_tables(kind: str, word: str, parted: Parted) -> str:
+    """Tables of parts.
+
+    Args:
+        kind: type of the records in C.
+        word: what the names of the tables begin with.
+        parted: the parts.
+    """
     stem = word.upper()
     lines = list[str]()
     rows = list[str]()
@@ -99,28 +107,28 @@ def _tables(word: str, parted: Parted) -> str:
             "CONSTANTS": part.constants,
             "ENTRIES": part.entries,
         }
-        lines += [_table(f"{stem}_{key}_{i}", values) for key, values in tables.items()]
+        lines += [table(f"{stem}_{key}_{i}", values) for key, values in tables.items()]
         names = [f"{stem}_{key}_{i}" if values else "0" for key, values in tables.items()]
         counts = [str(len(values)) for values in (part.x, part.inputs, part.entries)]
         rows.append(f"  {{{', '.join([_function(parted.kernels[part.kernel].name()), *names, *counts])}}}")
     # A scene without inputs has no part to list, and C no array without entries.
     listed = ",\n".join(rows or ["  {0, 0, 0, 0, 0, 0, 0, 0}"])
     count = f"enum {{ {stem}_PART_COUNT = {len(rows)} }};\n"
-    return "".join(lines) + f"static const part {stem}_PARTS[] = {{\n{listed},\n}};\n{count}"
+    return "".join(lines) + f"static const {kind} {stem}_PARTS[] = {{\n{listed},\n}};\n{count}"
 
 
 def _fronts(fronts: Sequence[Front]) -> str:
     lines = list[str]()
     rows = list[str]()
     for i, front in enumerate(fronts):
-        lines += [_table(f"MEMBERS_{i}", front.members), _table(f"TOUCHED_{i}", front.interface)]
+        lines += [table(f"MEMBERS_{i}", front.members), table(f"TOUCHED_{i}", front.interface)]
         touched = f"TOUCHED_{i}" if front.interface else "0"
         rows.append(f"  {{MEMBERS_{i}, {touched}, {len(front.members)}, {len(front.interface)}, {front.start}}}")
     listed = ",\n".join(rows)
     return "".join(lines) + f"static const front FRONTS[FRONT_COUNT] = {{\n{listed},\n}};\n"
 
 
-def _table(name: str, values: Sequence[float]) -> str:
+def table(name: str, values: Sequence[float]) -> str:
     """A constant array; nothing where it would be empty."""
     if not values:
         return ""

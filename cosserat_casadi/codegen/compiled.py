@@ -20,10 +20,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.cache import SCRATCH, VARIABLE, cache_folder, content_hash, keep_within, mark_used
+from cosserat_casadi.codegen.compiled_motion import CompiledMotion
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
-from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer
+from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
@@ -78,7 +79,7 @@ class CompiledSolution:
 
 
 @dataclass(frozen=True)
-class Compiled:
+class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
@@ -148,8 +149,8 @@ class Compiled:
         Raises:
             ValueError: inputs or start are of the wrong size.
         """
-        given = _vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
-        x = _vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
+        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
         self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         return _solution(x, info)
@@ -160,9 +161,9 @@ class Compiled:
         Raises:
             ValueError: an argument is of the wrong size.
         """
-        old = _vector(before, len(self.defaults), "before")
-        given = _vector(inputs, len(self.defaults), "inputs")
-        x = _vector(start, self.size, "start").copy()
+        old = vector(before, len(self.defaults), "before")
+        given = vector(inputs, len(self.defaults), "inputs")
+        x = vector(start, self.size, "start").copy()
         info = _Info()
         self._function("follow")(pointer(old), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
         return _solution(x, info)
@@ -207,8 +208,8 @@ class Compiled:
 
     def _sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
         """The dx/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
-        given = _vector(inputs, len(self.defaults), "inputs")
-        unknowns = _vector(x, self.size, "x")
+        given = vector(inputs, len(self.defaults), "inputs")
+        unknowns = vector(x, self.size, "x")
         count = len(self._names.rods) + len(self._names.bodies)
         d_x = np.zeros((len(given), self.size))
         d_poses = np.zeros((count, len(given), 7))
@@ -418,13 +419,6 @@ def _read(path: Path) -> bytes:
         return path.read_bytes()
     except OSError:
         raise ExportError(Problem(str(path), "is missing", "export the folder anew")) from None
-
-
-def _vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
-    vector = np.ascontiguousarray(value, dtype=np.float64).ravel()
-    if len(vector) != size:
-        raise ValueError(f"{name} must have {size} numbers, got {len(vector)}")
-    return vector
 
 
 def _solution(x: FloatArray, info: _Info) -> CompiledSolution:

@@ -13,6 +13,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
+from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.names import Names, library_names, model_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
@@ -26,6 +27,7 @@ def export(
     *,
     error_estimate: float | None = None,
     derivatives: bool = False,
+    dynamics: bool = False,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
@@ -36,17 +38,20 @@ def export(
         error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
         derivatives: whether the equations are written once more with first and second derivatives, for CasADi: what
             :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again.
+        dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
+            and their linearisation.
 
     Returns:
         the folder.
 
     Raises:
-        ExportError: the name or the folder is refused; nothing was written.
+        ExportError: the name, the folder or a motion of this scene is refused; nothing was written.
     """
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
-    write_folder(folder, folder_files(model, chosen, error_estimate, derivatives=derivatives), stale)
+    files = folder_files(model, chosen, error_estimate, derivatives=derivatives, dynamics=dynamics)
+    write_folder(folder, files, stale)
     return folder
 
 
@@ -75,7 +80,12 @@ def check_export(directory: Path, name: str) -> set[str]:
 
 
 def folder_files(
-    model: Model, name: str, error_estimate: float | None = None, *, derivatives: bool = False
+    model: Model,
+    name: str,
+    error_estimate: float | None = None,
+    *,
+    derivatives: bool = False,
+    dynamics: bool = False,
 ) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
 
@@ -84,13 +94,18 @@ def folder_files(
         name: the library.
         error_estimate: as for :func:`export`.
         derivatives: as for :func:`export`.
+        dynamics: as for :func:`export`.
+
+    Raises:
+        ExportError: the scene has no motion, and one is asked for.
     """
-    names = model_names(name, model)
+    names = model_names(name, model, dynamics=dynamics)
     parts = assembled(model, names)
-    functions = kernels(model, names, parts)
+    motion = motion_in_c(model, names) if dynamics else None
+    functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names)
     files = {
-        **library_sources(model, names, parts, generated, error_estimate, derivatives=derivatives),
+        **library_sources(model, names, parts, generated, error_estimate, derivatives=derivatives, motion=motion),
         **generated,
         "scene.toml": scene_text(model.scene),
     }

@@ -28,7 +28,7 @@ from cosserat_casadi.model.function_table import (
 
 Render = Callable[[str, dict[str, Any]], str]
 
-COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS"}
+COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS", "v": "UNKNOWNS", "inputs_rate": "INPUTS"}
 """Macros of the header with the number of entries of an argument."""
 
 WIDTH = 119

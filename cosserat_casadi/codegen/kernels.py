@@ -15,6 +15,7 @@ from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.loops import in_loops
+from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import QUERIES, Names
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.routines import improved
@@ -30,12 +31,13 @@ RATE = "path_rate"
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
-def kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
+def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[ca.Function]:
     """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
     wanted = functions_in_c(model, names)
+    of_motion = [] if motion is None else motion.kernels
     if parts is None:
-        return [kernel(model, entry.function, entry.kernel) for entry in wanted]
-    every = [*parts.kernels]
+        return [*(kernel(model, entry.function, entry.kernel) for entry in wanted), *of_motion]
+    every = [*parts.kernels, *of_motion]
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]

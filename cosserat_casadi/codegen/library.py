@@ -16,6 +16,8 @@ from cosserat_casadi.codegen.block_sources import block_words, dense_words, numb
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, public_functions
 from cosserat_casadi.codegen.manifest import input_entries, unknown_entries
 from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_bytes
+from cosserat_casadi.codegen.motion_parts import MotionInC
+from cosserat_casadi.codegen.motion_sources import MOTION_FILES, WITHOUT, motion_words
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.status import status_words
 from cosserat_casadi.codegen.structs import input_macro, input_struct_words, pose_name, result_struct_words
@@ -35,7 +37,7 @@ TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 SHARED = ("solver.h", "solver.c")
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
-VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS})
+VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {
@@ -47,10 +49,16 @@ ROLES = {
     "linear_dense.c": "factorisation of the Jacobian as a whole",
     "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
     "linear_blocks.h": "types of the tables for it",
+    "step.c": "a step of a motion, the same in every folder",
+    "step_sensitivity.c": "its derivatives",
+    "motion.c": "inverse dynamics, their linearisation, a start at rest",
+    "elimination.c": "factorisation of the matrices of a step",
+    "motion.h": "types of the tables for it",
     "{name}_kernels.c": "the equations of the rods, generated: compile this",
     "{name}_kernels.h": "their prototypes",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_demo.c": "solves once, times it, prints JSON",
+    "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
     "CMakeLists.txt": "library, demo, install, `find_package`",
     "manifest.json": "the same facts as data",
     "scene.toml": "the scene all of this was made from",
@@ -66,6 +74,7 @@ def library_sources(
     error_estimate: float | None,
     *,
     derivatives: bool = False,
+    motion: MotionInC | None = None,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
 
@@ -76,11 +85,12 @@ def library_sources(
         generated: source and header of the kernels by file name.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
         derivatives: whether the folder holds the derivatives too.
+        motion: the equations of motion, where the folder has them.
     """
-    words = _words(model, names, parts, generated, error_estimate)
-    words["file_rows"] = _file_rows(names, parts, derivatives=derivatives)
+    words = _words(model, names, parts, generated, error_estimate, motion)
+    words["file_rows"] = _file_rows(names, parts, derivatives=derivatives, dynamics=motion is not None)
     name = names.name
-    verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS))
+    verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS), *(() if motion is None else MOTION_FILES))
     return {
         f"{name}.h": render("library.h.in", words),
         f"{name}.c": render("library.c.in", words),
@@ -102,10 +112,16 @@ def _resource(folder: str, file: str) -> str:
 
 
 def _words(
-    model: Model, names: Names, parts: Assembled | None, generated: Mapping[str, str], error_estimate: float | None
+    model: Model,
+    names: Names,
+    parts: Assembled | None,
+    generated: Mapping[str, str],
+    error_estimate: float | None,
+    motion: MotionInC | None,
 ) -> dict[str, Any]:
     sizes = _sizes(model, names, generated)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
+    in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
     functions = public_functions(model, names)
     pose_derivatives = [names.function("tip_jacobian", rod) for rod in names.rods]
     pose_derivatives += [names.function("body_jacobian", body) for body in names.bodies]
@@ -124,9 +140,10 @@ def _words(
         "igm": names.function("igm", names.rods[0]),
         "tip": names.function("tip", names.rods[0]),
         "first_pose": pose_name(names, "tip", names.rods[0]),
-        "workspace_kb": _workspace_kb(sizes, linear),
+        "workspace_kb": _workspace_kb(sizes, linear, in_motion),
         **_pose_words(names),
         **linear,
+        **in_motion,
         "prototypes": "".join(function.prototype(render) for function in functions),
         "functions": "".join(function.wrapper(render) for function in functions),
         "function_rows": _function_rows(functions),
@@ -162,8 +179,8 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
     }
 
 
-def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any]) -> str:
-    room = (sizes["kernel_reals"], sizes["kernel_integers"])
+def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
+    room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
     return f"{workspace_bytes(*counts, room, linear['linear_reals']) / 1000:.1f}"
 
@@ -256,8 +273,10 @@ def _function_rows(functions: Sequence[FunctionInC]) -> str:
     return "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions)
 
 
-def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool) -> str:
+def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool, dynamics: bool) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
+    if not dynamics:
+        absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:
         absent.add("{name}_derivatives.c")
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}

@@ -90,13 +90,19 @@ class Names:
         return f"{self.name}_{shown}_{owner}" if named else f"{self.name}_{shown}"
 
 
-def model_names(name: str, model: Model) -> Names:
+def model_names(name: str, model: Model, *, dynamics: bool = False) -> Names:
     """Names of the exported library of a model, with the functions of its class.
+
+    Args:
+        name: the library.
+        model: what is exported.
+        dynamics: whether functions of motion are among them.
 
     Raises:
         ExportError: as :func:`library_names`.
     """
-    return scene_names(name, model.scene, tuple(table(type(model))))
+    functions = tuple(spec for spec in table(type(model)) if dynamics or not spec.of_motion)
+    return scene_names(name, model.scene, functions)
 
 
 def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = FUNCTIONS) -> Names:

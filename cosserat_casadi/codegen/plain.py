@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -85,3 +86,15 @@ class PlainFunction(ca.Callback):  # type: ignore[misc]
 def pointer(array: FloatArray) -> Any:
     """An array as an argument of a function in C."""
     return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+def vector(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
+    """Numbers as a vector of a known size.
+
+    Raises:
+        ValueError: there are more or fewer; the name says of what.
+    """
+    numbers = np.ascontiguousarray(value, dtype=np.float64).ravel()
+    if len(numbers) != size:
+        raise ValueError(f"{name} must have {size} numbers, got {len(numbers)}")
+    return numbers

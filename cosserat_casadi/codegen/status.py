@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -12,18 +15,35 @@ OUTCOMES = tuple(Outcome)
 def status_words(names: Names) -> dict[str, str]:
     """What the templates say of statuses: all of it follows from the outcomes."""
     symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in OUTCOMES}
-    width = max(len(symbol) for symbol in symbols.values())
-    enumerators = []
-    for number, outcome in enumerate(OUTCOMES):
-        comma = "," if number + 1 < len(OUTCOMES) else ""
-        entry = f"{symbols[outcome].ljust(width)} = {number}{comma}"
-        enumerators.append(f"  {entry.ljust(width + 6)}/* {outcome.value} */")
     return {
-        "status_lines": "\n".join(enumerators),
+        "status_lines": _enumerators({symbol: outcome.value for outcome, symbol in symbols.items()}),
         "status_names": "\n".join(f"#define SOLVER_{outcome.name} {symbols[outcome]}" for outcome in OUTCOMES),
         "text_cases": _cases({symbols[outcome]: outcome.value for outcome in OUTCOMES}),
         "label_cases": _cases({symbols[outcome]: outcome.label for outcome in OUTCOMES}),
     }
+
+
+def motion_status_words(names: Names) -> dict[str, str]:
+    """What the templates say of the statuses of motions."""
+    symbols = {status: f"{names.macro}_MOTION_{status.name}" for status in STATUSES}
+    defined = [f"#define SOLVER_MOTION_{status.name} {symbol}" for status, symbol in symbols.items()]
+    return {
+        "motion_status_lines": _enumerators({symbol: status.value for status, symbol in symbols.items()}),
+        "motion_status_names": "\n".join(defined),
+        "motion_text_cases": _cases({symbol: status.value for status, symbol in symbols.items()}),
+        "motion_label_cases": _cases({symbol: status.label for status, symbol in symbols.items()}),
+    }
+
+
+def _enumerators(sentences: Mapping[str, str]) -> str:
+    """Members of an enumeration, numbered in their order, with a sentence each."""
+    width = max(map(len, sentences))
+    lines = []
+    for number, (symbol, sentence) in enumerate(sentences.items()):
+        comma = "," if number + 1 < len(sentences) else ""
+        entry = f"{symbol.ljust(width)} = {number}{comma}"
+        lines.append(f"  {entry.ljust(width + 6)}/* {sentence} */")
+    return "\n".join(lines)
 
 
 def _cases(texts: dict[str, str]) -> str:

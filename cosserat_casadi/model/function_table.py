@@ -154,6 +154,11 @@ class FunctionSpec:
         """Whether it is a function of the header in C."""
         return bool(self.header)
 
+    @property
+    def of_motion(self) -> bool:
+        """Whether velocities enter it."""
+        return "v" in self.arguments
+
     def outputs_of(self, discrete: DiscreteScene, owner: str) -> tuple[Output, ...]:
         """What the function of one owner gives."""
         return self.outputs(discrete, owner) if callable(self.outputs) else self.outputs

@@ -63,6 +63,8 @@ class MotionFunctions:
         Output("of_loads", "J"),
         Output("load_is_dead"),
         arguments=VELOCITY,
+        kernel="energies",
+        header="Kinetic and elastic energy, energy of each load, and whether it has one.",
     )
     def energies(self, written: Expressions) -> list[Matrix]:
         """(x, v, inputs, inputs_rate) ↦ kinetic and elastic energy, energy of each load, and whether it has one."""
@@ -81,7 +83,13 @@ class MotionFunctions:
         energy = MotionEnergy(written.system)
         return [energy.dissipated_power, energy.load_powers, energy.actuator_powers, energy.base_power]
 
-    @scene_function(Output("linear", "N s"), Output("angular", "N m s"), arguments=VELOCITY)
+    @scene_function(
+        Output("linear", "N s"),
+        Output("angular", "N m s"),
+        arguments=VELOCITY,
+        kernel="momentum",
+        header="Momentum, and angular momentum about the origin of the world, world axes.",
+    )
     def momentum(self, written: Expressions) -> list[Matrix]:
         """(x, v, inputs, inputs_rate) ↦ momentum, and angular momentum about the origin of the world, 3×1 each."""
         return list(MotionEnergy(written.system).momentum)

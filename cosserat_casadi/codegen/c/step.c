@@ -1,0 +1,382 @@
+/* A step of a motion by Radau IIA with two stages, and what is solved for it. See the library's header for what each
+   public function promises.
+
+   cosserat_casadi/numerics holds the same algorithm in Python: stage_newton.py, step_matrices.py, secant_updates.py. The
+   unknowns of a stage are the accelerations of coordinates, and the values of multipliers and tensions. */
+
+/* ---- Equations ---- */
+
+static void evaluate_motion(const motion_part *parts, int count, const instant *at, real *results, workspace *work) {
+  for (int k = 0; k < count; k++) {
+    const motion_part *own = parts + k;
+    for (int i = 0; i < own->state_count; i++) work->motion_state[i] = at->state[own->state[i]];
+    for (int i = 0; i < own->input_count; i++) work->motion_inputs[i] = at->inputs[own->inputs[i]];
+    own->kernel(work->motion_state, work->motion_inputs, 0, own->constants, work->motion_entries, work);
+    for (int i = 0; i < own->entry_count; i++) results[own->entries[i]] = work->motion_entries[i];
+  }
+}
+
+static void motion_residual_at(const instant *at, real *residual, workspace *work) {
+  evaluate_motion(MOTION_RESIDUAL_PARTS, MOTION_RESIDUAL_PART_COUNT, at, residual, work);
+}
+
+/* Entries of stiffness, damping and mass, one after the other. */
+static void matrices_at(const instant *at, real *matrices, workspace *work) {
+  memset(matrices, 0, MATRICES * STAGE_ENTRIES * sizeof *matrices);
+  evaluate_motion(MOTION_MATRIX_PARTS, MOTION_MATRIX_PART_COUNT, at, matrices, work);
+}
+
+/* Derivatives of the residual by the inputs, then by their rates, N x INPUTS each. */
+static void input_matrices_at(const instant *at, real *matrices, workspace *work) {
+  memset(matrices, 0, 2 * N * SOLVER_INPUT_ROOM * sizeof *matrices);
+  evaluate_motion(MOTION_INPUT_PARTS, MOTION_INPUT_PART_COUNT, at, matrices, work);
+}
+
+/* What a step begins with. */
+typedef struct {
+  const real *x;
+  const real *v;
+  const real *inputs;
+  const real *inputs_rate; /* may be null */
+  real size;               /* s */
+} step_start;
+
+/* The inputs after a share of the step. */
+static void inputs_of(const step_start *start, real share, instant *at) {
+  for (int i = 0; i < INPUTS; i++) {
+    const real rate = start->inputs_rate ? start->inputs_rate[i] : 0;
+    at->inputs[i] = start->inputs[i] + share * start->size * rate;
+    at->inputs[INPUTS + i] = rate;
+    at->inputs[2 * INPUTS + i] = 0;
+  }
+}
+
+/* The polynomial of the step after a share of it, from its values and its integrals there. */
+static void motion_in(const step_start *start, real share, const real *values, const real *integrals,
+                      const real *double_integrals, const real *unknowns, instant *at) {
+  const real h = start->size;
+  real *x = at->state;
+  real *v = at->state + N;
+  real *a = at->state + 2 * N;
+  for (int i = 0; i < N; i++) {
+    const real first = unknowns[i];
+    const real second = unknowns[N + i];
+    if (IS_SHAPE[i]) {
+      x[i] = start->x[i] + share * h * start->v[i] + h * h * (double_integrals[0] * first + double_integrals[1] * second);
+      v[i] = start->v[i] + h * (integrals[0] * first + integrals[1] * second);
+      a[i] = values[0] * first + values[1] * second;
+    } else {
+      x[i] = values[0] * first + values[1] * second;
+      v[i] = 0;
+      a[i] = 0;
+    }
+  }
+  inputs_of(start, share, at);
+}
+
+static void stage_at(const step_start *start, int stage, const real *unknowns, instant *at) {
+  const real values[STAGES] = {stage == 0, stage == 1};
+  motion_in(start, STAGE_NODES[stage], values, STAGE_MATRIX[stage], STAGE_MATRIX_SQUARED[stage], unknowns, at);
+}
+
+/* ---- Newton's method for the stages ---- */
+
+static real larger(real a, real b) { return a > b ? a : b; }
+
+/* The largest change of position, over the length, of a vector of changes; not finite where one of them is not. */
+static real weighted_length(const real *change, int count) {
+  real largest = 0;
+  for (int i = 0; i < count; i++) {
+    const real size = ABSOLUTE(change[i]) * DISPLACEMENTS[i % N];
+    if (!(size <= largest)) largest = size;
+  }
+  return largest;
+}
+
+/* The matrix of the step at the eigenvalue of the method, K + p C + p^2 M; it has no units of time (C. L. Bottasso et al.,
+   Multibody System Dynamics 19, 2008). Zero where it is singular to rounding. */
+static int factorise_step(const real *matrices, real size, const stage_factors *found, workspace *work) {
+  const real *stiffness = matrices;
+  const real *damping = matrices + STAGE_ENTRIES;
+  const real *mass = matrices + 2 * STAGE_ENTRIES;
+  const real rate = RATE[0] / size;
+  const real rate_imaginary = RATE[1] / size;
+  const real square = rate * rate - rate_imaginary * rate_imaginary;
+  const real square_imaginary = 2 * rate * rate_imaginary;
+  real *values = work->stage_values;
+  for (int k = 0; k < STAGE_ENTRIES; k++) {
+    values[k] = stiffness[k] + rate * damping[k] + square * mass[k];
+    values[STAGE_ENTRIES + k] = rate_imaginary * damping[k] + square_imaginary * mass[k];
+  }
+  return factorise_system(complex_matrix(), values, found);
+}
+
+/* Corrections of h^2 a, of the values of multipliers, by the factorised matrix. */
+static void corrections_of(const stage_factors *factors, const real *residuals, real *corrections, workspace *work) {
+  real *solution = work->stage_solution;
+  for (int i = 0; i < N; i++) {
+    solution[i] = TO_EIGENVECTOR[0][0] * residuals[i] + TO_EIGENVECTOR[1][0] * residuals[N + i];
+    solution[N + i] = TO_EIGENVECTOR[0][1] * residuals[i] + TO_EIGENVECTOR[1][1] * residuals[N + i];
+  }
+  solve_system(complex_matrix(), factors, solution, work);
+  for (int i = 0; i < N; i++) {
+    real part = solution[i];
+    real imaginary = solution[N + i];
+    if (IS_SHAPE[i]) {
+      /* A change of position is so many times one of h^2 a. */
+      part = SHARE[0] * solution[i] - SHARE[1] * solution[N + i];
+      imaginary = SHARE[0] * solution[N + i] + SHARE[1] * solution[i];
+    }
+    for (int stage = 0; stage < STAGES; stage++) {
+      corrections[stage * N + i] = FROM_EIGENVECTOR[stage][1] * imaginary - FROM_EIGENVECTOR[stage][0] * part;
+    }
+  }
+}
+
+/* Changes of h v that belong to changes of h^2 a. */
+static void velocity_changes(const real *corrections, real *changes) {
+  for (int i = 0; i < N; i++) {
+    for (int stage = 0; stage < STAGES; stage++) {
+      changes[stage * N + i] = STAGE_MATRIX[stage][0] * corrections[i] + STAGE_MATRIX[stage][1] * corrections[N + i];
+    }
+  }
+}
+
+static real dot_of_stages(const real *a, const real *b) { return dot(a, b) + dot(a + N, b + N); }
+
+/* Broyden's updates, applied from the corrections taken so far: C. T. Kelley, Iterative Methods for Linear and Nonlinear
+   Equations, SIAM 1995, section 7.3. */
+static void apply_updates(int count, real *corrections, const workspace *work) {
+  for (int k = 0; k + 1 < count; k++) {
+    const real share = dot_of_stages(work->duals[k], corrections);
+    for (int i = 0; i < STAGES * N; i++) corrections[i] += share * work->taken[k + 1][i];
+  }
+  if (count > 0) {
+    /* The last update contains what it is applied for. */
+    const real share = 1 - dot_of_stages(work->duals[count - 1], corrections);
+    for (int i = 0; i < STAGES * N; i++) corrections[i] /= share;
+  }
+}
+
+/* Remembers a correction for the updates, with the changes of h v that belong to it, which are written over. */
+static void take_correction(int count, const real *corrections, real *changes, workspace *work) {
+  real *dual = work->duals[count];
+  real square = 0;
+  memcpy(work->taken[count], corrections, STAGES * N * sizeof *corrections);
+  for (int i = 0; i < STAGES * N; i++) {
+    const real weight = DISPLACEMENTS[i % N];
+    changes[i] *= weight;
+    square += changes[i] * changes[i];
+    changes[i] *= weight;
+  }
+  for (int i = 0; i < N; i++) {
+    for (int stage = 0; stage < STAGES; stage++) {
+      const real sum = STAGE_MATRIX[0][stage] * changes[i] + STAGE_MATRIX[1][stage] * changes[N + i];
+      dual[stage * N + i] = sum / square;
+    }
+  }
+}
+
+typedef enum { ITERATES, CONVERGES, DIVERGES } newton_course;
+
+/* How the iteration goes on after a correction of this length; see stage_newton.py. */
+static newton_course course_of(real length, real longest, real contraction, real allowed, real *left) {
+  const real expected = larger(contraction, LEAST_CONTRACTION);
+  *left = contraction > 0 && contraction < 1 ? length * expected / (1 - expected) : length;
+  if (length <= allowed) return CONVERGES;
+  if (length >= DIVERGING * longest) return DIVERGES;
+  if (contraction > 0 && contraction < 1 && *left <= allowed) return CONVERGES;
+  return ITERATES;
+}
+
+/* Newton's method from a guess of the unknowns of the stages, which it moves on. */
+static solver_motion_status solve_stages(const step_start *start, const stage_factors *factors,
+                                         const solver_step_options *options, real *unknowns, workspace *work,
+                                         solver_step_info *info) {
+  const real rounding = STAGE_ROUNDING * weighted_length(start->x, N);
+  const real allowed = larger(options->tolerance, rounding);
+  real *residuals = work->stage_residuals;
+  real *corrections = work->stage_corrections;
+  real *changes = work->stage_changes;
+  real length_before = 0, longest = 0, contraction = 0;
+  for (int count = 0; count < options->max_iterations; count++) {
+    info->iterations++;
+    info->residual = 0;
+    for (int stage = 0; stage < STAGES; stage++) {
+      stage_at(start, stage, unknowns, &work->at);
+      motion_residual_at(&work->at, residuals + stage * N, work);
+    }
+    for (int i = 0; i < STAGES * N; i++) {
+      if (!(ABSOLUTE(residuals[i]) <= info->residual)) info->residual = ABSOLUTE(residuals[i]);
+    }
+    corrections_of(factors, residuals, corrections, work);
+    apply_updates(count, corrections, work);
+    velocity_changes(corrections, changes);
+    const real length = weighted_length(changes, STAGES * N);
+    if (!isfinite(length) || !isfinite(info->residual) || !all_finite(corrections, STAGES * N)) return SOLVER_MOTION_NOT_FINITE;
+    for (int i = 0; i < STAGES * N; i++) unknowns[i] += IS_SHAPE[i % N] ? corrections[i] / (start->size * start->size) : corrections[i];
+    if (count > 0) contraction = length / length_before;
+    const newton_course course = course_of(length, count > 0 ? longest : length, count > 0 ? contraction : 0, allowed, &info->error_left);
+    if (course == CONVERGES) return SOLVER_MOTION_DONE;
+    if (count > 0 && course == DIVERGES) return SOLVER_MOTION_NOT_SOLVED;
+    take_correction(count, corrections, changes, work);
+    length_before = length;
+    longest = larger(longest, length);
+  }
+  return SOLVER_MOTION_NOT_SOLVED;
+}
+
+/* ---- Steps ---- */
+
+static stage_factors kept_factors(solver_step_memory *memory) {
+  const stage_factors kept = {memory->rows, memory->columns, memory->matrix, memory->pivots, &memory->as_a_whole};
+  return kept;
+}
+
+/* First iterate: the polynomial of the step before, so many times as long as this one, or a constant acceleration. */
+static void guess_stages(const real *before, real ratio, const solver_state *state, real *unknowns) {
+  for (int stage = 0; stage < STAGES; stage++) {
+    const real share = 1 + STAGE_NODES[stage] * ratio;
+    for (int i = 0; i < N; i++) {
+      real guess = IS_SHAPE[i] ? state->a[i] : state->x[i];
+      if (before) {
+        guess = (STAGE_POLYNOMIALS[0][0] + share * STAGE_POLYNOMIALS[1][0]) * before[i] +
+                (STAGE_POLYNOMIALS[0][1] + share * STAGE_POLYNOMIALS[1][1]) * before[N + i];
+      }
+      unknowns[stage * N + i] = guess;
+    }
+  }
+}
+
+/* A Jacobian in the middle of the step as the guess has it: there it is nearest to those of both stages. */
+static solver_motion_status renew_jacobian(const step_start *start, const real *unknowns, solver_step_memory *memory,
+                                           workspace *work, solver_step_info *info) {
+  const stage_factors factors = kept_factors(memory);
+  memory->jacobian_size = 0;
+  motion_in(start, (real)0.5, MIDDLE_VALUES, MIDDLE_INTEGRALS, MIDDLE_DOUBLE_INTEGRALS, unknowns, &work->at);
+  matrices_at(&work->at, work->matrices[0], work);
+  info->jacobians++;
+  if (!all_finite(work->matrices[0], MATRICES * STAGE_ENTRIES)) return SOLVER_MOTION_NOT_FINITE;
+  if (!factorise_step(work->matrices[0], start->size, &factors, work)) return SOLVER_MOTION_SINGULAR;
+  memory->jacobian_size = start->size;
+  return SOLVER_MOTION_DONE;
+}
+
+/* Solves one step from a guess in unknowns, with the kept Jacobian if there is one for its size, else with a new one.
+   Where it is not solved with a kept one, it is tried again with a new one. */
+static solver_motion_status solve_step(const step_start *start, const solver_step_options *options, real *unknowns,
+                                       solver_step_memory *memory, workspace *work, solver_step_info *info) {
+  const stage_factors factors = kept_factors(memory);
+  const int kept = memory->jacobian_size == start->size;
+  solver_motion_status status = SOLVER_MOTION_NOT_SOLVED;
+  for (int attempt = kept ? 0 : 1; attempt < 2 && status != SOLVER_MOTION_DONE; attempt++) {
+    const int iterations = info->iterations;
+    memcpy(work->iterate, unknowns, sizeof work->iterate);
+    if (attempt == 1) {
+      status = renew_jacobian(start, unknowns, memory, work, info);
+      if (status != SOLVER_MOTION_DONE) return status;
+    }
+    status = solve_stages(start, &factors, options, work->iterate, work, info);
+    if (status != SOLVER_MOTION_DONE || info->iterations - iterations > FEW_ITERATIONS) memory->jacobian_size = 0;
+  }
+  memcpy(unknowns, work->iterate, sizeof work->iterate);
+  return status;
+}
+
+/* Whether the state is the one that the last step ended with, as far as its polynomial goes. */
+static int continues(const solver_step_memory *memory, const solver_state *state) {
+  if (!(memory->size > 0)) return 0;
+  for (int i = 0; i < N; i++) {
+    if (IS_SHAPE[i] && memory->unknowns[N + i] != state->a[i]) return 0;
+  }
+  return 1;
+}
+
+/* The inputs with which a part of a step begins. */
+static void part_inputs(const step_start *whole, int part, real size, real *inputs) {
+  for (int i = 0; i < INPUTS; i++) {
+    const real rate = whole->inputs_rate ? whole->inputs_rate[i] : 0;
+    inputs[i] = whole->inputs[i] + (real)part * size * rate;
+  }
+}
+
+/* The step in so many parts, whose unknowns it leaves in the workspace, as their end in work->end. */
+static solver_motion_status take_parts(int count, const step_start *whole, const solver_state *state,
+                                       const solver_step_options *options, solver_step_memory *memory,
+                                       workspace *work, solver_step_info *info) {
+  step_start start = {work->end.x, work->end.v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
+  work->end = *state;
+  for (int part = 0; part < count; part++) {
+    real *unknowns = work->parts_unknowns[part];
+    part_inputs(whole, part, start.size, work->part_of_inputs);
+    if (part > 0) {
+      guess_stages(unknowns - STAGES * N, 1, &work->end, unknowns);
+    } else if (count == 1 && continues(memory, state)) {
+      guess_stages(memory->unknowns, start.size / memory->size, state, unknowns);
+    } else {
+      guess_stages(0, 1, state, unknowns);
+    }
+    const solver_motion_status status = solve_step(&start, options, unknowns, memory, work, info);
+    if (status != SOLVER_MOTION_DONE) return status;
+    /* The last stage is the end. */
+    stage_at(&start, STAGES - 1, unknowns, &work->at);
+    memcpy(work->end.x, work->at.state, sizeof work->end.x);
+    memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
+    memcpy(work->end.a, work->at.state + 2 * N, sizeof work->end.a);
+  }
+  return all_finite(work->at.state, 3 * N) ? SOLVER_MOTION_DONE : SOLVER_MOTION_NOT_FINITE;
+}
+
+static int bounded(int value, int largest) { return value < 1 ? 1 : value > largest ? largest : value; }
+
+static solver_step_options chosen_options(const solver_step_options *options) {
+  solver_step_options chosen = {STEP_TOLERANCE, STEP_ITERATIONS, STEP_PARTS};
+  if (options) {
+    chosen.tolerance = options->tolerance > 0 ? options->tolerance : 0;
+    chosen.max_iterations = bounded(options->max_iterations, MAX_STEP_ITERATIONS);
+    chosen.max_parts = bounded(options->max_parts, MAX_STEP_PARTS);
+  }
+  return chosen;
+}
+
+static int state_is_finite(const solver_state *state) {
+  return all_finite(state->x, N) && all_finite(state->v, N) && all_finite(state->a, N);
+}
+
+/* A step, whole or in parts; the state is moved on where it is done, and else as it was. */
+static solver_motion_status take_step(const step_start *whole, solver_state *state, solver_step_memory *memory,
+                                      const solver_step_options *options, workspace *work, solver_step_info *info) {
+  const solver_step_options chosen = chosen_options(options);
+  if (!(whole->size > 0) || !isfinite(whole->size)) return SOLVER_MOTION_BAD_STEP;
+  if (!all_finite(whole->inputs, INPUTS) || !state_is_finite(state)) return SOLVER_MOTION_NOT_FINITE;
+  if (whole->inputs_rate && !all_finite(whole->inputs_rate, INPUTS)) return SOLVER_MOTION_NOT_FINITE;
+  solver_motion_status status = SOLVER_MOTION_NOT_SOLVED;
+  for (int count = 1; count <= chosen.max_parts && status != SOLVER_MOTION_DONE; count *= 2) {
+    info->parts = count;
+    status = take_parts(count, whole, state, &chosen, memory, work, info);
+  }
+  if (status != SOLVER_MOTION_DONE) {
+    memory->jacobian_size = 0;
+    return status;
+  }
+  *state = work->end;
+  memory->size = whole->size / (real)info->parts;
+  memcpy(memory->unknowns, work->parts_unknowns[info->parts - 1], sizeof memory->unknowns);
+  return status;
+}
+
+static solver_step_info no_step(void) {
+  const solver_step_info none = {
+      .status = SOLVER_MOTION_NOT_FINITE, .iterations = 0, .jacobians = 0, .parts = 0, .residual = 0, .error_left = 0};
+  return none;
+}
+
+solver_motion_status solver_step(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
+                                 solver_step_memory *memory, const solver_step_options *options, workspace *work,
+                                 solver_step_info *info) {
+  const step_start whole = {state->x, state->v, inputs, inputs_rate, dt};
+  solver_step_info found = no_step();
+  found.status = take_step(&whole, state, memory, options, work, &found);
+  if (info) *info = found;
+  return found.status;
+}

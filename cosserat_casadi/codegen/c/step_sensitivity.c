@@ -1,0 +1,175 @@
+/* Derivatives of a step by what it begins with: the implicit function theorem at its stages, with the Jacobian of each. */
+
+/* Where derivatives go, 2 N numbers in each column; any may be null. */
+typedef struct {
+  real *by_start;       /* by x, then v */
+  real *by_inputs;
+  real *by_inputs_rate;
+} step_derivatives;
+
+/* The matrix of both stages, whose unknowns are h^2 a and the values of multipliers. */
+static int factorise_stages(real size, const stage_factors *found, workspace *work) {
+  for (int s = 0; s < STAGES; s++) {
+    const real *stiffness = work->matrices[s];
+    const real *damping = stiffness + STAGE_ENTRIES;
+    const real *mass = stiffness + 2 * STAGE_ENTRIES;
+    for (int t = 0; t < STAGES; t++) {
+      real *block = work->stage_values + (s * STAGES + t) * STAGE_ENTRIES;
+      const real same = s == t;
+      const real rate = STAGE_MATRIX[s][t] / size;
+      for (int k = 0; k < STAGE_ENTRIES; k++) {
+        const real of_shape = STAGE_MATRIX_SQUARED[s][t] * stiffness[k] + rate * damping[k] + same / (size * size) * mass[k];
+        block[k] = IS_SHAPE[ENTRY_COLUMNS[k]] ? of_shape : same * stiffness[k];
+      }
+    }
+  }
+  return factorise_system(matrix_of_stages(), work->stage_values, found);
+}
+
+/* Changes of the end, x then v, that go with changes of the stages' unknowns, the start as it is. */
+static void end_changes(real size, const real *stages, real *end) {
+  for (int i = 0; i < N; i++) {
+    const real first = stages[i];
+    const real second = stages[N + i];
+    end[i] = second;
+    end[N + i] = 0;
+    if (!IS_SHAPE[i]) continue;
+    end[i] = STAGE_MATRIX_SQUARED[1][0] * first + STAGE_MATRIX_SQUARED[1][1] * second;
+    end[N + i] = (STAGE_MATRIX[1][0] * first + STAGE_MATRIX[1][1] * second) / size;
+  }
+}
+
+/* Columns of a coordinate and of its rate; multipliers at the start do not enter the step. */
+static void differentiate_by_start(real size, const stage_factors *factors, real *by_start, workspace *work) {
+  real *stages = work->stage_solution;
+  for (int j = 0; j < 2 * N; j++) {
+    const int unknown = j % N;
+    const int of_rate = j >= N;
+    real *end = by_start + j * 2 * N;
+    memset(end, 0, 2 * N * sizeof *end);
+    if (!IS_SHAPE[unknown]) continue;
+    memset(stages, 0, STAGES * N * sizeof *stages);
+    for (int s = 0; s < STAGES; s++) {
+      const real *stiffness = work->matrices[s];
+      const real *damping = stiffness + STAGE_ENTRIES;
+      const real share = of_rate ? STAGE_NODES[s] * size : 1;
+      for (int k = ENTRY_STARTS[unknown]; k < ENTRY_STARTS[unknown + 1]; k++) {
+        stages[s * N + ENTRY_ROWS[k]] = -share * stiffness[k] - (of_rate ? damping[k] : 0);
+      }
+    }
+    solve_system(matrix_of_stages(), factors, stages, work);
+    end_changes(size, stages, end);
+    end[unknown] += of_rate ? size : 1;
+    if (of_rate) end[N + unknown] += 1;
+  }
+}
+
+/* Columns of the inputs, or of their rates. */
+static void differentiate_by_inputs(real size, int of_rate, const stage_factors *factors, real *by_inputs,
+                                    workspace *work) {
+  real *stages = work->stage_solution;
+  for (int j = 0; j < INPUTS; j++) {
+    for (int s = 0; s < STAGES; s++) {
+      const real *of_value = work->input_matrices[s] + j * N;
+      const real *of_speed = work->input_matrices[s] + (INPUTS + j) * N;
+      const real share = of_rate ? STAGE_NODES[s] * size : 1;
+      for (int i = 0; i < N; i++) stages[s * N + i] = -share * of_value[i] - (of_rate ? of_speed[i] : 0);
+    }
+    solve_system(matrix_of_stages(), factors, stages, work);
+    end_changes(size, stages, by_inputs + j * 2 * N);
+  }
+}
+
+/* Columns of a matrix become their products with the derivative by the start. */
+static void carry_on(const real *by_start, int count, real *columns, workspace *work) {
+  real *carried = work->carried;
+  for (int j = 0; j < count; j++) {
+    real *column = columns + j * 2 * N;
+    memset(carried, 0, sizeof work->carried);
+    for (int k = 0; k < 2 * N; k++) {
+      const real *factor = by_start + k * 2 * N;
+      for (int i = 0; column[k] != 0 && i < 2 * N; i++) carried[i] += factor[i] * column[k];
+    }
+    memcpy(column, carried, sizeof work->carried);
+  }
+}
+
+static void add_columns(const real *columns, real factor, real *sum) {
+  for (int i = 0; i < 2 * N * INPUTS; i++) sum[i] += factor * columns[i];
+}
+
+/* Derivatives of one part of a step. Zero where there are none. */
+static int differentiate_part(const step_start *start, const real *unknowns, const step_derivatives *own, workspace *work) {
+  const stage_factors factors = {work->stage_rows, work->stage_columns, work->stage_matrix, work->stage_pivots,
+                                 &work->stages_as_a_whole};
+  for (int s = 0; s < STAGES; s++) {
+    stage_at(start, s, unknowns, &work->at);
+    matrices_at(&work->at, work->matrices[s], work);
+    if (!all_finite(work->matrices[s], MATRICES * STAGE_ENTRIES)) return 0;
+    if (!own->by_inputs && !own->by_inputs_rate) continue;
+    input_matrices_at(&work->at, work->input_matrices[s], work);
+    if (!all_finite(work->input_matrices[s], 2 * N * INPUTS)) return 0;
+  }
+  if (!factorise_stages(start->size, &factors, work)) return 0;
+  if (own->by_start) differentiate_by_start(start->size, &factors, own->by_start, work);
+  if (own->by_inputs) differentiate_by_inputs(start->size, 0, &factors, own->by_inputs, work);
+  if (own->by_inputs_rate) differentiate_by_inputs(start->size, 1, &factors, own->by_inputs_rate, work);
+  return 1;
+}
+
+/* Derivatives of a step that was taken in parts, from the state that it began with. Zero where there are none. */
+static int differentiate_step(const step_start *whole, int count, const step_derivatives *wanted, workspace *work) {
+  const step_derivatives later = {work->by_start, work->by_inputs, work->by_inputs_rate};
+  step_start start = {whole->x, whole->v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
+  for (int part = 0; part < count; part++) {
+    const real *unknowns = work->parts_unknowns[part];
+    part_inputs(whole, part, start.size, work->part_of_inputs);
+    if (!differentiate_part(&start, unknowns, part == 0 ? wanted : &later, work)) return 0;
+    if (part > 0) {
+      if (wanted->by_start) carry_on(later.by_start, 2 * N, wanted->by_start, work);
+      if (wanted->by_inputs) {
+        carry_on(later.by_start, INPUTS, wanted->by_inputs, work);
+        add_columns(later.by_inputs, 1, wanted->by_inputs);
+      }
+      if (wanted->by_inputs_rate) {
+        carry_on(later.by_start, INPUTS, wanted->by_inputs_rate, work);
+        add_columns(later.by_inputs_rate, 1, wanted->by_inputs_rate);
+        add_columns(later.by_inputs, (real)part * start.size, wanted->by_inputs_rate);
+      }
+    }
+    stage_at(&start, STAGES - 1, unknowns, &work->at);
+    memcpy(work->end.x, work->at.state, sizeof work->end.x);
+    memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
+    start.x = work->end.x;
+    start.v = work->end.v;
+  }
+  return (!wanted->by_start || all_finite(wanted->by_start, 4 * N * N)) &&
+         (!wanted->by_inputs || all_finite(wanted->by_inputs, 2 * N * INPUTS)) &&
+         (!wanted->by_inputs_rate || all_finite(wanted->by_inputs_rate, 2 * N * INPUTS));
+}
+
+/* Where the step needed many iterations, the Jacobians at its stages make the one that the next step begins with. */
+static void keep_jacobian_of_stages(real size, solver_step_memory *memory, workspace *work) {
+  const stage_factors factors = kept_factors(memory);
+  if (memory->jacobian_size > 0) return;
+  for (int k = 0; k < MATRICES * STAGE_ENTRIES; k++) {
+    work->matrices[0][k] = (real)0.5 * (work->matrices[0][k] + work->matrices[1][k]);
+  }
+  if (factorise_step(work->matrices[0], size, &factors, work)) memory->jacobian_size = size;
+}
+
+solver_motion_status solver_step_sensitivity(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
+                                             solver_step_memory *memory, const solver_step_options *options,
+                                             real *d_end_d_start, real *d_end_d_inputs, real *d_end_d_inputs_rate,
+                                             workspace *work, solver_step_info *info) {
+  const step_derivatives wanted = {d_end_d_start, d_end_d_inputs, d_end_d_inputs_rate};
+  const step_start whole = {work->begin.x, work->begin.v, inputs, inputs_rate, dt};
+  solver_step_info found = no_step();
+  work->begin = *state;
+  found.status = take_step(&whole, state, memory, options, work, &found);
+  if (info) *info = found;
+  if (found.status != SOLVER_MOTION_DONE) return found.status;
+  if (!differentiate_step(&whole, found.parts, &wanted, work)) return SOLVER_MOTION_SINGULAR;
+  keep_jacobian_of_stages(memory->size, memory, work);
+  return SOLVER_MOTION_DONE;
+}

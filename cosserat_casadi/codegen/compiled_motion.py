@@ -1,0 +1,294 @@
+"""Motions by a compiled folder: a start at rest, steps of fixed length, their derivatives, the equations of motion."""
+
+from __future__ import annotations
+
+import ctypes
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
+from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class StepState:
+    """A state of motion.
+
+    Attributes:
+        x: unknowns, shape (size,).
+        v: their rates, shape (size,), 1/s; zero for multipliers and tensions.
+        a: their accelerations, shape (size,), 1/s²; the first guess of the next step.
+    """
+
+    x: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+
+@dataclass(frozen=True)
+class CompiledStep:
+    """A step of a motion by the solver in C.
+
+    Attributes:
+        state: at its end; where it was not done, the state that was given.
+        status: how it ended.
+        iterations: Newton corrections, those of attempts that failed too.
+        jacobians: Jacobians evaluated.
+        parts: into how many parts it was cut; 1 where it was taken whole.
+        residual: largest entry of the equations before the last correction.
+        error_left: displacement over the length that Newton's method leaves, foretold by its contraction.
+    """
+
+    state: StepState
+    status: MotionStatus
+    iterations: int
+    jacobians: int
+    parts: int
+    residual: float
+    error_left: float
+
+    @property
+    def done(self) -> bool:
+        """Whether the step was taken."""
+        return self.status is MotionStatus.DONE
+
+
+@dataclass(frozen=True)
+class StepSensitivity:
+    """Derivatives of x and v at the end of a step, stacked.
+
+    Attributes:
+        by_start: by x and v at the start, shape (2 size, 2 size).
+        by_inputs: by the inputs at the start, shape (2 size, inputs).
+        by_inputs_rate: by their rates in the step, shape (2 size, inputs).
+    """
+
+    by_start: FloatArray
+    by_inputs: FloatArray
+    by_inputs_rate: FloatArray
+
+
+@dataclass(frozen=True)
+class LinearMotion:
+    """Derivatives of the equations of motion at a state.
+
+    Attributes:
+        stiffness: by x, shape (size, size).
+        damping: by v, shape (size, size), s.
+        mass: by a, shape (size, size), s².
+        by_inputs: by the inputs, shape (size, inputs).
+        by_inputs_rate: by their rates, shape (size, inputs).
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    mass: FloatArray
+    by_inputs: FloatArray
+    by_inputs_rate: FloatArray
+
+
+@dataclass(frozen=True)
+class StepOptions:
+    """Budget of one step; see the folder's header for the defaults in C, which these are.
+
+    Attributes:
+        tolerance: displacement over the length that Newton's method may leave; 0 for what rounding allows.
+        iterations: most corrections of one attempt.
+        parts: most parts that a step is cut into.
+    """
+
+    tolerance: float = 1e-11
+    iterations: int = 12
+    parts: int = 8
+
+
+class _Options(ctypes.Structure):
+    _fields_ = (("tolerance", ctypes.c_double), ("iterations", ctypes.c_int), ("parts", ctypes.c_int))
+
+
+class _Info(ctypes.Structure):
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("iterations", ctypes.c_int),
+        ("jacobians", ctypes.c_int),
+        ("parts", ctypes.c_int),
+        ("residual", ctypes.c_double),
+        ("error_left", ctypes.c_double),
+    )
+
+
+class CompiledMotion(ABC):
+    """What a folder that was exported with ``dynamics=True`` offers beyond statics.
+
+    Every member but these four raises an AttributeError where the folder was exported without.
+    """
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """Number of unknowns."""
+
+    @property
+    @abstractmethod
+    def defaults(self) -> FloatArray:
+        """The scene's own inputs, stacked."""
+
+    @abstractmethod
+    def _function(self, word: str) -> Any: ...
+
+    @abstractmethod
+    def _workspace(self) -> Any: ...
+
+    def step_memory(self) -> Any:
+        """What steps keep from one to the next: one for each motion, new for a new one."""
+        return _room(self._motion_function("step_memory_size")())
+
+    def rest(self, inputs: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None) -> StepState | None:
+        """A state at rest; None where supports, joints or cables are not closed there.
+
+        Args:
+            inputs: stacked inputs; the scene's own by default.
+            x: unknowns, such as of an equilibrium; the unloaded scene by default.
+        """
+        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        start = vector(np.zeros(self.size) if x is None else x, self.size, "x")
+        state = np.zeros(3 * self.size)
+        status = self._motion_function("rest")(pointer(given), pointer(start), pointer(state), self._workspace())
+        return self._unpacked(state) if STATUSES[status] is MotionStatus.DONE else None
+
+    def step(
+        self,
+        state: StepState,
+        dt: float,
+        inputs: npt.ArrayLike,
+        inputs_rate: npt.ArrayLike | None = None,
+        *,
+        memory: Any = None,
+        options: StepOptions | None = None,
+    ) -> CompiledStep:
+        """One step of a motion by Radau IIA with two stages.
+
+        Args:
+            state: at the start.
+            dt: length of the step, s.
+            inputs: at the start, shape (inputs,).
+            inputs_rate: with which they move in the step, per s; held by default.
+            memory: of the steps before, :meth:`step_memory`; it is written to.
+            options: when Newton's method is done.
+        """
+        taken, _ = self._take("step", state, dt, inputs, inputs_rate, memory, options, [])
+        return taken
+
+    def step_sensitivity(
+        self,
+        state: StepState,
+        dt: float,
+        inputs: npt.ArrayLike,
+        inputs_rate: npt.ArrayLike | None = None,
+        *,
+        memory: Any = None,
+        options: StepOptions | None = None,
+    ) -> tuple[CompiledStep, StepSensitivity | None]:
+        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
+        size, count = 2 * self.size, len(self.defaults)
+        results = [np.zeros((columns, size)) for columns in (size, count, count)]
+        taken, status = self._take("step_sensitivity", state, dt, inputs, inputs_rate, memory, options, results)
+        if status is not MotionStatus.DONE:
+            return taken, None
+        return taken, StepSensitivity(*(result.T for result in results))
+
+    def inverse_dynamics(
+        self,
+        state: StepState,
+        inputs: npt.ArrayLike,
+        inputs_rate: npt.ArrayLike | None = None,
+        inputs_acceleration: npt.ArrayLike | None = None,
+    ) -> FloatArray:
+        """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
+        residual = np.zeros(self.size)
+        rates = [self._given(value) for value in (inputs, inputs_rate, inputs_acceleration)]
+        arguments = [pointer(value) for value in (state.x, state.v, state.a)]
+        self._motion_function("inverse_dynamics")(*arguments, *rates, pointer(residual), self._workspace())
+        return residual
+
+    def linearise(
+        self, state: StepState, inputs: npt.ArrayLike, inputs_rate: npt.ArrayLike | None = None
+    ) -> LinearMotion:
+        """Derivatives of the equations of motion at a state."""
+        size, count = self.size, len(self.defaults)
+        results = [np.zeros((columns, size)) for columns in (size, size, size, count, count)]
+        arguments = [pointer(self._packed(state)), self._given(inputs), self._given(inputs_rate)]
+        self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
+        return LinearMotion(*(result.T for result in results))
+
+    def _take(
+        self,
+        word: str,
+        state: StepState,
+        dt: float,
+        inputs: npt.ArrayLike,
+        inputs_rate: npt.ArrayLike | None,
+        memory: Any,
+        options: StepOptions | None,
+        results: Sequence[FloatArray],
+    ) -> tuple[CompiledStep, MotionStatus]:
+        """A step by one of the two functions in C, and what it returned."""
+        chosen = options or StepOptions()
+        budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts)
+        packed = self._packed(state)
+        info = _Info()
+        kept = self.step_memory() if memory is None else memory
+        status = self._motion_function(word)(
+            pointer(self._vector(inputs)),
+            self._given(inputs_rate),
+            ctypes.c_double(dt),
+            pointer(packed),
+            kept,
+            ctypes.byref(budget),
+            *map(pointer, results),
+            self._workspace(),
+            ctypes.byref(info),
+        )
+        end = CompiledStep(
+            state=self._unpacked(packed),
+            status=STATUSES[info.status],
+            iterations=info.iterations,
+            jacobians=info.jacobians,
+            parts=info.parts,
+            residual=info.residual,
+            error_left=info.error_left,
+        )
+        return end, STATUSES[status]
+
+    def _vector(self, inputs: npt.ArrayLike) -> FloatArray:
+        return vector(inputs, len(self.defaults), "inputs")
+
+    def _given(self, inputs: npt.ArrayLike | None) -> Any:
+        """Inputs, their rates or accelerations as an argument in C, which is null for zero."""
+        return None if inputs is None else pointer(self._vector(inputs))
+
+    def _packed(self, state: StepState) -> FloatArray:
+        """A state as its struct in C."""
+        named = {"x": state.x, "v": state.v, "a": state.a}
+        return np.concatenate([vector(value, self.size, name) for name, value in named.items()])
+
+    def _unpacked(self, packed: FloatArray) -> StepState:
+        return StepState(*packed.reshape(3, self.size))
+
+    def _motion_function(self, word: str) -> Any:
+        try:
+            return self._function(word)
+        except AttributeError:
+            remedy = "export(..., dynamics=True), or cosserat export --dynamics"
+            raise AttributeError(f"the library has no motions: {remedy}") from None
+
+
+def _room(size: int) -> Any:
+    """Zeroed memory of so many bytes."""
+    return (ctypes.c_double * -(-size // ctypes.sizeof(ctypes.c_double)))()

@@ -1,0 +1,193 @@
+"""The equations of motion of a scene as parts of rods, and the blocks in which the matrices of a step are eliminated.
+
+A scene with one dense Jacobian is one part and one block. State (x, v, a) and inputs (with rates and accelerations) are
+one vector each, so that parts are cut as those of statics are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import casadi as ca
+
+from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.model.build import Model
+
+MATRICES = ("stiffness", "damping", "mass")
+"""Derivatives of the equations by x, v and a."""
+
+
+@dataclass(frozen=True)
+class MotionInC:
+    """What the step in C is made of.
+
+    Attributes:
+        blocks: of stiffness, damping and mass together.
+        residual: the equations in parts.
+        matrices: entries of stiffness, damping and mass in parts: one after the other, in the order of the pattern.
+        input_matrices: derivatives by inputs, then by their rates, in parts, by their index in the dense matrix.
+    """
+
+    blocks: Blocks
+    residual: Parted
+    matrices: Parted
+    input_matrices: Parted
+
+    @property
+    def kernels(self) -> list[ca.Function]:
+        """All functions."""
+        return [*self.residual.kernels, *self.matrices.kernels, *self.input_matrices.kernels]
+
+
+def motion_in_c(model: Model, names: Names) -> MotionInC:
+    """The equations of motion of a model in parts.
+
+    Raises:
+        ExportError: they cannot be computed in motion.
+    """
+    _check(model)
+    state, inputs, factor, arguments = _symbols(model)
+    matrices = model.dynamics_jacobian.call(arguments)[: len(MATRICES)]
+    pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
+    partition = blocks(model.discrete, pattern)
+    if partition is None:
+        # One block without an interface; all of its matrix is filled.
+        partition = Blocks([0] * model.size, ca.Sparsity.dense(model.size, model.size))
+    residual = ca.Function("motion", [state, inputs, factor], [model.inverse_dynamics.call(arguments)[0]])
+    return MotionInC(
+        blocks=partition,
+        residual=parted(residual, partition.owners, names.kernel("motion_residual")),
+        matrices=_matrices(partition, [state, inputs, factor], matrices, names.kernel("motion_matrices")),
+        input_matrices=_input_matrices(model, partition, names.kernel("motion_input_matrices")),
+    )
+
+
+def _check(model: Model) -> None:
+    """Refuse what has no motion.
+
+    Raises:
+        ExportError: with every fault.
+    """
+    problems = []
+    for index, rod in enumerate(model.discrete.rods.values()):
+        if rod.properties.linear_density is None:
+            remedy = "give it a material with a density, or linear_density"
+            problems.append(Problem(f"rods[{index}]", "has no mass, and the step in C was asked for", remedy))
+    if model.scene.accuracy.rotation == "permuted":
+        what = "'permuted', the literal linear system, has no velocities"
+        problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
+    if problems:
+        raise ExportError(*problems)
+
+
+def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
+    """State, inputs and a factor that nothing depends on; and the arguments of the model's functions in motion."""
+    size, count = model.size, model.inputs.size
+    state = ca.MX.sym("state", 3 * size)
+    inputs = ca.MX.sym("inputs", 3 * count)
+    arguments = [state[k * size : (k + 1) * size] for k in range(3)]
+    arguments += [inputs[k * count : (k + 1) * count] for k in range(3)]
+    return state, inputs, ca.MX.sym("factor"), arguments
+
+
+def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
+    """Entries of stiffness, damping and mass, those of one owner together."""
+    number = {entry: k for k, entry in enumerate(zip(*partition.pattern.get_triplet(), strict=True))}
+    owner_of = partition.entry_owners
+    places = list[int]()
+    owners = list[int]()
+    for which, matrix in enumerate(matrices):
+        for entry in zip(*matrix.sparsity().get_triplet(), strict=True):
+            places.append(which * len(number) + number[entry])
+            owners.append(owner_of[number[entry]])
+    entries = ca.vertcat(*[matrix.nz[:] for matrix in matrices])
+    whole = parted(ca.Function("motion", [*symbols], [entries]), owners, name)
+    return _placed(whole, places)
+
+
+def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
+    """Derivatives by inputs and by their rates."""
+    state, inputs, factor, arguments = _symbols(model)
+    # In the function's own symbols CasADi sees through the call, and writes a quarter of the derivatives.
+    given = model.inverse_dynamics.mx_in()
+    residual = model.inverse_dynamics.call(given)[0]
+    by_each = [ca.jacobian(residual, given[i]) for i in (3, 4)]
+    by_inputs = ca.Function("by_inputs", given, [ca.horzcat(*by_each)])
+    matrix = by_inputs.call(arguments)[0]
+    rows, columns = matrix.sparsity().get_triplet()
+    whole = parted(ca.Function("motion", [state, inputs, factor], [matrix]), [partition.owners[i] for i in rows], name)
+    return _placed(whole, [i + j * model.size for i, j in zip(rows, columns, strict=True)])
+
+
+def _placed(whole: Parted, places: Sequence[int]) -> Parted:
+    """Parts whose entries are moved to these places."""
+    return replace(whole, parts=[replace(part, entries=[places[k] for k in part.entries]) for part in whole.parts])
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """An order of elimination as tables.
+
+    Attributes:
+        members: unknowns of each front.
+        touched: interface unknowns of each front, as numbers within the interface.
+        starts: first entry of the matrix of each front.
+        interface: unknowns of the interface.
+        entry_fronts: of each entry its front, or the number of fronts for those of the interface.
+        entry_rows: of each entry the row there.
+        entry_columns: of each entry the column there.
+    """
+
+    members: list[list[int]]
+    touched: list[list[int]]
+    starts: list[int]
+    interface: list[int]
+    entry_fronts: list[int]
+    entry_rows: list[int]
+    entry_columns: list[int]
+
+    @property
+    def orders(self) -> list[int]:
+        """Rows of each front."""
+        return [len(own) + len(shared) for own, shared in zip(self.members, self.touched, strict=True)]
+
+    @property
+    def interface_start(self) -> int:
+        """First entry of the interface's own matrix."""
+        return sum(order**2 for order in self.orders)
+
+    @property
+    def size(self) -> int:
+        """Numbers in all matrices."""
+        return self.interface_start + len(self.interface) ** 2
+
+
+def by_fronts(partition: Blocks) -> Elimination:
+    """Front after front."""
+    interface = {unknown: i for i, unknown in enumerate(partition.interface)}
+    local = []
+    for front in partition.fronts:
+        unknowns = [*front.members, *(partition.interface[i] for i in front.interface)]
+        local.append({unknown: i for i, unknown in enumerate(unknowns)})
+    local.append(interface)
+    fronts = [len(partition.fronts) if owner == INTERFACE else owner for owner in partition.entry_owners]
+    rows, columns = partition.pattern.get_triplet()
+    return Elimination(
+        members=[front.members for front in partition.fronts],
+        touched=[front.interface for front in partition.fronts],
+        starts=[front.start for front in partition.fronts],
+        interface=partition.interface,
+        entry_fronts=fronts,
+        entry_rows=[local[front][i] for front, i in zip(fronts, rows, strict=True)],
+        entry_columns=[local[front][j] for front, j in zip(fronts, columns, strict=True)],
+    )
+
+
+def as_a_whole(partition: Blocks) -> Elimination:
+    """All unknowns as one front."""
+    rows, columns = partition.pattern.get_triplet()
+    return Elimination([list(range(len(partition.owners)))], [[]], [0], [], [0] * len(rows), [*rows], [*columns])

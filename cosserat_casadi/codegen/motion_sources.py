@@ -1,0 +1,185 @@
+"""The words of the sources that belong to motions: tables, sizes and limits of the step in C."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.codegen.block_sources import Render, Words, numbers, part_functions, part_tables, table
+from cosserat_casadi.codegen.motion_parts import MATRICES, Elimination, MotionInC, as_a_whole, by_fronts
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.status import motion_status_words
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.history import CONSISTENT
+from cosserat_casadi.numerics import consistent_start, stage_newton, step_matrices
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.time_steps import FEW_ITERATIONS
+
+MOTION_FILES = ("motion.h", "elimination.c", "step.c", "step_sensitivity.c", "motion.c")
+"""Files of the folder ``c`` that a library with motions includes."""
+
+STEP_TOLERANCE = 1e-11
+"""Displacement over the length that Newton's method may leave in a step: joints are open by no more."""
+
+STEP_ITERATIONS, MOST_STEP_ITERATIONS = 12, 20
+"""Corrections of one attempt at a step: where the caller names none, and at most."""
+
+STEP_PARTS, MOST_STEP_PARTS = 8, 32
+"""Parts that a step may be cut into: where the caller names none, and at most."""
+
+SINGLE = {
+    "single_step_tolerance": "1e-5",
+    "single_stage_rounding": "2e-6",
+    "single_stage_singular": "1e-7",
+    "single_massless": "1e-5",
+}
+"""Limits of a step in float."""
+
+STAGES = 2
+"""Stages of the method, which step.c is written for."""
+
+WITHOUT: Words = {
+    "motion": "",
+    "motion_types": "",
+    "motion_members": "",
+    "motion_header": "",
+    "motion_config": "",
+    "motion_reals": 0,
+    "motion_integers": 0,
+}
+"""Words of a library without motions."""
+
+
+def motion_words(render: Render, basics: Words, model: Model, names: Names, motion: MotionInC) -> Words:
+    """Words of a library with motions."""
+    fronts = by_fronts(motion.blocks)
+    whole = as_a_whole(motion.blocks)
+    parteds = {
+        "motion_residual": motion.residual,
+        "motion_matrix": motion.matrices,
+        "motion_input": motion.input_matrices,
+    }
+    words = {
+        **basics,
+        **_limits(),
+        **_method(),
+        **motion_status_words(names),
+        "stage_entries": motion.blocks.pattern.nnz(),
+        "stage_matrix": max(fronts.size, whole.size),
+        "front_room": max(sum(fronts.orders), model.size),
+        "interface_room": max(len(fronts.interface), 1),
+        "most_motion_entries": max(len(part.entries) for parted in parteds.values() for part in parted.parts),
+        "displacements": numbers(np.where(model.discrete.unknowns.differential, displacements(model), 0.0).tolist()),
+        "units": numbers(model.discrete.unknowns.units.tolist()),
+        "motion_part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
+        "motion_part_tables": "".join(part_tables("motion_part", word, parted) for word, parted in parteds.items()),
+        "entry_tables": _entry_tables(motion),
+        "elimination_tables": _elimination_tables(fronts, whole),
+    }
+    return {
+        "motion": render("motion.c.in", words),
+        "motion_types": render("motion_types.h.in", words),
+        "motion_members": render("motion_workspace.h.in", words),
+        "motion_header": render("motion.h.in", words),
+        "motion_config": render("motion_config.h.in", words),
+        "motion_reals": _workspace_reals(model, motion, words),
+        "motion_integers": 3 * model.size + 1,
+    }
+
+
+def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
+    """Numbers that the workspace has for motions."""
+    size, room = model.size, words["input_room"]
+    entries = words["stage_entries"] * (2 * len(MATRICES) + 4) + words["most_motion_entries"]
+    matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
+    vectors = 12 * size + 7 * room + 4 * size + 12 * size
+    remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
+    rooms = 2 * words["front_room"] + 2 * words["interface_room"]
+    return int(entries + matrices + vectors + remembered + rooms)
+
+
+def _limits() -> Words:
+    return {
+        "step_tolerance": STEP_TOLERANCE,
+        "step_iterations": STEP_ITERATIONS,
+        "most_step_iterations": MOST_STEP_ITERATIONS,
+        "step_parts": STEP_PARTS,
+        "most_step_parts": MOST_STEP_PARTS,
+        "few_iterations": FEW_ITERATIONS,
+        "stage_rounding": repr(stage_newton.ROUNDING),
+        "stage_singular": 1.0 / step_matrices.SINGULAR,
+        "least_contraction": stage_newton.LEAST_CONTRACTION,
+        "diverging": stage_newton.DIVERGING,
+        "massless": consistent_start.RANK,
+        "closed": CONSISTENT,
+        **SINGLE,
+    }
+
+
+def _method() -> dict[str, str]:
+    """The method as initialisers."""
+    method = radau(STAGES)
+    eigenvalue = complex(method.eigenvalues[0])
+    return {
+        "stage_nodes": _initialiser(method.nodes),
+        "stage_table": _initialiser(method.matrix),
+        "stage_table_squared": _initialiser(method.matrix_squared),
+        "stage_polynomials": _initialiser(method.polynomials),
+        "middle_values": _initialiser(method.values_at(0.5)),
+        "middle_integrals": _initialiser(method.integrals_at(0.5)),
+        "middle_double_integrals": _initialiser(method.double_integrals_at(0.5)),
+        "rate": _initialiser(_pairs([1.0 / eigenvalue])[0]),
+        "share": _initialiser(_pairs([1.0 / eigenvalue**2])[0]),
+        "to_eigenvector": _initialiser(_pairs(method.to_eigenvectors[0])),
+        "from_eigenvector": _initialiser(_pairs(method.from_eigenvectors[:, 0])),
+    }
+
+
+def _pairs(values: Sequence[complex] | np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Real and imaginary parts side by side."""
+    return np.array([[complex(value).real, complex(value).imag] for value in values])
+
+
+def _initialiser(values: np.ndarray[Any, Any]) -> str:
+    """An array as an initialiser in C."""
+    if values.ndim == 0:
+        return f"(solver_real){float(values)!r}"
+    return "{" + ", ".join(_initialiser(value) for value in values) + "}"
+
+
+def _entry_tables(motion: MotionInC) -> str:
+    rows, columns = motion.blocks.pattern.get_triplet()
+    starts = motion.blocks.pattern.colind()
+    tables = {"ENTRY_ROWS": rows, "ENTRY_COLUMNS": columns, "ENTRY_STARTS": starts}
+    return "".join(table(name, list(values)) for name, values in tables.items())
+
+
+def _elimination_tables(fronts: Elimination, whole: Elimination) -> str:
+    """Both orders; a scene with one front has but one."""
+    if len(fronts.members) == 1:
+        return _elimination("WHOLE", ["BY_FRONTS", "AS_A_WHOLE"], whole)
+    return _elimination("FRONT", ["BY_FRONTS"], fronts) + _elimination("WHOLE", ["AS_A_WHOLE"], whole)
+
+
+def _elimination(stem: str, names: Sequence[str], order: Elimination) -> str:
+    """The tables of an order, and records of these names."""
+    lines = list[str]()
+    rows = list[str]()
+    for i, (members, touched) in enumerate(zip(order.members, order.touched, strict=True)):
+        lines += [table(f"{stem}_MEMBERS_{i}", members), table(f"{stem}_TOUCHED_{i}", touched)]
+        shared = f"{stem}_TOUCHED_{i}" if touched else "0"
+        rows.append(f"  {{{stem}_MEMBERS_{i}, {shared}, {len(members)}, {len(touched)}, {order.starts[i]}}}")
+    of_entries = {"FRONTS": order.entry_fronts, "ROWS": order.entry_rows, "COLUMNS": order.entry_columns}
+    lines += [table(f"{stem}_ENTRY_{word}", values) for word, values in of_entries.items()]
+    lines.append(table(f"{stem}_INTERFACE", order.interface))
+    listed = ",\n".join(rows)
+    lines.append(f"static const stage_front {stem}_FRONTS[] = {{\n{listed},\n}};\n")
+    interface = f"{stem}_INTERFACE" if order.interface else "0"
+    entries = ", ".join(f"{stem}_ENTRY_{word}" for word in of_entries)
+    counts = f"{len(order.members)}, {len(order.interface)}, {order.interface_start}"
+    record = f"{{{stem}_FRONTS, {interface}, {entries}, {counts}}}"
+    lines += [f"static const elimination {name} = {record};\n" for name in names]
+    return "".join(lines)
