@@ -15,11 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
+from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources
-from cosserat_casadi.codegen.library import VERBATIM, numbers, render, resource
+from cosserat_casadi.codegen.library import VERBATIM, render, resource
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.errors import ExportError, Problem
@@ -87,11 +88,12 @@ def write_fmu(
     found = find_compiler(compiler)
     outputs = motion_outputs(model)
     simulation = model.scene.simulation
-    step = STEP if simulation is None or simulation.step is None else simulation.step
+    step = STEP
+    if simulation is not None and simulation.step is not None:
+        step = simulation.step
     listed = variables(model, outputs.entries, step)
     texts = folder_files(model, name, error_estimate, dynamics=True)
-    sources = {file: text for file, text in texts.items() if file.endswith((".c", ".h"))}
-    sources.pop(f"{name}_demo.c")
+    sources = {file: text for file, text in texts.items() if file.endswith((".c", ".h")) and "_demo." not in file}
     sources |= _fmu_sources(model, names, outputs, step)
     token = _token(sources)
     sources[f"{name}_fmu.c"] = sources[f"{name}_fmu.c"].replace("@{token}", token)
@@ -118,7 +120,10 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
     ]
     moves = np.concatenate(
         [np.zeros(0, dtype=int)]
-        + [np.full(entry.size, entry.declared.geometry or entry.declared.continuous, dtype=int) for entry, _ in model.inputs]
+        + [
+            np.full(entry.size, entry.declared.geometry or entry.declared.continuous, dtype=int)
+            for entry, _ in model.inputs
+        ]
     )
     words = {
         "name": names.name,

@@ -71,8 +71,12 @@ def motion_outputs(model: Model) -> MotionOutputs:
         values += [position, quaternion, velocity]
     for name, actuator in model.actuator.items():
         outputs = type(model).actuator.spec.outputs_of(model.discrete, name)[:2]
-        entries += [MotionOutput(f"{name}.{one.name}", one.unit, f"{one.name} of {name}".capitalize()) for one in outputs]
-        values += actuator(x, inputs)[:2]
+        for output, value in zip(outputs, actuator(x, inputs)[:2], strict=True):
+            full_name = f"{name}.{output.name}"
+            # What is given is no result: the tension of a tendon that is pulled by one.
+            if full_name not in model.inputs.names:
+                entries.append(MotionOutput(full_name, output.unit, f"{output.name.capitalize()} of {name}."))
+                values.append(value)
     stacked = ca.densify(ca.vertcat(*values))
     arguments = [x, v, inputs, inputs_rate]
     return MotionOutputs(

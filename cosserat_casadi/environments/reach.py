@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,12 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_motion import StepState
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.control.decision_variables import decision_variables
-from cosserat_casadi.equilibrium.solve import solve_scene
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -28,7 +29,29 @@ from cosserat_casadi.scene import Scene, read_scene
 DRAWS = 20
 """Random inputs that are tried for a target before it counts as out of reach."""
 
+LARGEST = float(np.finfo(np.float64).max)
+"""Bound of what is seen: any finite number."""
+
 Observation = npt.NDArray[np.float64]
+
+
+@dataclass
+class _Episode:
+    """Where an episode stands.
+
+    Attributes:
+        state: of the motion.
+        inputs: stacked.
+        target: where the tip is to be, m, shape (3,).
+        memory: of the steps in C.
+        periods: that have passed.
+    """
+
+    state: StepState
+    inputs: FloatArray
+    target: FloatArray
+    memory: Any
+    periods: int = 0
 
 
 class ReachEnvironment(gymnasium.Env[Observation, Observation]):
@@ -76,22 +99,22 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         if not all(np.isfinite(time) and time > 0 for time in (period, step, duration)):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
         described = scene if isinstance(scene, Scene) else read_scene(Path(scene))
-        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
         self.rod = _rod_name(described, rod)
+        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
+        self._acting = decision_variables(self.model)
+        _refuse_open_ranges(self.model, self._acting.indices, self._acting.lower, self._acting.upper)
         self.library = _compiled(self.model)
         self._outputs = motion_outputs(self.model)
         self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
-        self._acting = decision_variables(self.model)
-        _refuse_open_ranges(self.model, self._acting.indices, self._acting.lower, self._acting.upper)
         self._length = next(entry.length for entry in described.rods if entry.name == self.rod)
         self._steps = int(np.ceil(period / step - 1e-9))
         self.dt = period / self._steps
         self._periods = int(np.ceil(duration / period - 1e-9))
         actions = len(self._acting.indices)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (actions,), dtype=np.float64)
-        # Gymnasium wants a range of what is seen; a tip is never farther from where it may be than a few lengths.
-        self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (9 + actions,), dtype=np.float64)
-        self._start(self.model.inputs.stacked(), np.zeros(3))
+        # What is seen is finite, and has no bounds that are known beforehand.
+        self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (9 + actions,), dtype=np.float64)
+        self._episode = self._begun(self.model.pack(), np.zeros(3))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -108,7 +131,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         super().reset(seed=seed)
         target = (options or {}).get("target")
         chosen = self._random_target() if target is None else np.asarray(target, dtype=np.float64).reshape(3)
-        self._start(self.model.inputs.stacked(), chosen)
+        self._episode = self._begun(self.model.pack(), chosen)
         return self._observation(), self._info("")
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -117,35 +140,32 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         Args:
             action: shares of the ranges, −1 to 1; what lies outside counts as the bound.
         """
-        aimed = self._inputs.copy()
+        episode = self._episode
+        aimed = episode.inputs.copy()
         aimed[self._acting.indices] = self._from_share(np.clip(action, -1.0, 1.0))
-        rate = (aimed - self._inputs) / (self._steps * self.dt)
-        self._period += 1
+        rate = (aimed - episode.inputs) / (self._steps * self.dt)
+        episode.periods += 1
         for _ in range(self._steps):
-            taken = self.library.step(self._state, self.dt, self._inputs, rate, memory=self._memory)
+            taken = self.library.step(episode.state, self.dt, episode.inputs, rate, memory=episode.memory)
             if not taken.done:
                 return self._observation(), self._reward(), True, False, self._info(taken.status.value)
-            self._state = taken.state
-            self._inputs = self._inputs + self.dt * rate
-        truncated = self._period >= self._periods
+            episode.state = taken.state
+            episode.inputs = episode.inputs + self.dt * rate
+        truncated = episode.periods >= self._periods
         return self._observation(), self._reward(), False, truncated, self._info("")
 
-    def _start(self, inputs: FloatArray, target: FloatArray) -> None:
-        """Rest in the equilibrium of some inputs."""
+    def _begun(self, inputs: FloatArray, target: FloatArray) -> _Episode:
+        """At rest, in the equilibrium of some inputs."""
         found = self.library.solve(inputs)
         state = self.library.rest(inputs, found.x) if found.converged else None
         if state is None:
             raise RuntimeError(f"no episode can begin: {found.outcome.value}")
-        self._state: StepState = state
-        self._inputs = inputs
-        self._target = target
-        self._memory = self.library.step_memory()
-        self._period = 0
+        return _Episode(state, inputs, target, self.library.step_memory())
 
     def _random_target(self) -> FloatArray:
         """The tip in equilibrium at random inputs within the bounds, m."""
         for _ in range(DRAWS):
-            inputs = self.model.inputs.stacked().copy()
+            inputs = self.model.pack().copy()
             share = self.np_random.uniform(-1.0, 1.0, len(self._acting.indices))
             inputs[self._acting.indices] = self._from_share(share)
             found = self.library.solve(inputs)
@@ -161,17 +181,19 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
 
     def _tip(self) -> FloatArray:
         """Position and velocity of the tip, m and m/s, shape (6,)."""
-        rate = np.zeros_like(self._inputs)
-        outputs = self._outputs.function(self._state.x, self._state.v, self._inputs, rate)
+        state = self._episode.state
+        # Bases do not move here, or not within the instant that is seen.
+        rate = np.zeros_like(self._episode.inputs)
+        outputs = self._outputs.function(state.x, state.v, self._episode.inputs, rate)
         return np.asarray(outputs.full().ravel()[self._seen])
 
     def _observation(self) -> Observation:
         ranges = self._acting.upper - self._acting.lower
-        share = 2.0 * (self._inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
-        return np.concatenate([self._tip(), share, self._target])
+        share = 2.0 * (self._episode.inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
+        return np.concatenate([self._tip(), share, self._episode.target])
 
     def _distance(self) -> float:
-        return float(np.linalg.norm(self._tip()[:3] - self._target))
+        return float(np.linalg.norm(self._tip()[:3] - self._episode.target))
 
     def _reward(self) -> float:
         return -self._distance() / self._length
