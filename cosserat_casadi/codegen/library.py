@@ -91,11 +91,14 @@ def library_sources(
     words["file_rows"] = _file_rows(names, parts, derivatives=derivatives, dynamics=motion is not None)
     name = names.name
     verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS), *(() if motion is None else MOTION_FILES))
+    demos = {f"{name}_demo.c": render("demo.c.in", words)}
+    if motion is not None:
+        demos[f"{name}_motion_demo.c"] = render("motion_demo.c.in", words)
     return {
         f"{name}.h": render("library.h.in", words),
         f"{name}.c": render("library.c.in", words),
         f"{name}_config.h": render("config.h.in", words),
-        f"{name}_demo.c": render("demo.c.in", words),
+        **demos,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in verbatim},

@@ -47,6 +47,8 @@ WITHOUT: Words = {
     "motion_members": "",
     "motion_header": "",
     "motion_config": "",
+    "motion_cmake": "",
+    "motion_readme": "",
     "motion_reals": 0,
     "motion_integers": 0,
 }
@@ -85,6 +87,9 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "motion_members": render("motion_workspace.h.in", words),
         "motion_header": render("motion.h.in", words),
         "motion_config": render("motion_config.h.in", words),
+        "motion_cmake": render("motion_cmake.in", words),
+        "motion_readme": render("motion_readme.md.in", words),
+        "load_room": max(len(model.scene.loads), 1),
         "motion_reals": _workspace_reals(model, motion, words),
         "motion_integers": 3 * model.size + 1,
     }
@@ -95,9 +100,9 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     size, room = model.size, words["input_room"]
     entries = words["stage_entries"] * (2 * len(MATRICES) + 4) + words["most_motion_entries"]
     matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
-    vectors = 12 * size + 7 * room + 4 * size + 12 * size
+    vectors = 12 * size + 7 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
-    rooms = 2 * words["front_room"] + 2 * words["interface_room"]
+    rooms = 8 * (words["front_room"] + words["interface_room"] + size)
     return int(entries + matrices + vectors + remembered + rooms)
 
 

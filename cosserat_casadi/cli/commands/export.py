@@ -16,6 +16,7 @@ from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import read_scene
 
 
@@ -25,6 +26,9 @@ def export(
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
     derivatives: Annotated[
         bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
+    ] = False,
+    dynamics: Annotated[
+        bool, typer.Option("--dynamics", help="With motions: a step of fixed length with its derivatives.")
     ] = False,
     settings: Settings = None,
 ) -> None:
@@ -37,12 +41,20 @@ def export(
     # All that can be refused is refused before the solve, which may take a minute.
     check_export(output, name)
     exported_scene = read_scene(scene, tuple(settings or ()))
+    if dynamics:
+        exported_scene = exported_scene.with_motion_inputs()
     scene_names(name, exported_scene)
 
-    solution = solve_with_progress(exported_scene)
+    # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
+    solution = solve_with_progress(exported_scene.held() if dynamics else exported_scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
+    model = solution.model
+    if dynamics:
+        model = build(exported_scene, model.discretisation, moving=True)
     # The folder keeps the estimate, which is for these inputs; tune gives one for a range of them.
-    export_model(solution.model, output, name, error_estimate=solution.error_estimate, derivatives=derivatives)
+    export_model(
+        model, output, name, error_estimate=solution.error_estimate, derivatives=derivatives, dynamics=dynamics
+    )
     print_export(Console(), solution, output)

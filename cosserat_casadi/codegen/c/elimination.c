@@ -2,8 +2,8 @@
    touches, then the interface (I. S. Duff, J. K. Reid, ACM Trans. Math. Software 9, 1983). A scene with one front has no
    interface.
 
-   A matrix is complex, of size N, or real, with an unknown for each stage. Complex numbers are in planes: a column holds
-   its real parts, then its imaginary ones. Matrices are stored column after column. */
+   A matrix is complex, of size N, or real, with an unknown for each stage. A column of complex numbers
+   is two planes: its real parts, then its imaginary ones. Matrices are stored column after column. */
 
 /* Whether numbers are complex (2 planes), how many stages each unknown stands for, and which pivots count as zero beside
    entries of one. */
@@ -29,7 +29,11 @@ static matrix_kind matrix_of_masses(void) {
   return kind;
 }
 
-/* Rows of b less the columns first to last times the entries of b there. Four rows stay in registers. */
+/* Vectors have as many lanes as a matrix has planes, which lie one after the other, or FOUR: those of four right-hand sides
+   of a real matrix, which lie side by side. */
+enum { FOUR = 4 };
+
+/* Rows of b less the columns first to last times the entries of b there. Some rows stay in registers. */
 static void subtract_real(const real *a, int order, int first, int last, int from, int to, real *b) {
   int i = from;
   for (; i + 4 <= to; i += 4) {
@@ -84,55 +88,100 @@ static void subtract_complex(const real *a, int order, int first, int last, int 
   }
 }
 
-static void subtract_columns(int planes, const real *a, int order, int first, int last, int from, int to, real *b) {
-  if (planes == 1) {
+static void subtract_four(const real *a, int order, int first, int last, int from, int to, real *b) {
+  int i = from;
+  for (; i + 2 <= to; i += 2) {
+    real *row = b + FOUR * i;
+    real s_1 = row[0], s_2 = row[1], s_3 = row[2], s_4 = row[3];
+    real t_1 = row[4], t_2 = row[5], t_3 = row[6], t_4 = row[7];
+    for (int k = first; k < last; k++) {
+      const real *factors = b + FOUR * k;
+      const real s = a[k * order + i];
+      const real t = a[k * order + i + 1];
+      s_1 -= s * factors[0];
+      s_2 -= s * factors[1];
+      s_3 -= s * factors[2];
+      s_4 -= s * factors[3];
+      t_1 -= t * factors[0];
+      t_2 -= t * factors[1];
+      t_3 -= t * factors[2];
+      t_4 -= t * factors[3];
+    }
+    row[0] = s_1;
+    row[1] = s_2;
+    row[2] = s_3;
+    row[3] = s_4;
+    row[4] = t_1;
+    row[5] = t_2;
+    row[6] = t_3;
+    row[7] = t_4;
+  }
+  for (; i < to; i++) {
+    for (int k = first; k < last; k++) {
+      for (int lane = 0; lane < FOUR; lane++) b[FOUR * i + lane] -= a[k * order + i] * b[FOUR * k + lane];
+    }
+  }
+}
+
+static void subtract_columns(int lanes, const real *a, int order, int first, int last, int from, int to, real *b) {
+  if (lanes == 1) {
     subtract_real(a, order, first, last, from, to, b);
+  } else if (lanes == FOUR) {
+    subtract_four(a, order, first, last, from, to, b);
   } else {
     subtract_complex(a, order, first, last, from, to, b);
   }
 }
 
-/* One number of a column times a number. */
-static void scale(int planes, int order, int i, real factor, real factor_imaginary, real *b) {
-  if (planes == 1) {
-    b[i] *= factor;
-  } else {
+/* Distance of neighbouring entries of a vector, and of the lanes of one. */
+static int entry_stride(int lanes) { return lanes == FOUR ? FOUR : 1; }
+
+static int lane_stride(int lanes, int order) { return lanes == FOUR ? 1 : order; }
+
+/* One entry of a vector times a number. */
+static void scale(int lanes, int order, int i, real factor, real factor_imaginary, real *b) {
+  if (lanes == 2) {
     const real whole = b[i] * factor - b[order + i] * factor_imaginary;
     b[order + i] = b[i] * factor_imaginary + b[order + i] * factor;
     b[i] = whole;
+  } else {
+    for (int lane = 0; lane < lanes; lane++) b[lanes * i + lane] *= factor;
   }
 }
 
-static void swap_entries(int planes, int order, int i, int k, real *b) {
-  for (int plane = 0; plane < planes; plane++) {
-    real *part = b + plane * order;
-    const real kept = part[i];
-    part[i] = part[k];
-    part[k] = kept;
+static void swap_entries(int lanes, int order, int i, int k, real *b) {
+  if (i == k) return;
+  for (int lane = 0; lane < lanes; lane++) {
+    real *own = b + lane * lane_stride(lanes, order);
+    const int stride = entry_stride(lanes);
+    const real kept = own[i * stride];
+    own[i * stride] = own[k * stride];
+    own[k * stride] = kept;
   }
 }
 
 /* Forward substitution of b with the first columns, in panels of four. */
-static void substitute_forward(int planes, const real *a, int order, int count, const int *pivots, real *b) {
-  for (int k = 0; k < count; k++) swap_entries(planes, order, k, pivots[k], b);
+static void substitute_forward(int lanes, const real *a, int order, int count, const int *pivots, real *b) {
+  for (int k = 0; k < count; k++) swap_entries(lanes, order, k, pivots[k], b);
   for (int k = 0; k < count; k += 4) {
     const int next = k + 4 < count ? k + 4 : count;
-    for (int m = k; m < next; m++) subtract_columns(planes, a, order, m, m + 1, m + 1, next, b);
-    subtract_columns(planes, a, order, k, next, next, order, b);
+    for (int m = k; m < next; m++) subtract_columns(lanes, a, order, m, m + 1, m + 1, next, b);
+    subtract_columns(lanes, a, order, k, next, next, order, b);
   }
 }
 
 /* Backward substitution, the unknowns of the other columns known. */
-static void substitute_backward(int planes, const real *a, int order, int count, real *b) {
-  subtract_columns(planes, a, order, count, order, 0, count, b);
+static void substitute_backward(int lanes, const real *a, int order, int count, real *b) {
+  const int planes = lanes == 2 ? 2 : 1;
+  subtract_columns(lanes, a, order, count, order, 0, count, b);
   for (int k = count; k > 0; k -= 4) {
     const int next = k > 4 ? k - 4 : 0;
     for (int m = k - 1; m >= next; m--) {
       const real *pivot = a + m * planes * order + m;
-      scale(planes, order, m, pivot[0], planes == 1 ? 0 : pivot[order], b);
-      subtract_columns(planes, a, order, m, m + 1, next, m, b);
+      scale(lanes, order, m, pivot[0], planes == 1 ? 0 : pivot[order], b);
+      subtract_columns(lanes, a, order, m, m + 1, next, m, b);
     }
-    subtract_columns(planes, a, order, next, k, 0, next, b);
+    subtract_columns(lanes, a, order, next, k, 0, next, b);
   }
 }
 
@@ -260,96 +309,112 @@ static int factorise_system(matrix_kind kind, const real *values, const stage_fa
   return eliminate_in(&AS_A_WHOLE, kind, values, found);
 }
 
-/* Gathers the right-hand side of one front; returns whether an entry differs from zero. */
-static int gather_front(const stage_front *own, matrix_kind kind, const real *b, real *gathered) {
+/* Gathers the right-hand sides of one front; returns whether an entry differs from zero. */
+static int gather_front(const stage_front *own, matrix_kind kind, int lanes, const real *b, real *gathered) {
   const int size = order_of(own, kind);
-  const int count = own->member_count;
+  const int stride = entry_stride(lanes);
   int any = 0;
-  memset(gathered, 0, (size_t)(kind.planes * size) * sizeof *gathered);
-  for (int plane = 0; plane < kind.planes; plane++) {
+  memset(gathered, 0, (size_t)(lanes * size) * sizeof *gathered);
+  for (int lane = 0; lane < lanes; lane++) {
     for (int s = 0; s < kind.copies; s++) {
-      const real *from = b + (plane * kind.copies + s) * N;
-      real *to = gathered + plane * size + s * count;
-      for (int i = 0; i < count; i++) {
-        to[i] = from[own->members[i]];
-        any |= to[i] != 0;
+      const real *from = b + (lane * kind.copies + s) * N;
+      real *to = gathered + lane * lane_stride(lanes, size) + s * own->member_count * stride;
+      for (int i = 0; i < own->member_count; i++) {
+        to[i * stride] = from[own->members[i]];
+        any |= to[i * stride] != 0;
       }
     }
   }
   return any;
 }
 
-/* Adds what a front leaves of the interface's right-hand side to it, or gives the front the interface's solution. */
-static void exchange(const stage_front *own, matrix_kind kind, int interface_count, int give, real *values,
+/* Puts the solution of one front where it belongs. */
+static void scatter_front(const stage_front *own, matrix_kind kind, int lanes, const real *values, real *b) {
+  const int size = order_of(own, kind);
+  const int stride = entry_stride(lanes);
+  for (int lane = 0; lane < lanes; lane++) {
+    for (int s = 0; s < kind.copies; s++) {
+      real *to = b + (lane * kind.copies + s) * N;
+      const real *from = values + lane * lane_stride(lanes, size) + s * own->member_count * stride;
+      for (int i = 0; i < own->member_count; i++) to[own->members[i]] = from[i * stride];
+    }
+  }
+}
+
+/* Adds what a front leaves of the interface's right-hand sides to these, or gives the front the interface's solution. */
+static void exchange(const stage_front *own, matrix_kind kind, int lanes, int interface_count, int give, real *values,
                      real *interface) {
   const int size = order_of(own, kind);
   const int members = kind.copies * own->member_count;
-  for (int plane = 0; plane < kind.planes; plane++) {
+  const int stride = entry_stride(lanes);
+  for (int lane = 0; lane < lanes; lane++) {
+    real *own_lane = values + lane * lane_stride(lanes, size);
+    real *shared = interface + lane * lane_stride(lanes, kind.copies * interface_count);
     for (int s = 0; s < kind.copies; s++) {
-      real *own_part = values + plane * size + members + s * own->interface_count;
-      real *shared = interface + (plane * kind.copies + s) * interface_count;
       for (int i = 0; i < own->interface_count; i++) {
+        const int mine = (members + s * own->interface_count + i) * stride;
+        const int theirs = (s * interface_count + own->interface[i]) * stride;
         if (give) {
-          own_part[i] = shared[own->interface[i]];
+          own_lane[mine] = shared[theirs];
         } else {
-          shared[own->interface[i]] += own_part[i];
+          shared[theirs] += own_lane[mine];
         }
       }
     }
   }
 }
 
-/* Solves a factorised system in place. b: in planes, in these one copy after the other. */
-static void solve_system(matrix_kind kind, const stage_factors *factors, real *b, workspace *work) {
+/* Solves a factorised system in place for one vector, of as many lanes as it has planes, or for FOUR real ones. b: lane
+   after lane, in these one copy of the unknowns after the other. */
+static void solve_system(matrix_kind kind, int lanes, const stage_factors *factors, real *b, workspace *work) {
   const elimination *order = *factors->as_a_whole ? &AS_A_WHOLE : &BY_FRONTS;
   const int matrix_scale = kind.planes * kind.copies * kind.copies;
   const int interface_order = kind.copies * order->interface;
+  const int stride = entry_stride(lanes);
+  const real *shared_matrix = factors->matrix + matrix_scale * order->interface_start;
   const int *pivots = factors->pivots;
   real *interface = work->interface_of_stages;
   real *values = work->fronts_of_stages;
-  for (int plane = 0; plane < kind.planes; plane++) {
+  for (int lane = 0; lane < lanes; lane++) {
+    real *shared = interface + lane * lane_stride(lanes, interface_order);
     for (int s = 0; s < kind.copies; s++) {
-      real *part = b + (plane * kind.copies + s) * N;
-      for (int i = 0; i < N; i++) part[i] *= factors->rows[s * N + i];
-      real *shared = interface + (plane * kind.copies + s) * order->interface;
-      for (int i = 0; i < order->interface; i++) shared[i] = part[order->interface_members[i]];
+      real *own = b + (lane * kind.copies + s) * N;
+      for (int i = 0; i < N; i++) own[i] *= factors->rows[s * N + i];
+      for (int i = 0; i < order->interface; i++) {
+        shared[(s * order->interface + i) * stride] = own[order->interface_members[i]];
+      }
     }
   }
   for (int number = 0; number < order->front_count; number++) {
     const stage_front *own = order->fronts + number;
-    const int size = order_of(own, kind);
     const int members = kind.copies * own->member_count;
     const real *matrix = factors->matrix + matrix_scale * own->start;
-    if (gather_front(own, kind, b, values)) substitute_forward(kind.planes, matrix, size, members, pivots, values);
-    exchange(own, kind, order->interface, 0, values, interface);
+    if (gather_front(own, kind, lanes, b, values)) {
+      substitute_forward(lanes, matrix, order_of(own, kind), members, pivots, values);
+    }
+    exchange(own, kind, lanes, order->interface, 0, values, interface);
     pivots += members;
-    values += kind.planes * size;
+    values += lanes * order_of(own, kind);
   }
-  const real *shared_matrix = factors->matrix + matrix_scale * order->interface_start;
-  substitute_forward(kind.planes, shared_matrix, interface_order, interface_order, pivots, interface);
-  substitute_backward(kind.planes, shared_matrix, interface_order, interface_order, interface);
+  substitute_forward(lanes, shared_matrix, interface_order, interface_order, pivots, interface);
+  substitute_backward(lanes, shared_matrix, interface_order, interface_order, interface);
   values = work->fronts_of_stages;
   for (int number = 0; number < order->front_count; number++) {
     const stage_front *own = order->fronts + number;
-    const int size = order_of(own, kind);
-    const int members = kind.copies * own->member_count;
-    exchange(own, kind, order->interface, 1, values, interface);
-    substitute_backward(kind.planes, factors->matrix + matrix_scale * own->start, size, members, values);
-    for (int plane = 0; plane < kind.planes; plane++) {
-      for (int s = 0; s < kind.copies; s++) {
-        real *to = b + (plane * kind.copies + s) * N;
-        const real *from = values + plane * size + s * own->member_count;
-        for (int i = 0; i < own->member_count; i++) to[own->members[i]] = from[i];
-      }
-    }
-    values += kind.planes * size;
+    const real *matrix = factors->matrix + matrix_scale * own->start;
+    exchange(own, kind, lanes, order->interface, 1, values, interface);
+    substitute_backward(lanes, matrix, order_of(own, kind), kind.copies * own->member_count, values);
+    scatter_front(own, kind, lanes, values, b);
+    values += lanes * order_of(own, kind);
   }
-  for (int plane = 0; plane < kind.planes; plane++) {
+  for (int lane = 0; lane < lanes; lane++) {
+    const real *shared = interface + lane * lane_stride(lanes, interface_order);
     for (int s = 0; s < kind.copies; s++) {
-      real *part = b + (plane * kind.copies + s) * N;
-      const real *shared = interface + (plane * kind.copies + s) * order->interface;
-      for (int i = 0; i < order->interface; i++) part[order->interface_members[i]] = shared[i];
-      for (int i = 0; i < N; i++) part[i] *= factors->columns[s * N + i];
+      real *own = b + (lane * kind.copies + s) * N;
+      for (int i = 0; i < order->interface; i++) {
+        own[order->interface_members[i]] = shared[(s * order->interface + i) * stride];
+      }
+      for (int i = 0; i < N; i++) own[i] *= factors->columns[s * N + i];
     }
   }
 }

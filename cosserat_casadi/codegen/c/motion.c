@@ -67,7 +67,7 @@ static void accelerate(const int *is_constraint, solver_state *state, const real
   }
   if (!factorise_system(matrix_of_masses(), work->stage_values, &factors)) return;
   for (int i = 0; i < N; i++) change[i] = is_constraint[i] ? 0 : -residual[i];
-  solve_system(matrix_of_masses(), &factors, change, work);
+  solve_system(matrix_of_masses(), 1, &factors, change, work);
   if (!all_finite(change, N)) return;
   for (int i = 0; i < N; i++) {
     if (IS_SHAPE[i]) state->a[i] += change[i];

@@ -118,7 +118,7 @@ static void corrections_of(const stage_factors *factors, const real *residuals, 
     solution[i] = TO_EIGENVECTOR[0][0] * residuals[i] + TO_EIGENVECTOR[1][0] * residuals[N + i];
     solution[N + i] = TO_EIGENVECTOR[0][1] * residuals[i] + TO_EIGENVECTOR[1][1] * residuals[N + i];
   }
-  solve_system(complex_matrix(), factors, solution, work);
+  solve_system(complex_matrix(), 2, factors, solution, work);
   for (int i = 0; i < N; i++) {
     real part = solution[i];
     real imaginary = solution[N + i];

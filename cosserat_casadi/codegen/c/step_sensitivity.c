@@ -39,44 +39,60 @@ static void end_changes(real size, const real *stages, real *end) {
   }
 }
 
-/* Columns of a coordinate and of its rate; multipliers at the start do not enter the step. */
-static void differentiate_by_start(real size, const stage_factors *factors, real *by_start, workspace *work) {
-  real *stages = work->stage_solution;
-  for (int j = 0; j < 2 * N; j++) {
-    const int unknown = j % N;
-    const int of_rate = j >= N;
-    real *end = by_start + j * 2 * N;
-    memset(end, 0, 2 * N * sizeof *end);
-    if (!IS_SHAPE[unknown]) continue;
-    memset(stages, 0, STAGES * N * sizeof *stages);
-    for (int s = 0; s < STAGES; s++) {
-      const real *stiffness = work->matrices[s];
-      const real *damping = stiffness + STAGE_ENTRIES;
-      const real share = of_rate ? STAGE_NODES[s] * size : 1;
-      for (int k = ENTRY_STARTS[unknown]; k < ENTRY_STARTS[unknown + 1]; k++) {
-        stages[s * N + ENTRY_ROWS[k]] = -share * stiffness[k] - (of_rate ? damping[k] : 0);
-      }
+/* Minus what the equations of both stages change by with a coordinate at the start, or with its rate. */
+static void change_by_start(real size, int column, real *stages, const workspace *work) {
+  const int unknown = column % N;
+  const int of_rate = column >= N;
+  for (int s = 0; s < STAGES; s++) {
+    const real *stiffness = work->matrices[s];
+    const real *damping = stiffness + STAGE_ENTRIES;
+    const real share = of_rate ? STAGE_NODES[s] * size : 1;
+    for (int k = ENTRY_STARTS[unknown]; k < ENTRY_STARTS[unknown + 1]; k++) {
+      stages[s * N + ENTRY_ROWS[k]] = -share * stiffness[k] - (of_rate ? damping[k] : 0);
     }
-    solve_system(matrix_of_stages(), factors, stages, work);
-    end_changes(size, stages, end);
-    end[unknown] += of_rate ? size : 1;
-    if (of_rate) end[N + unknown] += 1;
   }
 }
 
-/* Columns of the inputs, or of their rates. */
-static void differentiate_by_inputs(real size, int of_rate, const stage_factors *factors, real *by_inputs,
-                                    workspace *work) {
+/* The same with an input, or with its rate, which are behind the inputs. */
+static void change_by_input(real size, int column, real *stages, const workspace *work) {
+  const int input = column % (INPUTS > 0 ? INPUTS : 1);
+  const int of_rate = column >= INPUTS;
+  for (int s = 0; s < STAGES; s++) {
+    const real *of_value = work->input_matrices[s] + input * N;
+    const real *of_speed = work->input_matrices[s] + (INPUTS + input) * N;
+    const real share = of_rate ? STAGE_NODES[s] * size : 1;
+    for (int i = 0; i < N; i++) stages[s * N + i] = -share * of_value[i] - (of_rate ? of_speed[i] : 0);
+  }
+}
+
+/* Some columns of a derivative, four at a time. */
+static void differentiate_columns(void (*change)(real, int, real *, const workspace *), real size, int first, int last,
+                                  const stage_factors *factors, real *columns, workspace *work) {
   real *stages = work->stage_solution;
-  for (int j = 0; j < INPUTS; j++) {
-    for (int s = 0; s < STAGES; s++) {
-      const real *of_value = work->input_matrices[s] + j * N;
-      const real *of_speed = work->input_matrices[s] + (INPUTS + j) * N;
-      const real share = of_rate ? STAGE_NODES[s] * size : 1;
-      for (int i = 0; i < N; i++) stages[s * N + i] = -share * of_value[i] - (of_rate ? of_speed[i] : 0);
+  for (int j = first; j < last; j += FOUR) {
+    memset(stages, 0, FOUR * STAGES * N * sizeof *stages);
+    for (int lane = 0; lane < FOUR && j + lane < last; lane++) change(size, j + lane, stages + lane * STAGES * N, work);
+    solve_system(matrix_of_stages(), FOUR, factors, stages, work);
+    for (int lane = 0; lane < FOUR && j + lane < last; lane++) {
+      end_changes(size, stages + lane * STAGES * N, columns + (j + lane - first) * 2 * N);
     }
-    solve_system(matrix_of_stages(), factors, stages, work);
-    end_changes(size, stages, by_inputs + j * 2 * N);
+  }
+}
+
+/* Columns of coordinates and of their rates; multipliers at the start do not enter the step. */
+static void differentiate_by_start(real size, const stage_factors *factors, real *by_start, workspace *work) {
+  differentiate_columns(change_by_start, size, 0, 2 * N, factors, by_start, work);
+  for (int j = 0; j < N; j++) {
+    real *by_x = by_start + j * 2 * N;
+    real *by_v = by_start + (N + j) * 2 * N;
+    if (IS_SHAPE[j]) {
+      by_x[j] += 1;
+      by_v[j] += size;
+      by_v[N + j] += 1;
+    } else {
+      memset(by_x, 0, 2 * N * sizeof *by_x);
+      memset(by_v, 0, 2 * N * sizeof *by_v);
+    }
   }
 }
 
@@ -112,8 +128,10 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
   }
   if (!factorise_stages(start->size, &factors, work)) return 0;
   if (own->by_start) differentiate_by_start(start->size, &factors, own->by_start, work);
-  if (own->by_inputs) differentiate_by_inputs(start->size, 0, &factors, own->by_inputs, work);
-  if (own->by_inputs_rate) differentiate_by_inputs(start->size, 1, &factors, own->by_inputs_rate, work);
+  if (own->by_inputs) differentiate_columns(change_by_input, start->size, 0, INPUTS, &factors, own->by_inputs, work);
+  if (own->by_inputs_rate) {
+    differentiate_columns(change_by_input, start->size, INPUTS, 2 * INPUTS, &factors, own->by_inputs_rate, work);
+  }
   return 1;
 }
 
