@@ -68,9 +68,10 @@ def write_fmu(
 ) -> Path:
     """Write a model in motion as an FMU for co-simulation, with directional derivatives.
 
-    Its inputs are the scene's, its outputs poses and velocities of tips and bodies, efforts of actuators and what they
-    do work on. It begins at rest, in the equilibrium of its inputs. Loads are held over a communication step, bases and
-    lengths move linearly to the value that is set.
+    Its inputs are the scene's; its outputs are poses and velocities of tips and bodies, efforts of actuators and what
+    these do work on. It begins at rest, in the equilibrium of its inputs, or in the unloaded shape where the scene
+    starts there or has a free base. Loads are held over a communication step; bases and lengths move linearly to the
+    value that is set.
 
     Args:
         model: a model that was built with its motion.
@@ -131,6 +132,7 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         "outputs": len(outputs.entries),
         "moves": numbers(moves.tolist()) or "0",
         "step": repr(step),
+        "unloaded": int(_starts_unloaded(model)),
         "token": "@{token}",
     }
     return {
@@ -138,6 +140,14 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         **kernel_sources(functions, names, f"{names.name}_outputs"),
         **{file: resource("c", file) for file in FMI_SOURCES},
     }
+
+
+def _starts_unloaded(model: Model) -> bool:
+    """Whether the motion begins in the unloaded shape: bases that are free have no equilibrium."""
+    simulation = model.scene.simulation
+    if any(rod.base.free for rod in model.scene.rods):
+        return True
+    return simulation is not None and simulation.start == "unloaded"
 
 
 def _token(sources: Mapping[str, str]) -> str:

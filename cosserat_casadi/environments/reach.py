@@ -42,6 +42,7 @@ class _Episode:
     Attributes:
         state: of the motion.
         inputs: stacked.
+        inputs_rate: with which they moved at last, per s.
         target: where the tip is to be, m, shape (3,).
         memory: of the steps in C.
         periods: that have passed.
@@ -49,6 +50,7 @@ class _Episode:
 
     state: StepState
     inputs: FloatArray
+    inputs_rate: FloatArray
     target: FloatArray
     memory: Any
     periods: int = 0
@@ -69,6 +71,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
     Attributes:
         model: the model of the scene in motion.
         library: its compiled folder.
+        period: between two actions, s.
         dt: length of a step of the integrator, s.
     """
 
@@ -107,6 +110,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         self._outputs = motion_outputs(self.model)
         self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
         self._length = next(entry.length for entry in described.rods if entry.name == self.rod)
+        self.period = period
         self._steps = int(np.ceil(period / step - 1e-9))
         self.dt = period / self._steps
         self._periods = int(np.ceil(duration / period - 1e-9))
@@ -144,6 +148,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         aimed = episode.inputs.copy()
         aimed[self._acting.indices] = self._from_share(np.clip(action, -1.0, 1.0))
         rate = (aimed - episode.inputs) / (self._steps * self.dt)
+        episode.inputs_rate = rate
         episode.periods += 1
         for _ in range(self._steps):
             taken = self.library.step(episode.state, self.dt, episode.inputs, rate, memory=episode.memory)
@@ -160,7 +165,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         state = self.library.rest(inputs, found.x) if found.converged else None
         if state is None:
             raise RuntimeError(f"no episode can begin: {found.outcome.value}")
-        return _Episode(state, inputs, target, self.library.step_memory())
+        return _Episode(state, inputs, np.zeros_like(inputs), target, self.library.step_memory())
 
     def _random_target(self) -> FloatArray:
         """The tip in equilibrium at random inputs within the bounds, m."""
@@ -181,10 +186,9 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
 
     def _tip(self) -> FloatArray:
         """Position and velocity of the tip, m and m/s, shape (6,)."""
-        state = self._episode.state
-        # Bases do not move here, or not within the instant that is seen.
-        rate = np.zeros_like(self._episode.inputs)
-        outputs = self._outputs.function(state.x, state.v, self._episode.inputs, rate)
+        episode = self._episode
+        state = episode.state
+        outputs = self._outputs.function(state.x, state.v, episode.inputs, episode.inputs_rate)
         return np.asarray(outputs.full().ravel()[self._seen])
 
     def _observation(self) -> Observation:

@@ -286,3 +286,33 @@ def test_file_names_are_checked_first(model, tmp_path):
     with pytest.raises(SceneError, match="does not exist"):
         write_fmu(model, tmp_path / "none" / "finger.fmu", "finger")
     assert list(tmp_path.iterdir()) == []
+
+
+FALLING = """
+schema = 1
+inputs = []
+[accuracy]
+modes = 1
+nodes = 3
+[[rods]]
+name = "stick"
+length = 0.1
+strain = "kirchhoff"
+material = { youngs_modulus = 1.2e6, poisson_ratio = 0.48, density = 1070.0 }
+section = { shape = "circle", radius = 7e-3 }
+base = { free = true }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+
+
+def test_free_rod_falls(tmp_path):
+    """From the unloaded shape, and without an input: by g t²/2, which the integrator has exactly."""
+    fmu = write_fmu(build(parse_scene(FALLING), moving=True), tmp_path / "stick.fmu", "stick")
+    assert validate_fmu(str(fmu)) == []
+    outputs = ["stick.tip.position.z", "stick.tip.velocity.z"]
+    result = fmpy.simulate_fmu(str(fmu), stop_time=0.02, output_interval=5e-3, output=outputs)
+    assert_allclose(result["stick.tip.position.z"], 0.1 - 9.81 * result["time"] ** 2 / 2, rtol=0.0, atol=1e-9)
+    assert_allclose(result["stick.tip.velocity.z"], -9.81 * result["time"], rtol=0.0, atol=1e-8)

@@ -155,14 +155,14 @@ FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance handle, fmi3Bool
   return fmi3OK;
 }
 
-/* At rest, in the static equilibrium of the inputs. */
+/* At rest: in the static equilibrium of the inputs, or in the unloaded shape where the scene starts there. */
 static fmi3Status settle(instance *self) {
   moment *now = &self->held.now;
   double x[N] = {0};
   memset(&now->memory, 0, sizeof now->memory);
   memcpy(now->inputs, self->held.given, sizeof now->inputs);
   memset(now->inputs_rate, 0, sizeof now->inputs_rate);
-  const fmu_status found = fmu_solve(now->inputs, x, &self->workspace, 0);
+  const fmu_status found = FMU_STARTS_UNLOADED ? FMU_CONVERGED : fmu_solve(now->inputs, x, &self->workspace, 0);
   if (found != FMU_CONVERGED) return refuse(self, "the equilibrium at the start", fmu_status_text(found));
   const fmu_motion_status status = fmu_rest(now->inputs, x, &now->state, &self->workspace);
   if (status != FMU_DONE) return refuse(self, "the start", fmu_motion_status_text(status));
@@ -404,6 +404,7 @@ static void add_product(const double *matrix, int rows, int columns, const doubl
 static const char *direction_at_rest(instance *self, const double *change) {
   const moment *now = &self->held.now;
   double *d_x = self->d_next_d_inputs;
+  if (FMU_STARTS_UNLOADED) return 0;
   const fmu_status status = fmu_solve_sensitivity(now->inputs, now->state.x, d_x, 0, &self->workspace);
   if (status != FMU_CONVERGED) return fmu_status_text(status);
   add_product(d_x, N, FMU_INPUTS, change, self->direction);
