@@ -101,16 +101,17 @@ def library_sources(
         **demos,
         "CMakeLists.txt": render("CMakeLists.txt.in", words),
         "README.md": render("README.md.in", words),
-        **{file: _resource("c", file) for file in verbatim},
+        **{file: resource("c", file) for file in verbatim},
     }
 
 
 def render(template: str, words: dict[str, Any]) -> str:
     """A template of this package with its words filled in."""
-    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), _resource("templates", template))
+    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), resource("templates", template))
 
 
-def _resource(folder: str, file: str) -> str:
+def resource(folder: str, file: str) -> str:
+    """Text of a file of this package."""
     return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
 
 

@@ -1,0 +1,174 @@
+"""A scene in motion as an FMU: a model that other simulators step, by the Functional Mock-up Interface 3.0.
+
+The archive holds a library for this machine, and the sources that it was compiled from.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import platform
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.export import folder_files
+from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
+from cosserat_casadi.codegen.kernels import kernel, kernel_sources
+from cosserat_casadi.codegen.library import VERBATIM, render, resource
+from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
+from cosserat_casadi.codegen.names import Names, model_names
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.model.build import Model
+
+SUFFIX = ".fmu"
+
+STEP = 1e-3
+"""Step of the integrator where the scene names none, s."""
+
+FMI_SOURCES = ("fmi3.c", "fmi3.h")
+"""Files of the folder ``c`` that an FMU includes, as they are."""
+
+ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
+"""Names of machines that the standard spells in another way."""
+
+SUFFIXES = {"linux": ".so", "darwin": ".dylib", "windows": ".dll"}
+"""What libraries end in."""
+
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""Time of every file in the archive: the same scene gives the same bytes."""
+
+
+def check_fmu(path: str | os.PathLike[str]) -> None:
+    """Refuse a file that could not be written, before any work is done for it.
+
+    Raises:
+        ExportError: the name does not end in ``.fmu``.
+        SceneError: the path is a folder, or its folder cannot be written to.
+    """
+    if Path(path).suffix != SUFFIX:
+        raise ExportError(Problem("--fmu", f"{path} does not end in {SUFFIX}", "name the file so"))
+    check_writable(Path(path), "--fmu")
+
+
+def write_fmu(
+    model: Model,
+    path: str | os.PathLike[str],
+    name: str,
+    *,
+    error_estimate: float | None = None,
+    compiler: str | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Write a model in motion as an FMU for co-simulation, with directional derivatives.
+
+    Its inputs are the scene's; its outputs are poses and velocities of tips and bodies, efforts of actuators and what
+    these do work on. It begins at rest, in the equilibrium of its inputs, or in the unloaded shape where the scene
+    starts there or has a free base. Loads are held over a communication step; bases and lengths move linearly to the
+    value that is set.
+
+    Args:
+        model: a model that was built with its motion.
+        path: the file, ending in ``.fmu``.
+        name: what every symbol begins with, a C identifier.
+        error_estimate: as for :func:`cosserat_casadi.export`.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many.
+
+    Raises:
+        ExportError: the file or the name is refused, there is no compiler, or it fails; nothing was written.
+    """
+    check_fmu(path)
+    names = model_names(name, model)
+    found = find_compiler(compiler)
+    outputs = motion_outputs(model)
+    simulation = model.scene.simulation
+    step = STEP
+    if simulation is not None and simulation.step is not None:
+        step = simulation.step
+    listed = variables(model, outputs.entries, step)
+    texts = folder_files(model, name, error_estimate, dynamics=True)
+    sources = {file: text for file, text in texts.items() if file.endswith((".c", ".h")) and "_demo." not in file}
+    sources |= _fmu_sources(model, names, outputs, step)
+    token = _token(sources)
+    sources[f"{name}_fmu.c"] = sources[f"{name}_fmu.c"].replace("@{token}", token)
+    included = {*VERBATIM, *FMI_SOURCES}
+    library = compiled_texts(name, sources, found, included, progress)
+    compiled = sorted(file for file in sources if file.endswith(".c") and file not in included)
+    system = platform.system().lower()
+    files = {
+        "modelDescription.xml": model_description(model, name, token, listed, step),
+        "sources/buildDescription.xml": build_description(name, compiled),
+        **{f"sources/{file}": text.encode() for file, text in sources.items()},
+        f"binaries/{_machine()}-{system}/{name}{SUFFIXES.get(system, '.so')}": library.read_bytes(),
+        "resources/scene.toml": texts["scene.toml"].encode(),
+    }
+    write_atomically(Path(path), _archive(files))
+    return Path(path)
+
+
+def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float) -> dict[str, str]:
+    """What an FMU has besides the library: its interface, and the kernels of its outputs."""
+    functions = [
+        kernel(model, outputs.function, names.kernel("motion_outputs")),
+        kernel(model, outputs.jacobian, names.kernel("motion_outputs_jacobian")),
+    ]
+    moves = np.concatenate(
+        [np.zeros(0, dtype=int)]
+        + [
+            np.full(entry.size, entry.declared.geometry or entry.declared.continuous, dtype=int)
+            for entry, _ in model.inputs
+        ]
+    )
+    words = {
+        "name": names.name,
+        "MACRO": names.macro,
+        "outputs": len(outputs.entries),
+        "moves": numbers(moves.tolist()) or "0",
+        "step": repr(step),
+        "unloaded": int(_starts_unloaded(model)),
+        "token": "@{token}",
+    }
+    return {
+        f"{names.name}_fmu.c": render("fmu.c.in", words),
+        **kernel_sources(functions, names, f"{names.name}_outputs"),
+        **{file: resource("c", file) for file in FMI_SOURCES},
+    }
+
+
+def _starts_unloaded(model: Model) -> bool:
+    """Whether the motion begins in the unloaded shape: bases that are free have no equilibrium."""
+    simulation = model.scene.simulation
+    if any(rod.base.free for rod in model.scene.rods):
+        return True
+    return simulation is not None and simulation.start == "unloaded"
+
+
+def _token(sources: Mapping[str, str]) -> str:
+    """What tells that a description belongs to a library: a hash of all sources."""
+    digest = hashlib.sha256()
+    for file in sorted(sources):
+        digest.update(f"{file}\0{sources[file]}\0".encode())
+    return digest.hexdigest()[:32]
+
+
+def _machine() -> str:
+    machine = platform.machine().lower()
+    return ARCHITECTURES.get(machine, machine)
+
+
+def _archive(files: Mapping[str, bytes]) -> bytes:
+    """A zip archive that depends on its files alone."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file, content in files.items():
+            entry = zipfile.ZipInfo(file, EPOCH)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, content)
+    return buffer.getvalue()

@@ -1,0 +1,242 @@
+"""A moving robot that is to bring a tip to a target and keep it there: an environment of Gymnasium.
+
+Its state moves by the step in C, so that an episode costs milliseconds. gymnasium is an extra.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.compiled_motion import StepState
+from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.motion_outputs import motion_outputs
+from cosserat_casadi.control.decision_variables import decision_variables
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.scene import Scene, read_scene
+
+DRAWS = 20
+"""Random inputs that are tried for a target before it counts as out of reach."""
+
+LARGEST = float(np.finfo(np.float64).max)
+"""Bound of what is seen: any finite number."""
+
+Observation = npt.NDArray[np.float64]
+
+
+@dataclass
+class _Episode:
+    """Where an episode stands.
+
+    Attributes:
+        state: of the motion.
+        inputs: stacked.
+        inputs_rate: with which they moved at last, per s.
+        target: where the tip is to be, m, shape (3,).
+        memory: of the steps in C.
+        periods: that have passed.
+    """
+
+    state: StepState
+    inputs: FloatArray
+    inputs_rate: FloatArray
+    target: FloatArray
+    memory: Any
+    periods: int = 0
+
+
+class ReachEnvironment(gymnasium.Env[Observation, Observation]):
+    """Bring the tip of a rod to a target by the inputs that the scene bounds.
+
+    An action says where those inputs are to be at the end of a control period, from −1 at the lower bound to 1 at the
+    upper one; they move there linearly. An observation stacks position and velocity of the tip (m, m/s), the inputs in
+    the same shares as actions, and the target (m). The reward is minus the distance to the target over the length of
+    the rod. An episode is truncated at its duration, and terminated where a step cannot be computed: ``info["status"]``
+    is the sentence that says why, ``info["distance"]`` the distance in m.
+
+    Targets are tips of equilibria at random inputs within the bounds, so that each can be held; ``options={"target":
+    …}`` of :meth:`reset` names one.
+
+    Attributes:
+        model: the model of the scene in motion.
+        library: its compiled folder.
+        period: between two actions, s.
+        dt: length of a step of the integrator, s.
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012  (so declared by gymnasium)
+
+    def __init__(
+        self,
+        scene: Scene | str | os.PathLike[str],
+        rod: str | None = None,
+        *,
+        period: float = 0.02,
+        step: float = 2e-3,
+        duration: float = 2.0,
+    ) -> None:
+        """Build and compile the model: seconds the first time, then it is taken from the cache.
+
+        Args:
+            scene: a scene, or the path of its file, with a range in ``[[bounds]]`` for every input that acts.
+            rod: whose tip moves; the first rod by default.
+            period: between two actions, s.
+            step: longest step of the integrator, s.
+            duration: of an episode, s.
+
+        Raises:
+            SceneError: the scene is faulty, has no such rod, or an input that acts has no range.
+            ValueError: a time is not > 0.
+        """
+        if not all(np.isfinite(time) and time > 0 for time in (period, step, duration)):
+            raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
+        described = scene if isinstance(scene, Scene) else read_scene(Path(scene))
+        self.rod = _rod_name(described, rod)
+        self.model = build(described, solve_scene(described).model.discretisation, moving=True)
+        self._acting = decision_variables(self.model)
+        _refuse_open_ranges(self.model, self._acting.indices, self._acting.lower, self._acting.upper)
+        self.library = _compiled(self.model)
+        self._outputs = motion_outputs(self.model)
+        self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
+        self._length = next(entry.length for entry in described.rods if entry.name == self.rod)
+        self.period = period
+        self._steps = int(np.ceil(period / step - 1e-9))
+        self.dt = period / self._steps
+        self._periods = int(np.ceil(duration / period - 1e-9))
+        actions = len(self._acting.indices)
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (actions,), dtype=np.float64)
+        # What is seen is finite, and has no bounds that are known beforehand.
+        self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (9 + actions,), dtype=np.float64)
+        self._episode = self._begun(self.model.pack(), np.zeros(3))
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Begin at rest, in the equilibrium of the scene's own inputs, with a new target.
+
+        Args:
+            seed: of the targets.
+            options: ``target``: a position in m instead of a random one.
+
+        Raises:
+            RuntimeError: there is no equilibrium at the scene's inputs, or at twenty random ones.
+        """
+        super().reset(seed=seed)
+        target = (options or {}).get("target")
+        chosen = self._random_target() if target is None else np.asarray(target, dtype=np.float64).reshape(3)
+        self._episode = self._begun(self.model.pack(), chosen)
+        return self._observation(), self._info("")
+
+    def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Move the inputs to where an action says, over one control period.
+
+        Args:
+            action: shares of the ranges, −1 to 1; what lies outside counts as the bound.
+        """
+        episode = self._episode
+        aimed = episode.inputs.copy()
+        aimed[self._acting.indices] = self._from_share(np.clip(action, -1.0, 1.0))
+        rate = (aimed - episode.inputs) / (self._steps * self.dt)
+        episode.inputs_rate = rate
+        episode.periods += 1
+        for _ in range(self._steps):
+            taken = self.library.step(episode.state, self.dt, episode.inputs, rate, memory=episode.memory)
+            if not taken.done:
+                return self._observation(), self._reward(), True, False, self._info(taken.status.value)
+            episode.state = taken.state
+            episode.inputs = episode.inputs + self.dt * rate
+        truncated = episode.periods >= self._periods
+        return self._observation(), self._reward(), False, truncated, self._info("")
+
+    def _begun(self, inputs: FloatArray, target: FloatArray) -> _Episode:
+        """At rest, in the equilibrium of some inputs."""
+        found = self.library.solve(inputs)
+        state = self.library.rest(inputs, found.x) if found.converged else None
+        if state is None:
+            raise RuntimeError(f"no episode can begin: {found.outcome.value}")
+        return _Episode(state, inputs, np.zeros_like(inputs), target, self.library.step_memory())
+
+    def _random_target(self) -> FloatArray:
+        """The tip in equilibrium at random inputs within the bounds, m."""
+        for _ in range(DRAWS):
+            inputs = self.model.pack().copy()
+            share = self.np_random.uniform(-1.0, 1.0, len(self._acting.indices))
+            inputs[self._acting.indices] = self._from_share(share)
+            found = self.library.solve(inputs)
+            if found.converged:
+                position: FloatArray = self.model.tip[self.rod](found.x, inputs)[0].full().ravel()
+                return position
+        raise RuntimeError(f"none of {DRAWS} random inputs within the bounds has an equilibrium: narrow the bounds")
+
+    def _from_share(self, share: FloatArray) -> FloatArray:
+        """Values of the inputs that act, from shares −1 to 1 of their ranges."""
+        values: FloatArray = self._acting.lower + (share + 1.0) / 2.0 * (self._acting.upper - self._acting.lower)
+        return values
+
+    def _tip(self) -> FloatArray:
+        """Position and velocity of the tip, m and m/s, shape (6,)."""
+        episode = self._episode
+        state = episode.state
+        outputs = self._outputs.function(state.x, state.v, episode.inputs, episode.inputs_rate)
+        return np.asarray(outputs.full().ravel()[self._seen])
+
+    def _observation(self) -> Observation:
+        ranges = self._acting.upper - self._acting.lower
+        share = 2.0 * (self._episode.inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
+        return np.concatenate([self._tip(), share, self._episode.target])
+
+    def _distance(self) -> float:
+        return float(np.linalg.norm(self._tip()[:3] - self._episode.target))
+
+    def _reward(self) -> float:
+        return -self._distance() / self._length
+
+    def _info(self, status: str) -> dict[str, Any]:
+        return {"status": status, "distance": self._distance()}
+
+
+def _rod_name(scene: Scene, rod: str | None) -> str:
+    names = [entry.name for entry in scene.rods]
+    if rod is None:
+        return names[0]
+    if rod not in names:
+        raise SceneError(Problem("rod", f"there is no rod {rod!r}", f"the rods are {', '.join(names)}"))
+    return rod
+
+
+def _seen_entries(names: list[str], rod: str) -> list[int]:
+    """Entries of the outputs that are position and velocity of the tip."""
+    wanted = [f"{rod}.tip.{quantity}.{axis}" for quantity in ("position", "velocity") for axis in "xyz"]
+    return [names.index(name) for name in wanted]
+
+
+def _refuse_open_ranges(model: Model, indices: npt.NDArray[np.int64], lower: FloatArray, upper: FloatArray) -> None:
+    """Refuse inputs that act without a range: an action is a share of it.
+
+    Raises:
+        SceneError: with all of them.
+    """
+    open_entries = indices[~(np.isfinite(lower) & np.isfinite(upper) & (upper > lower))]
+    problems = []
+    for entry, entries in model.inputs:
+        if np.any((open_entries >= entries.start) & (open_entries < entries.stop)):
+            problem = f"{entry.name} has no range between two bounds"
+            problems.append(Problem("bounds", problem, "give lower and upper; what shall not act needs no bounds"))
+    if problems:
+        raise SceneError(*problems)
+
+
+def _compiled(model: Model) -> Compiled:
+    with tempfile.TemporaryDirectory() as folder:
+        return load(export(model, Path(folder) / "robot", "robot", dynamics=True))

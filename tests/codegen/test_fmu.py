@@ -1,0 +1,318 @@
+"""A scene as an FMU: valid by the standard, the same motion as the library's own steps, exact derivatives."""
+
+import json
+import zipfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+from numpy.testing import assert_allclose, assert_array_equal
+
+from cosserat_casadi import parse_scene
+from cosserat_casadi.codegen.compiled import Compiled
+from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.fmu import write_fmu
+from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.codegen.motion_outputs import motion_outputs
+from cosserat_casadi.codegen.names import model_names
+from cosserat_casadi.errors import ExportError, SceneError
+from cosserat_casadi.model.build import build
+
+SCENE = """
+schema = 1
+inputs = ["push.force", "flexor.tension", "finger.base.position"]
+[accuracy]
+modes = 1
+nodes = 4
+[[rods]]
+name = "finger"
+length = 0.1
+strain = "kirchhoff"
+material = { youngs_modulus = 1.2e6, poisson_ratio = 0.48, density = 1070.0 }
+section = { shape = "circle", radius = 7e-3 }
+damping = { retardation_time = 0.01 }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "finger"
+force = [0.01, 0.0, 0.0]
+[[actuators]]
+name = "flexor"
+kind = "tendon"
+rod = "finger"
+tension = 0.1
+offset = [-5e-3, 0.0]
+[simulation]
+duration = 0.1
+step = 2e-3
+"""
+PERIOD = 5e-3
+STEPS = 3
+
+
+@pytest.fixture(scope="module")
+def model():
+    return build(parse_scene(SCENE), moving=True)
+
+
+@pytest.fixture(scope="module")
+def fmu(model, tmp_path_factory):
+    return write_fmu(model, tmp_path_factory.mktemp("fmu") / "finger.fmu", "finger")
+
+
+@pytest.fixture(scope="module")
+def library(model, unpacked, tmp_path_factory):
+    """The library inside the FMU, as an exported folder has it."""
+    folder = export(model, tmp_path_factory.mktemp("folder") / "finger", "finger", dynamics=True)
+    described = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    binary = next((Path(unpacked) / "binaries").glob("*/finger.*"))
+    return Compiled(binary, described, model_names("finger", model, dynamics=True))
+
+
+@pytest.fixture(scope="module")
+def unpacked(fmu, tmp_path_factory):
+    return fmpy.extract(str(fmu), str(tmp_path_factory.mktemp("unpacked")))
+
+
+@pytest.fixture(scope="module")
+def described(fmu):
+    return fmpy.read_model_description(str(fmu), validate=True)
+
+
+@pytest.fixture
+def instance(described, unpacked):
+    slave = FMU3Slave(
+        guid=described.guid,
+        unzipDirectory=unpacked,
+        modelIdentifier=described.coSimulation.modelIdentifier,
+        instanceName="finger",
+    )
+    slave.instantiate(loggingOn=False)
+    yield slave
+    slave.terminate()
+    slave.freeInstance()
+
+
+def references(described, causality):
+    return [one.valueReference for one in described.modelVariables if one.causality == causality]
+
+
+def initialised(slave, inputs=None, described=None):
+    slave.enterInitializationMode()
+    if inputs is not None:
+        slave.setFloat64(references(described, "input"), inputs)
+    slave.exitInitializationMode()
+    return slave
+
+
+def by_library(model, library, courses):
+    """Outputs after each communication step: (inputs at its start, rates in it)."""
+    outputs = motion_outputs(model).function
+    state = library.rest(courses[0][2], library.solve(courses[0][2]).x)
+    memory = library.step_memory()
+    seen = []
+    for inputs, rate, _ in courses:
+        moved = inputs.copy()
+        for _ in range(STEPS):
+            taken = library.step(state, PERIOD / STEPS, moved, rate, memory=memory)
+            assert taken.done
+            state = taken.state
+            moved = moved + PERIOD / STEPS * rate
+        seen.append(outputs(state.x, state.v, moved, rate).full().ravel())
+    return np.array(seen)
+
+
+def test_fmu_is_valid(fmu):
+    assert validate_fmu(str(fmu)) == []
+
+
+def test_same_model_gives_the_same_sources_and_description(model, fmu, tmp_path):
+    again = write_fmu(model, tmp_path / "again.fmu", "finger")
+    first = zipfile.ZipFile(fmu)
+    second = zipfile.ZipFile(again)
+    assert first.namelist() == second.namelist()
+    for name in first.namelist():
+        if not name.startswith("binaries"):
+            assert first.read(name) == second.read(name), name
+
+
+def test_motion_vs_library(model, library, described, instance):
+    inputs = model.pack()
+    given = model.pack({"push.force": [0.02, 0.01, 0.0], "finger.base.position": [1e-3, 0.0, 2e-3]})
+    # A load jumps to its value, a base moves there.
+    moves = np.zeros(len(inputs), dtype=bool)
+    moves[model.inputs.slices["finger.base.position"]] = True
+    start = np.where(moves, inputs, given)
+    first_rate = np.where(moves, (given - inputs) / PERIOD, 0.0)
+    courses = [(start, first_rate, inputs), (given, np.zeros(len(inputs)), inputs)]
+    wanted = by_library(model, library, courses)
+
+    initialised(instance)
+    instance.setFloat64(references(described, "input"), given.tolist())
+    seen = []
+    for k in range(2):
+        assert instance.doStep(k * PERIOD, PERIOD) == (False, False, False, pytest.approx((k + 1) * PERIOD))
+        seen.append(instance.getFloat64(references(described, "output")))
+    assert np.abs(wanted[0] - wanted[1]).max() > 1e-3
+    assert_allclose(seen, wanted, rtol=1e-12, atol=1e-13)
+
+
+def test_fmu_simulated_by_fmpy(fmu, described):
+    outputs = ["finger.tip.position.x", "finger.tip.velocity.x", "flexor.length"]
+    result = fmpy.simulate_fmu(str(fmu), stop_time=0.05, output_interval=PERIOD, output=outputs)
+    assert len(result) == 11
+    # It begins in equilibrium, and nothing changes.
+    assert_allclose(result["finger.tip.position.x"], result["finger.tip.position.x"][0], rtol=0.0, atol=1e-10)
+    assert_allclose(result["finger.tip.velocity.x"], 0.0, rtol=0.0, atol=1e-9)
+
+
+def derivative(instance, described, known, seed=1.0):
+    outputs = references(described, "output")
+    return np.array(instance.getDirectionalDerivative(outputs, [known], [seed]))
+
+
+def copied(instance):
+    return instance.getFMUState()
+
+
+@pytest.mark.parametrize("moved", ["push.force.x", "flexor.tension", "finger.base.position.y"])
+def test_derivative_of_a_step_vs_differences(instance, described, moved):
+    initialised(instance)
+    reference = next(one.valueReference for one in described.modelVariables if one.name == moved)
+    value = instance.getFloat64([reference])[0]
+    instance.doStep(0.0, PERIOD)
+    before = copied(instance)
+    difference = 1e-5
+    ends = []
+    for sign in (-1.0, 1.0):
+        instance.setFMUState(before)
+        instance.setFloat64([reference], [value + sign * difference])
+        instance.doStep(PERIOD, PERIOD)
+        ends.append(np.array(instance.getFloat64(references(described, "output"))))
+    wanted = (ends[1] - ends[0]) / (2 * difference)
+    instance.setFMUState(before)
+    instance.doStep(PERIOD, PERIOD)
+    exact = derivative(instance, described, reference)
+    assert np.abs(exact).max() > 1e-3
+    assert_allclose(exact, wanted, rtol=1e-5, atol=1e-6 * np.abs(wanted).max())
+    assert_allclose(derivative(instance, described, reference, -3.0), -3.0 * exact, rtol=1e-12, atol=1e-14)
+    instance.freeFMUState(before)
+
+
+def test_derivative_at_the_start_is_that_of_the_equilibrium(model, library, instance, described):
+    initialised(instance)
+    reference = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")
+    names = [one.name for one in described.modelVariables if one.causality == "output"]
+    found = library.solve()
+    _, d_tip = library.sensitivity(model.pack(), found.x)
+    column = d_tip["finger"][:, model.inputs.slices["push.force"].start]
+    exact = derivative(instance, described, reference)
+    positions = [names.index(f"finger.tip.position.{axis}") for axis in "xyz"]
+    assert_allclose(exact[positions], column[:3], rtol=1e-10, atol=1e-12)
+
+
+def test_copied_state_replays_the_same_bits(instance, described):
+    initialised(instance, None)
+    force = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")
+    instance.setFloat64([force], [0.05])
+    instance.doStep(0.0, PERIOD)
+    state = copied(instance)
+    stored = instance.serializeFMUState(state)
+    outputs = references(described, "output")
+    ends = []
+    for again in range(3):
+        if again == 2:
+            instance.freeFMUState(state)
+            state = instance.deserializeFMUState(stored)
+        instance.setFMUState(state)
+        instance.doStep(PERIOD, PERIOD)
+        ends.append(instance.getFloat64(outputs))
+    assert_array_equal(ends[1], ends[0])
+    assert_array_equal(ends[2], ends[0])
+    instance.freeFMUState(state)
+
+
+def refused(instance, call, *arguments):
+    """A call that ends with another status than OK: FMPy makes an exception of it."""
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        getattr(instance, call)(*arguments)
+
+
+def test_what_cannot_be_is_refused(instance, described):
+    force = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")
+    output = references(described, "output")[0]
+    refused(instance, "doStep", 0.0, PERIOD)
+    initialised(instance)
+    refused(instance, "setFloat64", [force], [float("nan")])
+    refused(instance, "setFloat64", [output], [1.0])
+    refused(instance, "getFloat64", [9999])
+    refused(instance, "doStep", 0.0, -1.0)
+    refused(instance, "doStep", 0.5, PERIOD)
+    refused(instance, "getInt32", [force])
+    refused(instance, "getDirectionalDerivative", [force], [force], [1.0])
+    # After all of it a step is one.
+    instance.doStep(0.0, PERIOD)
+
+
+def test_step_that_cannot_be_solved_leaves_the_state(instance, described):
+    initialised(instance)
+    force = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")
+    outputs = references(described, "output")
+    before = instance.getFloat64(outputs)
+    instance.setFloat64([force], [1e9])
+    refused(instance, "doStep", 0.0, PERIOD)
+    assert_array_equal(instance.getFloat64(outputs), before)
+    instance.setFloat64([force], [0.01])
+    instance.doStep(0.0, PERIOD)
+
+
+def test_library_of_another_description_is_refused(described, unpacked):
+    slave = FMU3Slave(
+        guid="another",
+        unzipDirectory=unpacked,
+        modelIdentifier=described.coSimulation.modelIdentifier,
+        instanceName="x",
+    )
+    with pytest.raises(Exception, match="instantiate"):
+        slave.instantiate()
+
+
+def test_file_names_are_checked_first(model, tmp_path):
+    with pytest.raises(ExportError, match=r"does not end in \.fmu"):
+        write_fmu(model, tmp_path / "finger.zip", "finger")
+    with pytest.raises(SceneError, match="does not exist"):
+        write_fmu(model, tmp_path / "none" / "finger.fmu", "finger")
+    assert list(tmp_path.iterdir()) == []
+
+
+FALLING = """
+schema = 1
+inputs = []
+[accuracy]
+modes = 1
+nodes = 3
+[[rods]]
+name = "stick"
+length = 0.1
+strain = "kirchhoff"
+material = { youngs_modulus = 1.2e6, poisson_ratio = 0.48, density = 1070.0 }
+section = { shape = "circle", radius = 7e-3 }
+base = { free = true }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+"""
+
+
+def test_free_rod_falls(tmp_path):
+    """From the unloaded shape, and without an input: by g t²/2, which the integrator has exactly."""
+    fmu = write_fmu(build(parse_scene(FALLING), moving=True), tmp_path / "stick.fmu", "stick")
+    assert validate_fmu(str(fmu)) == []
+    outputs = ["stick.tip.position.z", "stick.tip.velocity.z"]
+    result = fmpy.simulate_fmu(str(fmu), stop_time=0.02, output_interval=5e-3, output=outputs)
+    assert_allclose(result["stick.tip.position.z"], 0.1 - 9.81 * result["time"] ** 2 / 2, rtol=0.0, atol=1e-9)
+    assert_allclose(result["stick.tip.velocity.z"], -9.81 * result["time"], rtol=0.0, atol=1e-8)

@@ -1,0 +1,161 @@
+"""The environment of Gymnasium over the step in C."""
+
+import dataclasses
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from numpy.testing import assert_allclose, assert_array_equal
+
+from cosserat_casadi import parse_scene
+from cosserat_casadi.environments import REACH, ReachEnvironment
+from cosserat_casadi.errors import SceneError
+
+SCENE = """
+schema = 1
+[accuracy]
+modes = 1
+nodes = 4
+[[rods]]
+name = "finger"
+length = 0.1
+strain = "kirchhoff"
+material = { youngs_modulus = 1.2e6, poisson_ratio = 0.48, density = 1070.0 }
+section = { shape = "circle", radius = 7e-3 }
+damping = { retardation_time = 0.01 }
+base = { tangent = [1, 0, 0] }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[actuators]]
+name = "flexor"
+kind = "tendon"
+rod = "finger"
+tension = 0.1
+offset = [-5e-3, 0.0]
+[[actuators]]
+name = "abductor"
+kind = "tendon"
+rod = "finger"
+tension = 0.1
+offset = [0.0, 5e-3]
+"""
+BOUNDS = """
+[[bounds]]
+input = "flexor.tension"
+lower = 0.0
+upper = 1.0
+[[bounds]]
+input = "abductor.tension"
+lower = 0.0
+upper = 0.5
+"""
+FORWARD = np.array([1.0, -1.0])
+
+
+@pytest.fixture(scope="module")
+def environment():
+    return ReachEnvironment(parse_scene(SCENE + BOUNDS), duration=0.5)
+
+
+def test_gymnasium_finds_no_fault(environment):
+    check_env(environment, skip_render_check=True)
+
+
+def test_it_is_made_by_name():
+    made = gymnasium.make(REACH, scene=parse_scene(SCENE + BOUNDS), duration=0.1)
+    observation, _ = made.reset(seed=1)
+    assert made.observation_space.contains(observation)
+    assert made.action_space.shape == (2,)
+
+
+def test_start_is_the_equilibrium(environment):
+    observation, _ = environment.reset(seed=0)
+    found = environment.library.solve(environment.model.pack())
+    tip = environment.model.tip["finger"](found.x, environment.model.pack())[0].full().ravel()
+    assert_allclose(observation[:3], tip, rtol=0.0, atol=1e-12)
+    assert_array_equal(observation[3:6], 0.0)
+    # Tensions of 0.1 N in ranges up to 1 N and 0.5 N.
+    assert_allclose(observation[6:8], [-0.8, -0.6], rtol=0.0, atol=1e-12)
+
+
+def test_target_is_reached_by_the_inputs_that_hold_it(environment):
+    inputs = environment.model.pack({"flexor.tension": 0.8, "abductor.tension": 0.3})
+    held = environment.library.solve(inputs)
+    target = environment.model.tip["finger"](held.x, inputs)[0].full().ravel()
+    environment.reset(seed=0, options={"target": target})
+    rewards = []
+    for _ in range(25):
+        _, reward, terminated, truncated, info = environment.step(np.array([0.6, 0.2]))
+        rewards.append(reward)
+        assert not terminated
+    assert truncated
+    assert rewards[0] < -0.01
+    assert_allclose(rewards[-1], 0.0, rtol=0.0, atol=1e-3)
+    assert_allclose(info["distance"], -0.1 * rewards[-1], rtol=1e-12, atol=0.0)
+
+
+def test_velocity_is_the_change_of_position(environment):
+    environment.reset(seed=0)
+    positions = []
+    velocities = []
+    for _ in range(4):
+        observation = environment.step(FORWARD)[0]
+        positions.append(observation[:3])
+        velocities.append(observation[3:6])
+    # Simpson's rule over two control periods.
+    moved = positions[2] - positions[0]
+    period = environment.dt * 10
+    integral = period / 3 * (velocities[0] + 4 * velocities[1] + velocities[2])
+    assert np.linalg.norm(moved) > 1e-4
+    assert_allclose(moved, integral, rtol=0.0, atol=0.03 * np.linalg.norm(moved))
+
+
+def test_same_seed_gives_the_same_episode(environment):
+    episodes = []
+    for _ in range(2):
+        observation, _ = environment.reset(seed=7)
+        environment.action_space.seed(7)
+        rows = [observation]
+        rows += [environment.step(environment.action_space.sample())[0] for _ in range(5)]
+        episodes.append(np.array(rows))
+    assert_array_equal(episodes[0], episodes[1])
+
+
+def test_random_targets_are_tips_that_can_be_held(environment):
+    targets = []
+    for seed in range(5):
+        observation, _ = environment.reset(seed=seed)
+        targets.append(observation[8:])
+    assert np.ptp(targets, axis=0).max() > 1e-3
+    assert np.all(np.linalg.norm(targets, axis=1) <= 0.1 + 1e-12)
+
+
+def test_episode_ends_with_a_sentence_where_a_step_cannot_be_computed(environment):
+    environment.reset(seed=0)
+    state = environment._episode.state
+    environment._episode.state = dataclasses.replace(state, v=np.full_like(state.v, np.inf))
+    _, _, terminated, truncated, info = environment.step(FORWARD)
+    assert terminated
+    assert not truncated
+    assert info["status"]
+
+
+@pytest.mark.parametrize(
+    ("scene", "rod", "words"),
+    [
+        (SCENE, None, "no input is named"),
+        (SCENE + BOUNDS, "arm", "no rod 'arm'"),
+        (SCENE + BOUNDS.replace("upper = 1.0", ""), None, "flexor.tension has no range"),
+    ],
+)
+def test_what_cannot_be_is_refused(scene, rod, words):
+    with pytest.raises(SceneError, match=words):
+        ReachEnvironment(parse_scene(scene), rod)
+
+
+def test_times_must_be_positive():
+    with pytest.raises(ValueError, match="must be > 0"):
+        ReachEnvironment(parse_scene(SCENE + BOUNDS), period=0.0)
