@@ -18,9 +18,10 @@ from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
+from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
-from cosserat_casadi.numerics.time_steps import AfterStep, Integration, StepOutcome, StepSettings, integrate
+from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
 """Constraint, without unit, and its rate times the duration, up to which a start is consistent."""

@@ -22,14 +22,10 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.consistent_start import consistent_start
+from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.time_steps import (
-    ITERATIONS_OF_GIVEN_STEP,
-    Integration,
-    StepOutcome,
-    StepSettings,
-    integrate,
-)
+from cosserat_casadi.numerics.step_run import ITERATIONS_OF_GIVEN_STEP
+from cosserat_casadi.numerics.time_steps import integrate
 
 METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2), gauss(3)]
 
