@@ -429,7 +429,7 @@ def not_started(model: Model, start: Start) -> Motion:
         v=no_state,
         a=no_state,
         inputs=np.zeros((0, model.inputs.size)),
-        energy=Energies(none, none, none, none, none, none),
+        energy=Energies(none, none, none, none, none, none, none),
         error_estimate=float("nan"),
         statistics=StepStatistics(0, 0, 0, 0, float("nan"), float("nan")),
         start=start.sentence,

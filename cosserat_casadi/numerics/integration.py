@@ -26,6 +26,7 @@ class StepOutcome(Enum):
         "The motion was computed in part: its equations are singular; constraints may contradict or repeat each other."
     )
     INTERRUPTED = "The motion was computed in part: it was interrupted."
+    GUARDED = "The motion was computed to where it goes on under other equations."
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,7 @@ class Integration:
         outcome: how it ended.
         next_size: step that would come next, or that failed, s.
         statistics: what it cost.
+        guard: number of the guard that came to zero; None where none did.
     """
 
     start: Instant
@@ -86,6 +88,7 @@ class Integration:
     outcome: StepOutcome
     next_size: float
     statistics: StepStatistics
+    guard: int | None = None
 
     @property
     def end(self) -> Instant:

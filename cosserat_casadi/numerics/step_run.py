@@ -8,12 +8,25 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings, StepStatistics
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
-from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at
+from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
 from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
 from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
+
+RESOLVED_TIME = 16.0 * float(np.finfo(np.float64).eps)
+"""Smallest step, relative to the time, that rounding of the time does not blur."""
+
+MOST_LENGTHS = 8
+"""Lengths that are tried for a step that ends where a guard vanishes."""
+
+NEARBY = 1e-3
+"""Share of a step before its end at which a guard is compared for its rate."""
+
+ON_GUARD = 1e-13
+"""Value of a guard that counts as zero."""
 
 FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
@@ -42,6 +55,8 @@ class StepRun:
         iterations: Newton iterations.
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
+        guards: values that have to stay at zero or above; None where there are none.
+        guard: number of the guard that came to zero; None where none did.
     """
 
     equations: MotionEquations
@@ -49,6 +64,8 @@ class StepRun:
     settings: StepSettings
     start: Instant
     stop: float
+    guards: Guards | None = None
+    guard: int | None = None
     steps: list[Step] = field(default_factory=list)
     size: float = 0.0
     linearisation: Linearisation | None = None
@@ -82,7 +99,7 @@ class StepRun:
             jacobians=self.jacobians,
             factorisations=self.factorisations,
         )
-        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics)
+        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard)
 
     def renew_jacobian(self) -> None:
         """Have the next step evaluate a Jacobian of its own."""
@@ -173,3 +190,49 @@ class StepRun:
         self.fresh = False
         if solution.iterations > FEW_ITERATIONS:
             self.renew_jacobian()
+
+    def stopped_by_guard(self) -> bool:
+        """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""
+        if self.guards is None:
+            return False
+        whole = self.steps[-1]
+        found = crossing(whole, self.guards)
+        if found is None:
+            return False
+        self.guard = found.guard
+        self.steps.pop()
+        wanted = self.size
+        begin = self.now.time
+        if found.time - begin > RESOLVED_TIME * max(abs(begin), abs(self.stop)):
+            self._step_to(restricted(whole, found.time), found.guard)
+        self.size = wanted
+        return True
+
+    def _step_to(self, cut: Step, guard: int) -> None:
+        """Take a step that ends where a guard vanishes.
+
+        Args:
+            cut: the part of a longer step to the time, about, at which it does; it stands where no step is found.
+            guard: number of the guard.
+        """
+        assert self.guards is not None
+        time = cut.end.time
+        for _ in range(MOST_LENGTHS):
+            self.size = time - cut.start.time
+            solution = self.solve()
+            if isinstance(solution, StepOutcome):
+                break
+            self.accept(solution, time, cut.error)
+            step = self.steps[-1]
+            value = self.guards(step.end)[guard]
+            before = self.guards(step.at(time - NEARBY * step.size))[guard]
+            rate = (value - before) / (NEARBY * step.size)
+            if abs(value) <= ON_GUARD:
+                return
+            self.steps.pop()
+            following = time - float(value / rate) if rate < 0.0 else time
+            # What needs a change of the time below its rounding, or another step altogether, is not found so.
+            if not cut.start.time < following <= 2.0 * cut.end.time - cut.start.time or following == time:
+                break
+            time = following
+        self.steps.append(cut)

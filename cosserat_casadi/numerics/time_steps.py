@@ -10,10 +10,11 @@ import numpy as np
 
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.given_step import solve_given_step
+from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step_control import StepControl
-from cosserat_casadi.numerics.step_run import StepRun
+from cosserat_casadi.numerics.step_run import RESOLVED_TIME, StepRun
 
 FIRST_SHARE = 1e-3
 """First step as a share of the piece, where none is suggested."""
@@ -23,9 +24,6 @@ SINGULAR_STEPS = 4
 
 SINGULAR_SHRINKAGE = 0.1
 """What is left of a step whose matrices are singular."""
-
-RESOLVED_TIME = 16.0 * float(np.finfo(np.float64).eps)
-"""Smallest step, relative to the time, that rounding of the time does not blur."""
 
 FAILED_SHRINKAGE = 0.5
 """What is left of a step whose equations were not solved."""
@@ -38,6 +36,7 @@ def integrate(
     method: Collocation,
     settings: StepSettings,
     after_step: AfterStep | None = None,
+    guards: Guards | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
@@ -49,13 +48,14 @@ def integrate(
         method: the collocation method.
         settings: how to step.
         after_step: told of every step.
+        guards: values that have to stay at zero or above; where one does not, the motion ends.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
             positive.
     """
     _check(equations, start, end, method, settings)
-    run = StepRun(equations, method, settings, start, end)
+    run = StepRun(equations, method, settings, start, end, guards)
     outcome = StepOutcome.INTERRUPTED
     try:
         # Numbers that overflow are found where they are judged.
@@ -106,6 +106,8 @@ def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> Ste
         if isinstance(solution, StepOutcome):
             return solution
         run.accept(solution, end, float("nan"))
+        if run.stopped_by_guard():
+            return StepOutcome.GUARDED
         if after_step is not None:
             after_step(end, run.size)
     return StepOutcome.COMPLETED
@@ -129,6 +131,8 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
         refusal = _try_step(run, control, end)
         if refusal is None:
             singular_steps = 0
+            if run.stopped_by_guard():
+                return StepOutcome.GUARDED
             if after_step is not None:
                 after_step(end, run.steps[-1].size)
             continue
