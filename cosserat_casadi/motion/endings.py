@@ -26,6 +26,7 @@ OUTCOMES = {
     StepOutcome.NOT_FINITE: MotionOutcome.NOT_FINITE,
     StepOutcome.SINGULAR: MotionOutcome.STEP_TOO_SMALL,
     StepOutcome.INTERRUPTED: MotionOutcome.INTERRUPTED,
+    StepOutcome.TOO_MANY_STEPS: MotionOutcome.TOO_MANY_STEPS,
     StepOutcome.GUARDED: MotionOutcome.STEP_TOO_SMALL,
 }
 

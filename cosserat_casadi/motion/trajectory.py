@@ -46,6 +46,10 @@ class MotionOutcome(Enum):
         "The motion ended early: a slack cable became taut and slack over and over, or had no motion to go on by: "
         "damp the rod, or move more slowly."
     )
+    TOO_MANY_STEPS = (
+        "The motion ended early: at its pace the rest would take hundreds of thousands of steps. A load may be far "
+        "beyond the rod, or the tolerance too tight for what vibrates; damp the rod."
+    )
 
     @property
     def label(self) -> str:

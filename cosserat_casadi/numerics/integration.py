@@ -26,6 +26,7 @@ class StepOutcome(Enum):
         "The motion was computed in part: its equations are singular; constraints may contradict or repeat each other."
     )
     INTERRUPTED = "The motion was computed in part: it was interrupted."
+    TOO_MANY_STEPS = "The motion was computed in part: its steps are so short that hundreds of thousands were needed."
     GUARDED = "The motion was computed to where it goes on under other equations."
 
 

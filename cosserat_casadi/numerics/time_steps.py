@@ -6,6 +6,8 @@ Equations that jump or have a kink in time are integrated piece by piece: a step
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 
 from cosserat_casadi.numerics.collocation import Collocation
@@ -24,6 +26,12 @@ SINGULAR_STEPS = 4
 
 SINGULAR_SHRINKAGE = 0.1
 """What is left of a step whose matrices are singular."""
+
+TRIES = 1000
+"""Steps, taken or refused, after which a motion has to be on its way."""
+
+SLOWEST = 3e-6
+"""Share of the piece that each of them has to bring on average: slower, the end is hundreds of thousands away."""
 
 FAILED_SHRINKAGE = 0.5
 """What is left of a step whose equations were not solved."""
@@ -122,7 +130,13 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
     control = StepControl(run.method.stages, run.settings.longest, min(first, run.settings.longest))
     reason = StepOutcome.STEP_TOO_SMALL
     singular_steps = 0
+    # Times reached before each of the last tries.
+    reached = deque([run.now.time], maxlen=TRIES)
     while run.now.time < run.stop:
+        if len(reached) == TRIES and run.now.time - reached[0] < SLOWEST * TRIES * length:
+            run.size = control.wanted
+            return StepOutcome.TOO_MANY_STEPS
+        reached.append(run.now.time)
         run.size = control.wanted
         if run.size < shortest or singular_steps == SINGULAR_STEPS:
             return reason
