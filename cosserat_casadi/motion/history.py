@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.slack_cables import SlackCables
@@ -181,6 +182,7 @@ def integrated(
         SceneError: the start contradicts the constraints.
     """
     cables = SlackCables(model)
+    keeper = MomentumKeeper(model) if flies_free(model) else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     phases = cables.first_phases(x, pieces[0].at(at.time).value)
@@ -197,7 +199,8 @@ def integrated(
             equations = cables.equations(plain, piece, phases)
             guards = cables.guards(piece, phases)
             begin = restart.start.instant
-            integration = integrate(equations, begin, piece.end, method, settings, after_step, guards)
+            settled = None if keeper is None else partial(keeper.settled, piece=piece)
+            integration = integrate(equations, begin, piece.end, method, settings, after_step, guards, settled)
             legs.append(Leg(piece, restart.start, integration, restart.lost))
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
                 return History(model, tuple(legs))

@@ -109,3 +109,6 @@ class Integration:
 
 AfterStep = Callable[[float, float], None]
 """Called after each step with the time reached and the size of the step, s; KeyboardInterrupt ends the motion."""
+
+Settle = Callable[[Step], Instant]
+"""The end of a step, put right by what the method misses of an invariant: at most as much as the step is inexact by."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.guards import Guards, crossing
-from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings, StepStatistics
+from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
 from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
 from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
@@ -56,6 +56,7 @@ class StepRun:
         jacobians: Jacobians evaluated.
         factorisations: times that matrices were factorised.
         guards: values that have to stay at zero or above; None where there are none.
+        settled: end of a step to go on from, in place of its own; None for its own.
         guard: number of the guard that came to zero; None where none did.
     """
 
@@ -65,6 +66,7 @@ class StepRun:
     start: Instant
     stop: float
     guards: Guards | None = None
+    settled: Settle | None = None
     guard: int | None = None
     steps: list[Step] = field(default_factory=list)
     size: float = 0.0
@@ -186,6 +188,8 @@ class StepRun:
             residual=solution.residual,
             contraction=solution.contraction,
         )
+        if self.settled is not None:
+            step = replace(step, end=self.settled(step))
         self.steps.append(step)
         self.fresh = False
         if solution.iterations > FEW_ITERATIONS:

@@ -13,7 +13,7 @@ import numpy as np
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.given_step import solve_given_step
 from cosserat_casadi.numerics.guards import Guards
-from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
+from cosserat_casadi.numerics.integration import AfterStep, Integration, Settle, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step_control import StepControl
 from cosserat_casadi.numerics.step_run import RESOLVED_TIME, StepRun
@@ -45,6 +45,7 @@ def integrate(
     settings: StepSettings,
     after_step: AfterStep | None = None,
     guards: Guards | None = None,
+    settled: Settle | None = None,
 ) -> Integration:
     """Integrate equations of motion over a piece in which they are smooth.
 
@@ -57,13 +58,14 @@ def integrate(
         settings: how to step.
         after_step: told of every step.
         guards: values that have to stay at zero or above; where one does not, the motion ends.
+        settled: what puts the end of each step right; None for ends as they are.
 
     Raises:
         ValueError: the method does not suit the equations or the settings; or times, sizes or tolerances are not
             positive.
     """
     _check(equations, start, end, method, settings)
-    run = StepRun(equations, method, settings, start, end, guards)
+    run = StepRun(equations, method, settings, start, end, guards, settled)
     outcome = StepOutcome.INTERRUPTED
     try:
         # Numbers that overflow are found where they are judged.
