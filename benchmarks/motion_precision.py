@@ -25,7 +25,7 @@ from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.poses import tip_poses
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
-from cosserat_casadi.numerics.time_steps import StepSettings
+from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.plots.figure import figure_class, write_figure
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -80,6 +80,7 @@ def energies(times: FloatArray) -> Energies:
         potential=-0.03 * times,
         dissipated=0.01 * times,
         work=0.04 * np.sin(3 * times),
+        impacts=0.002 * (times > 0.1),
         imbalance=1e-6 * np.sin(40 * times),
     )
 

@@ -50,11 +50,19 @@ class Closing:
         """Unknowns moved by the smallest displacement that closes the constraints, shape (size,)."""
         if not len(self.rows):
             return x
+        best = x
+        before = np.inf
         for _ in range(MOST_CORRECTIONS):
             jacobian, residual = self.model.jacobian(x, inputs)
             gaps = residual.full()[self.rows, 0]
-            if np.abs(gaps).max() <= CLOSED:
+            largest = np.abs(gaps).max()
+            if largest <= CLOSED:
                 break
+            # Where constraints are about to depend on each other corrections may lead away.
+            if not largest < before:
+                return best
+            best = x
+            before = largest
             x = x - self._correction(jacobian.full()[self.rows], gaps)
         return x
 

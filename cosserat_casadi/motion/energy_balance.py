@@ -39,13 +39,22 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
 
     stored = kinetic[0] + elastic[0] + potential
     gained = stored[1:] - stored[0]
-    left_over = gained + dissipated - work
-    parts = np.stack([kinetic[0, 1:], elastic[0, 1:], potential[1:] - potential[0], dissipated, work])
+    impacts = _lost_by_impacts(history, times)
+    left_over = gained + dissipated + impacts - work
+    parts = np.stack([kinetic[0, 1:], elastic[0, 1:], potential[1:] - potential[0], dissipated, work, impacts])
     largest = float(np.abs(parts).max(initial=0.0))
     # Nothing moves and nothing is stored: nothing is missing either.
     if largest > 0.0:
         left_over = left_over / largest
-    return Energies(kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, left_over)
+    return Energies(kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, impacts, left_over)
+
+
+def _lost_by_impacts(history: History, times: FloatArray) -> FloatArray:
+    """Energy that impacts have taken up to each time, shape (T,), J; at the time of one, before it."""
+    lost = np.zeros(len(times))
+    for leg in history.legs:
+        lost += np.where(times > leg.start.instant.time, leg.lost, 0.0)
+    return lost
 
 
 def _still(model: Model, moving: frozenset[str]) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -13,20 +13,30 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start
+from cosserat_casadi.numerics.consistent_start import ConsistentStart
+from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
-from cosserat_casadi.numerics.time_steps import AfterStep, Integration, StepOutcome, StepSettings, integrate
+from cosserat_casadi.numerics.time_steps import integrate
 
 CONSISTENT = 1e-8
 """Constraint, without unit, and its rate times the duration, up to which a start is consistent."""
 
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
+
+
+MOST_AT_ONCE = 60
+"""Changes between slack and taut that may follow each other in next to no time before they count as without end."""
+
+AT_ONCE = 1e-6
+"""Such a time, relative to the duration."""
 
 
 def equations_of(model: Model, piece: Piece) -> MotionEquations:
@@ -45,17 +55,19 @@ def equations_of(model: Model, piece: Piece) -> MotionEquations:
 
 @dataclass(frozen=True)
 class Leg:
-    """The steps over one piece.
+    """The steps over one piece, or over a part of it in which no cable becomes slack or taut.
 
     Attributes:
         piece: the inputs.
-        start: how the piece begins.
+        start: how it begins.
         integration: the steps.
+        lost: kinetic energy that an impact has taken where it begins, J.
     """
 
     piece: Piece
     start: ConsistentStart
     integration: Integration
+    lost: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -64,7 +76,7 @@ class History:
 
     Attributes:
         model: the model.
-        legs: one for each piece that was begun.
+        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut.
     """
 
     model: Model
@@ -169,23 +181,46 @@ def integrated(
     Raises:
         SceneError: the start contradicts the constraints.
     """
+    cables = SlackCables(model)
+    keeper = MomentumKeeper(model) if flies_free(model) else None
     legs: list[Leg] = []
-    for piece in pieces:
-        equations = equations_of(model, piece)
-        interval = DIFFERENTIATED * (piece.end - piece.start)
-        # Accelerations and multipliers jump where an input or its rates do.
-        start = consistent_start(equations, piece.start, x, v, interval)
-        if not legs:
-            _check_start(start, pieces[-1].end)
-        integration = integrate(equations, start.instant, piece.end, method, settings, after_step)
-        legs.append(Leg(piece, start, integration))
-        if integration.outcome is not StepOutcome.COMPLETED:
-            break
-        x = integration.end.x
-        v = integration.end.v
+    at = Instant(pieces[0].start, x, v, np.zeros(model.size))
+    phases = cables.first_phases(x, pieces[0].at(at.time).value)
+    guard: int | None = None
+    for number, piece in enumerate(pieces, start=1):
+        plain = equations_of(model, piece)
+        while at.time < piece.end:
+            # Accelerations and multipliers jump where an input or its rates do.
+            interval = min(DIFFERENTIATED * (piece.end - piece.start), piece.end - at.time)
+            restart = cables.restarted(plain, piece, at, phases, guard, interval)
+            phases = restart.phases
+            if not legs:
+                _check_start(restart.start, pieces[-1].end)
+            equations = cables.equations(plain, piece, phases)
+            guards = cables.guards(piece, phases)
+            begin = restart.start.instant
+            settled = None if keeper is None else partial(keeper.settled, piece=piece)
+            integration = integrate(equations, begin, piece.end, method, settings, after_step, guards, settled)
+            legs.append(Leg(piece, restart.start, integration, restart.lost))
+            if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
+                return History(model, tuple(legs))
+            if _chatters(legs, pieces[-1].end):
+                stalled = replace(integration, outcome=StepOutcome.STEP_TOO_SMALL)
+                legs[-1] = replace(legs[-1], integration=stalled)
+                return History(model, tuple(legs))
+            at = integration.end
+            guard = integration.guard
+            settings = replace(settings, first=integration.next_size)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
-        settings = replace(settings, first=min(integration.next_size, piece_length(pieces, len(legs))))
+        settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
     return History(model, tuple(legs))
+
+
+def _chatters(legs: Sequence[Leg], duration: float) -> bool:
+    """Whether cables have become slack and taut over and over in next to no time."""
+    if len(legs) <= MOST_AT_ONCE:
+        return False
+    return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
 def _check_start(start: ConsistentStart, duration: float) -> None:

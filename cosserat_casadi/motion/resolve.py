@@ -33,7 +33,7 @@ from cosserat_casadi.motion.simulate import (
     tolerance_of,
 )
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
-from cosserat_casadi.numerics.time_steps import StepOutcome
+from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.simulation import Simulation

@@ -17,10 +17,8 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.displacement import displacements
+from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.moving_inputs import MovingInputs
@@ -35,7 +33,7 @@ from cosserat_casadi.motion.trajectory import (
     StepStatistics,
 )
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
-from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings
+from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.simulation import Simulation
 
@@ -72,9 +70,6 @@ MOST_HALVINGS = 10
 EXACT = 1e-13
 """Error of Newton's method, over the length, in steps of given size: their energy is to be kept to rounding."""
 
-NEARLY_TAUT = 1e-3
-"""Length, over the rod's, that a cable may lack or have over where it counts as about to become taut."""
-
 OUT_OF_BALANCE = 1e-6
 """Residual of statics, without unit, at which a start is no equilibrium."""
 
@@ -89,15 +84,6 @@ NEWTON = 1e-3
 
 CLOSED = 1e-10
 """Error of Newton's method, over the length, where supports, joints or cables are to stay closed."""
-
-OUTCOMES = {
-    StepOutcome.COMPLETED: MotionOutcome.COMPLETED,
-    StepOutcome.STEP_TOO_SMALL: MotionOutcome.STEP_TOO_SMALL,
-    StepOutcome.NOT_SOLVED: MotionOutcome.NOT_SOLVED,
-    StepOutcome.NOT_FINITE: MotionOutcome.NOT_FINITE,
-    StepOutcome.SINGULAR: MotionOutcome.SINGULAR_CONSTRAINT,
-    StepOutcome.INTERRUPTED: MotionOutcome.INTERRUPTED,
-}
 
 
 @dataclass(frozen=True)
@@ -349,52 +335,6 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
-def outcome_of(history: History) -> MotionOutcome:
-    """How a motion ended; steps that became too small where a slack cable had just become taut have that reason."""
-    outcome = OUTCOMES[history.outcome]
-    if outcome in (MotionOutcome.STEP_TOO_SMALL, MotionOutcome.NOT_SOLVED) and snapping_cables(history):
-        return MotionOutcome.SNAPPED
-    return outcome
-
-
-def snapping_cables(history: History) -> list[str]:
-    """Names of the cables that may go slack and are next to taut where a motion ends."""
-    model = history.model
-    end = history.at(history.end.time)
-    values = load_values(model.scene, model.inputs, end.inputs)
-    names = []
-    for cable in model.discrete.cables:
-        tendon = cable.tendon
-        if not EFFECTS[tendon.kind].may_go_slack(tendon):
-            continue
-        _, length, _ = model.actuator[tendon.name](end.x, end.inputs)
-        slack = values[tendon.name]["length"].item() - float(length)
-        if abs(slack) <= NEARLY_TAUT * model.discrete.rods[tendon.rod].properties.length:
-            names.append(tendon.name)
-    return names
-
-
-def message_of(history: History, outcome: MotionOutcome) -> str:
-    """The sentence of the outcome, with time and size of the step where the motion ended early."""
-    if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
-        return str(outcome.value)
-    reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
-    if outcome is MotionOutcome.SNAPPED:
-        return f"{outcome.value} Reached: {reached}; the cable is {', '.join(snapping_cables(history))}."
-    return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
-
-
-def most_violent(history: History) -> str:
-    """The rod, or the body, whose accelerations displace it most where a motion ends."""
-    model = history.model
-    accelerations = np.nan_to_num(np.abs(history.end.a), nan=np.inf) * displacements(model)
-    largest = {}
-    for block, entries in model.discrete.unknowns.of_kind(BlockKind.STRAIN, BlockKind.POSE):
-        kind = "rod " if block.kind is BlockKind.STRAIN else ""
-        largest[f"{kind}{block.owner}"] = float(accelerations[entries].max(initial=0.0))
-    return max(largest, key=lambda owner: largest[owner])
-
-
 def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
@@ -489,7 +429,7 @@ def not_started(model: Model, start: Start) -> Motion:
         v=no_state,
         a=no_state,
         inputs=np.zeros((0, model.inputs.size)),
-        energy=Energies(none, none, none, none, none, none),
+        energy=Energies(none, none, none, none, none, none, none),
         error_estimate=float("nan"),
         statistics=StepStatistics(0, 0, 0, 0, float("nan"), float("nan")),
         start=start.sentence,

@@ -43,8 +43,12 @@ class MotionOutcome(Enum):
     NO_START = "No motion was computed: no state to start from was found."
     NOT_SOLVED = "The motion ended early: a step of the given size could not be solved; give a smaller one, or none."
     SNAPPED = (
-        "The motion ended early: a slack cable snapped taut. That is an impact, which is not computed: damp the rod, "
-        "or move more slowly."
+        "The motion ended early: a slack cable became taut and slack over and over, or had no motion to go on by: "
+        "damp the rod, or move more slowly."
+    )
+    TOO_MANY_STEPS = (
+        "The motion ended early: at its pace the rest would take hundreds of thousands of steps. A load may be far "
+        "beyond the rod, or the tolerance too tight for what vibrates; damp the rod."
     )
 
     @property
@@ -102,7 +106,8 @@ class Energies:
         potential: of dead forces and gravity.
         dissipated: by the rods' damping since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
-        imbalance: what is left over of the balance of the other five, relative to the largest energy; without unit.
+        impacts: lost since the start where slack cables snapped taut.
+        imbalance: what is left over of the balance of the other six, relative to the largest energy; without unit.
     """
 
     kinetic: FloatArray
@@ -110,6 +115,7 @@ class Energies:
     potential: FloatArray
     dissipated: FloatArray
     work: FloatArray
+    impacts: FloatArray
     imbalance: FloatArray
 
 

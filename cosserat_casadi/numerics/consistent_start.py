@@ -83,8 +83,7 @@ def consistent_start(
     constraints = _constraint_rows(linearisation, differential)
     in_time = _in_time(equations, instant, constraints, interval)
 
-    matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
-    matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
+    matrix = _saddle(linearisation, differential, constraints)
     inverse, massless = _pseudo_inverse(matrix)
     for _ in range(CORRECTIONS):
         rows = equations.residual_at(instant)
@@ -102,6 +101,56 @@ def consistent_start(
         balance_error=float(np.max(np.abs(balance), initial=0.0)),
         massless=massless,
     )
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What a blow that closes constraints does in no time.
+
+    Attributes:
+        v: velocities after it, shape (n,), 1/s.
+        impulses: integrals over the blow of the algebraic entries; zero of the others, shape (n,), s.
+    """
+
+    v: FloatArray
+    impulses: FloatArray
+
+
+def impact(equations: MotionEquations, time: float, x: FloatArray, v: FloatArray, interval: float) -> Impact:
+    """Velocities that satisfy the constraints, after impulses along them: nothing bounces.
+
+    M Δv + (∂F/∂λ) Λ = 0 with the rates of all constraints zero after it: the projection of the velocities in the
+    metric of the mass (F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996, section 6).
+    Whether impulses of constraints that only push, or only pull, have the right sign is for the caller to judge.
+
+    Args:
+        equations: with the constraints that hold after the blow.
+        time: s.
+        x: positions, on the constraints, shape (n,).
+        v: velocities before it, shape (n,), 1/s.
+        interval: time after it in which the equations are smooth, s.
+    """
+    differential = equations.differential
+    instant = Instant(time, x, np.where(differential, v, 0.0), np.zeros(equations.size))
+    linearisation = equations.linearised(instant)
+    constraints = _constraint_rows(linearisation, differential)
+    matrix = _saddle(linearisation, differential, constraints)
+    inverse, _ = _pseudo_inverse(matrix)
+    wanted = np.zeros(equations.size)
+    wanted[constraints] = -_in_time(equations, instant, constraints, interval).rates
+    change = np.zeros(equations.size)
+    for _ in range(CORRECTIONS):
+        change = change + inverse @ (wanted - matrix @ change)
+    return Impact(instant.v + np.where(differential, change, 0.0), np.where(differential, 0.0, change))
+
+
+def _saddle(
+    linearisation: Linearisation, differential: npt.NDArray[np.bool_], constraints: npt.NDArray[np.bool_]
+) -> FloatArray:
+    """Derivatives of the rows with accelerations and algebraic entries, constraints twice differentiated, (n, n)."""
+    matrix = np.where(differential, linearisation.mass, linearisation.stiffness)
+    matrix[constraints] = np.where(differential, linearisation.stiffness[constraints], 0.0)
+    return matrix
 
 
 def _constraint_rows(linearisation: Linearisation, differential: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

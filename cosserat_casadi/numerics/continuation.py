@@ -169,13 +169,21 @@ def follow(
     previous: _Point | None = None
     iterations = start.iterations
     step = path.first_step
+    renewed = False
     for _ in range(limits.steps):
         remaining = 1.0 - current.t
         # A tangent of zero bounds no step.
         longest = limits.longest / max(path.length(current.tangent), 1e-12)
         step = min(step, remaining, longest)
         if step < min(limits.shortest, remaining):
-            break
+            if renewed:
+                break
+            # The Jacobian that an inexact correction has left may foresee wrongly however short the step is.
+            current = _renewed(path, current, limits)
+            iterations += current.correction.iterations
+            renewed = True
+            step = remaining
+            continue
 
         target = _target(current, step)
         predicted = _predicted_change(path, current, previous, step)
@@ -203,6 +211,7 @@ def follow(
             )
         previous = current
         current = _point(path, trial, target)
+        renewed = False
         if trial.jacobians <= limits.grow_below:
             # One or two Jacobians: the prediction was good, and a longer step costs no more.
             step *= 2.0
@@ -246,6 +255,12 @@ def _point(path: Path, correction: NewtonResult, t: float) -> _Point:
         # No direction is known: the next point is predicted where this one is.
         tangent = np.zeros_like(correction.x)
     return _Point(t, tangent, correction)
+
+
+def _renewed(path: Path, current: _Point, limits: ContinuationSettings) -> _Point:
+    """The same point corrected exactly, with a Jacobian of its own."""
+    exact = newton(path.at(current.t), current.x, limits.newton)
+    return _point(path, replace(exact, last_jacobian=None), current.t)
 
 
 def _target(current: _Point, step: float) -> float:

@@ -8,7 +8,7 @@ Ordinary Differential Equations I*, 2nd ed., Springer 1993, section II.7.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -158,3 +158,10 @@ def extrapolated(step: Step, size: float) -> FloatArray:
     """Unknowns of the stages of a next step of size h, from the polynomial of the step before, shape (s, n)."""
     shares = 1.0 + step.method.nodes * (size / step.size)
     return step.method.values_at_stages(shares) @ step.unknowns
+
+
+def restricted(step: Step, time: float) -> Step:
+    """The part of a step up to a time in it: the same polynomial, with its values at the stages of a shorter step."""
+    share = (time - step.start.time) / step.size
+    unknowns = step.method.values_at_stages(share * step.method.nodes) @ step.unknowns
+    return replace(step, size=time - step.start.time, unknowns=unknowns, end=step.at(time))

@@ -13,7 +13,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.simulate import moving_inputs
 from cosserat_casadi.numerics.collocation import Collocation
-from cosserat_casadi.numerics.time_steps import StepSettings
+from cosserat_casadi.numerics.integration import StepSettings
 
 EXACT = 1e-13
 """Error that Newton's method may leave in each unknown."""

@@ -196,9 +196,9 @@ def test_few_modes_do_not_resolve_a_rod() -> None:
 
 
 def test_step_that_is_too_long_is_not_solved() -> None:
-    simulation = asked(start="unloaded", duration=0.5, step=0.5)
+    simulation = asked(start="unloaded", duration=10.0, step=10.0)
     motion = simulated(falling(accuracy={"modes": 6, "nodes": 12}, simulation=simulation))
-    assert motion.outcome in (MotionOutcome.NOT_SOLVED, MotionOutcome.NOT_FINITE)
+    assert motion.outcome is MotionOutcome.NOT_SOLVED
     assert len(motion.times) == 1
 
 

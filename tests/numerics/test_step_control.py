@@ -8,9 +8,10 @@ from moving import PENDULUM_ANGLE
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step_control import StepControl
-from cosserat_casadi.numerics.time_steps import StepSettings, integrate
+from cosserat_casadi.numerics.time_steps import integrate
 
 
 @pytest.mark.parametrize("stages", [1, 2, 3])

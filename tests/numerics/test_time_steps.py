@@ -22,14 +22,10 @@ from scipy.integrate import solve_ivp
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 from cosserat_casadi.numerics.consistent_start import consistent_start
+from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
-from cosserat_casadi.numerics.time_steps import (
-    ITERATIONS_OF_GIVEN_STEP,
-    Integration,
-    StepOutcome,
-    StepSettings,
-    integrate,
-)
+from cosserat_casadi.numerics.step_run import ITERATIONS_OF_GIVEN_STEP
+from cosserat_casadi.numerics.time_steps import integrate
 
 METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2), gauss(3)]
 
@@ -517,3 +513,17 @@ def test_bad_settings_are_refused_all_at_once() -> None:
     settings = StepSettings(np.array([1.0, 0.0, 0.0]))
     with pytest.raises(ValueError, match=r"end: .*tolerance: .*size: .*method: "):
         integrate(PENDULUM, start, 0.5, gauss(2), settings)
+
+
+def test_motion_that_crawls_is_given_up_by_name() -> None:
+    """A spring that vibrates a million times: no step fails, and there is no end of them."""
+    spring = explicit(
+        lambda t, x, v: -((2e6 * np.pi) ** 2) * x,
+        lambda t, x, v: np.diag([-((2e6 * np.pi) ** 2)]),
+        lambda *_: np.zeros((1, 1)),
+    )
+    start = start_at(spring, np.ones(1), np.zeros(1))
+    integration = integrate(spring, start, 1.0, radau(3), StepSettings(np.full(1, 1e-8)))
+    assert integration.outcome is StepOutcome.TOO_MANY_STEPS
+    assert 900 < integration.statistics.steps < 1100
+    assert 0.0 < integration.end.time < 1e-2

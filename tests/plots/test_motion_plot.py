@@ -130,7 +130,7 @@ def test_energies_and_their_imbalance(planar: Motion) -> None:
     without_damping = replace(planar.energy, dissipated=np.zeros(len(planar.times)))
     by_label = panels(plot_motion(replace(planar, energy=without_damping)))
     energies = {line.get_label(): line.get_ydata() for line in by_label["energy, J"].get_lines()}
-    assert list(energies) == ["kinetic", "elastic", "potential", "work"]
+    assert list(energies) == ["kinetic", "elastic", "potential", "work", "impacts"]
     assert_allclose(energies["work"], planar.energy.work, rtol=0, atol=0)
     imbalance = by_label["imbalance /\nlargest energy"]
     assert imbalance.get_yscale() == "log"

@@ -1,0 +1,209 @@
+"""Cables that may go slack, in motion: each is slack or taut for a while, and what happens in between.
+
+A slack cable has no tension, a taut one has its length: between these the equations are smooth, and the corner that
+statics rounds is never passed. A cable whose tension would become negative goes slack. One whose sag comes to zero
+snaps taut: an impact without rebound takes from the rod the velocity that would draw the cable out, and the energy
+that goes with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.discrete_scene import CableOfLength
+from cosserat_casadi.model.load_assembly import input_value
+from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
+from cosserat_casadi.numerics.guards import THROUGH, Guards
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+Phases = tuple[bool, ...]
+"""Of each cable that may go slack whether it is taut."""
+
+TOUCHING = 1e-9
+"""Sag, relative to the rod's length, from which on a cable counts as taut where a motion starts."""
+
+
+@dataclass(frozen=True)
+class Restart:
+    """How a motion goes on after an event, or begins.
+
+    Attributes:
+        start: state with accelerations and tensions.
+        phases: which cables are taut.
+        lost: kinetic energy that an impact has taken, J.
+    """
+
+    start: ConsistentStart
+    phases: Phases
+    lost: float
+
+
+@dataclass(frozen=True)
+class SlackCables:
+    """The cables of a model that may go slack.
+
+    Attributes:
+        model: the model, built for a motion.
+    """
+
+    model: Model
+
+    @cached_property
+    def cables(self) -> list[CableOfLength]:
+        """These cables."""
+        return [cable for cable in self.model.discrete.cables if EFFECTS[cable.tendon.kind].may_go_slack(cable.tendon)]
+
+    @cached_property
+    def rows(self) -> list[int]:
+        """Rows of their equations, which are the entries of their tensions."""
+        return [self.model.discrete.tension(cable).start for cable in self.cables]
+
+    def equations(self, plain: MotionEquations, piece: Piece, phases: Phases) -> MotionEquations:
+        """Equations of motion in which each of these cables is either slack or taut.
+
+        Args:
+            plain: those of the model.
+            piece: of its inputs.
+            phases: which cables are taut.
+        """
+        if not self.cables:
+            return plain
+
+        def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
+            rows = plain.residual(t, x, v, a)
+            sags = self._sags(x, piece.at(t).value)
+            for cable, row, taut, sag in zip(self.cables, self.rows, phases, sags, strict=True):
+                rows[row] = -sag if taut else cable.softness * x[row]
+            return rows
+
+        def jacobians(
+            t: float, x: FloatArray, v: FloatArray, a: FloatArray
+        ) -> tuple[FloatArray, FloatArray, FloatArray]:
+            stiffness, damping, mass = plain.jacobians(t, x, v, a)
+            gradients = self._gradients(x, piece.at(t).value).reshape(len(self.cables), -1, order="F")
+            for cable, row, taut, gradient in zip(self.cables, self.rows, phases, gradients, strict=True):
+                stiffness[row] = -gradient if taut else 0.0
+                if not taut:
+                    stiffness[row, row] = cable.softness
+            return stiffness, damping, mass
+
+        return MotionEquations(plain.differential, residual, jacobians)
+
+    def guards(self, piece: Piece, phases: Phases) -> Guards | None:
+        """What has to stay at zero or above: the sag of a slack cable, the tension of a taut one; None without any."""
+        if not self.cables:
+            return None
+
+        def values(instant: Instant) -> FloatArray:
+            sags = self._sags(instant.x, piece.at(instant.time).value)
+            tensions = self._softness * instant.x[self.rows]
+            return np.where(phases, tensions, sags)
+
+        return values
+
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Phases:
+        """Which cables are taut at a state."""
+        if not self.cables:
+            return ()
+        return tuple(bool(sag <= TOUCHING) for sag in self._sags(x, inputs))
+
+    def restarted(
+        self,
+        plain: MotionEquations,
+        piece: Piece,
+        at: Instant,
+        phases: Phases,
+        guard: int | None,
+        interval: float,
+    ) -> Restart:
+        """How a motion goes on, or begins.
+
+        Args:
+            plain: equations of the model.
+            piece: of its inputs.
+            at: state before the event.
+            phases: which cables are taut before it.
+            guard: number of the cable whose guard came to zero; None for a start, or another piece of the inputs.
+            interval: time after it in which the equations are smooth, s.
+        """
+        v = at.v
+        lost = 0.0
+        if guard is not None:
+            snaps = not phases[guard]
+            phases = _changed(phases, [guard])
+            if snaps:
+                v, phases = self._after_impact(plain, piece, at, phases, interval)
+                inputs = piece.at(at.time)
+                lost = self._kinetic(at.x, at.v, inputs) - self._kinetic(at.x, v, inputs)
+        while True:
+            start = consistent_start(self.equations(plain, piece, phases), at.time, at.x, v, interval)
+            slack = [k for k in self._pushing(start.instant.x, phases) if phases[k]]
+            if not slack:
+                return Restart(start, phases, lost)
+            phases = _changed(phases, slack)
+
+    def _after_impact(
+        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Phases, interval: float
+    ) -> tuple[FloatArray, Phases]:
+        """Velocities after a cable has snapped taut, and which cables are taut then: impulses only pull."""
+        while True:
+            struck = impact(self.equations(plain, piece, phases), at.time, at.x, at.v, interval)
+            pushing = [k for k, row in enumerate(self.rows) if phases[k] and struck.impulses[row] < 0.0]
+            if not pushing:
+                return struck.v, phases
+            phases = _changed(phases, pushing)
+
+    def _pushing(self, x: FloatArray, phases: Phases) -> list[int]:
+        """Taut cables whose tension is negative."""
+        tensions = self._softness * x[self.rows]
+        return [k for k, taut in enumerate(phases) if taut and tensions[k] < -THROUGH]
+
+    def _kinetic(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> float:
+        value, rate, *_ = inputs
+        kinetic, *_ = self.model.energies(x, v, value, rate)
+        return float(kinetic)
+
+    @cached_property
+    def _softness(self) -> FloatArray:
+        return np.array([cable.softness for cable in self.cables])
+
+    @cached_property
+    def _sags(self) -> RepeatedCall:
+        return RepeatedCall(ca.Function("sags", self._symbols, [self._sag_rows]))
+
+    @cached_property
+    def _gradients(self) -> RepeatedCall:
+        by_unknowns = ca.densify(ca.jacobian(self._sag_rows, self._symbols[0]))
+        return RepeatedCall(ca.Function("gradients", self._symbols, [ca.vec(by_unknowns)]))
+
+    @cached_property
+    def _symbols(self) -> list[ca.MX]:
+        return [ca.MX.sym("x", self.model.size), ca.MX.sym("inputs", self.model.inputs.size)]
+
+    @cached_property
+    def _sag_rows(self) -> ca.MX:
+        """What the wanted length of each cable exceeds its own by, relative to the rod's length."""
+        x, inputs = self._symbols
+        sags = []
+        for cable in self.cables:
+            tendon = cable.tendon
+            wanted = input_value(self.model.discrete.layout, tendon, "length", inputs)
+            _, length, _ = self.model.actuator[tendon.name](x, inputs)
+            sags.append((wanted - length) / self.model.discrete.rods[tendon.rod].properties.length)
+        stacked: ca.MX = ca.densify(ca.vertcat(*sags))
+        return stacked
+
+
+def _changed(phases: Phases, cables: Sequence[int]) -> Phases:
+    """Phases of which those of some cables are the other one."""
+    return tuple(taut != (k in cables) for k, taut in enumerate(phases))

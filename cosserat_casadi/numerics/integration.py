@@ -1,0 +1,114 @@
+"""What is asked of an integration in time, and what it gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.step import Step
+
+
+class StepOutcome(Enum):
+    """Every way an integration can end. The value is the sentence that a user reads; numbers are beside it."""
+
+    COMPLETED = "The motion was computed to its end."
+    STEP_TOO_SMALL = "The motion was computed in part: the steps became too small, it may have no continuation."
+    NOT_SOLVED = (
+        "The motion was computed in part: the equations of a step of the given size were not solved; use smaller steps."
+    )
+    NOT_FINITE = "The motion was computed in part: the equations gave a value that is not a finite number."
+    SINGULAR = (
+        "The motion was computed in part: its equations are singular; constraints may contradict or repeat each other."
+    )
+    INTERRUPTED = "The motion was computed in part: it was interrupted."
+    TOO_MANY_STEPS = "The motion was computed in part: its steps are so short that hundreds of thousands were needed."
+    GUARDED = "The motion was computed to where it goes on under other equations."
+
+
+@dataclass(frozen=True)
+class StepSettings:
+    """How to step.
+
+    Attributes:
+        tolerance: error of one step that each entry of x may have, shape (n,); entries that are algebraic are left out.
+        size: of all steps, s, which then are not controlled: the piece is divided evenly into steps no longer; None
+            for steps as long as the tolerance allows.
+        first: first step, s, where steps are controlled; None for a small share of the piece.
+        longest: longest step, s.
+        shortest: shortest step, as a share of the piece.
+        newton: error that Newton's method may leave, over the tolerance.
+    """
+
+    tolerance: FloatArray
+    size: float | None = None
+    first: float | None = None
+    longest: float = np.inf
+    shortest: float = 1e-9
+    newton: float = 1e-3
+
+
+@dataclass(frozen=True)
+class StepStatistics:
+    """What an integration cost.
+
+    Attributes:
+        steps: steps taken.
+        rejected: steps refused, for their error or because their equations were not solved.
+        iterations: Newton iterations, of refused steps too; each evaluates F at every stage.
+        jacobians: Jacobians evaluated.
+        factorisations: times that the matrices of a step were factorised.
+    """
+
+    steps: int
+    rejected: int
+    iterations: int
+    jacobians: int
+    factorisations: int
+
+
+@dataclass(frozen=True)
+class Integration:
+    """A motion over one piece, or over the part of it that was reached.
+
+    Attributes:
+        start: where it began.
+        steps: the steps taken, one after the other.
+        outcome: how it ended.
+        next_size: step that would come next, or that failed, s.
+        statistics: what it cost.
+        guard: number of the guard that came to zero; None where none did.
+    """
+
+    start: Instant
+    steps: tuple[Step, ...]
+    outcome: StepOutcome
+    next_size: float
+    statistics: StepStatistics
+    guard: int | None = None
+
+    @property
+    def end(self) -> Instant:
+        """The last instant that was reached."""
+        if not self.steps:
+            return self.start
+        return self.steps[-1].end
+
+    @property
+    def message(self) -> str:
+        """The sentence of the outcome, with time and size of the step where it ended early."""
+        sentence = str(self.outcome.value)
+        if self.outcome is StepOutcome.COMPLETED:
+            return sentence
+        return f"{sentence} Reached: t = {self.end.time:.9g} s, with a step of {self.next_size:.3g} s."
+
+
+AfterStep = Callable[[float, float], None]
+"""Called after each step with the time reached and the size of the step, s; KeyboardInterrupt ends the motion."""
+
+Settle = Callable[[Step], Instant]
+"""The end of a step, put right by what the method misses of an invariant: at most as much as the step is inexact by."""

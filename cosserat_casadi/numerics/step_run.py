@@ -1,0 +1,242 @@
+"""An integration in time on its way: the last instant reached, the Jacobian in use, and what has been spent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.guards import Guards, crossing
+from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
+from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
+from cosserat_casadi.numerics.stage_newton import NewtonBounds, StageOutcome, StageSolution, solve_stages
+from cosserat_casadi.numerics.step import Step, end_of, extrapolated, motion_at, restricted
+from cosserat_casadi.numerics.step_control import MOST_ITERATIONS, estimated_error
+from cosserat_casadi.numerics.step_matrices import StepMatrices, step_matrices
+
+RESOLVED_TIME = 16.0 * float(np.finfo(np.float64).eps)
+"""Smallest step, relative to the time, that rounding of the time does not blur."""
+
+MOST_LENGTHS = 8
+"""Lengths that are tried for a step that ends where a guard vanishes."""
+
+NEARBY = 1e-3
+"""Share of a step before its end at which a guard is compared for its rate."""
+
+ON_GUARD = 1e-13
+"""Value of a guard that counts as zero."""
+
+FEW_ITERATIONS = 4
+"""Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
+
+ITERATIONS_OF_GIVEN_STEP = 100
+"""Most Newton iterations of a step whose size is given: no shorter one may be tried."""
+
+
+@dataclass
+class StepRun:
+    """What changes from one step to the next.
+
+    Attributes:
+        equations: the equations.
+        method: the collocation method.
+        settings: how to step.
+        start: where the motion begins.
+        stop: time at which it shall end, s.
+        steps: the steps taken.
+        size: of the step to be tried next, s.
+        bounds: weights of an error, and when Newton's method stops.
+        linearisation: the Jacobian in use; None where the next step needs a new one.
+        fresh: whether that Jacobian was evaluated after the last instant reached.
+        matrices: the linear systems in use; None where there are none for the Jacobian.
+        rejected: steps refused.
+        iterations: Newton iterations.
+        jacobians: Jacobians evaluated.
+        factorisations: times that matrices were factorised.
+        guards: values that have to stay at zero or above; None where there are none.
+        settled: end of a step to go on from, in place of its own; None for its own.
+        guard: number of the guard that came to zero; None where none did.
+    """
+
+    equations: MotionEquations
+    method: Collocation
+    settings: StepSettings
+    start: Instant
+    stop: float
+    guards: Guards | None = None
+    settled: Settle | None = None
+    guard: int | None = None
+    steps: list[Step] = field(default_factory=list)
+    size: float = 0.0
+    linearisation: Linearisation | None = None
+    fresh: bool = False
+    matrices: StepMatrices | None = None
+    rejected: int = 0
+    iterations: int = 0
+    jacobians: int = 0
+    factorisations: int = 0
+
+    def __post_init__(self) -> None:
+        differential = self.equations.differential
+        weights = np.zeros(self.equations.size)
+        weights[differential] = 1.0 / self.settings.tolerance[differential]
+        iterations = MOST_ITERATIONS if self.settings.size is None else ITERATIONS_OF_GIVEN_STEP
+        self.bounds = NewtonBounds(weights, self.settings.newton, iterations)
+
+    @property
+    def now(self) -> Instant:
+        """The last instant reached."""
+        if not self.steps:
+            return self.start
+        return self.steps[-1].end
+
+    def result(self, outcome: StepOutcome) -> Integration:
+        """The end of the integration."""
+        statistics = StepStatistics(
+            steps=len(self.steps),
+            rejected=self.rejected,
+            iterations=self.iterations,
+            jacobians=self.jacobians,
+            factorisations=self.factorisations,
+        )
+        return Integration(self.start, tuple(self.steps), outcome, self.size, statistics, self.guard)
+
+    def renew_jacobian(self) -> None:
+        """Have the next step evaluate a Jacobian of its own."""
+        self.linearisation = None
+        self.matrices = None
+
+    def solve(self, guess: FloatArray | None = None) -> StageSolution | StepOutcome:
+        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried.
+
+        Args:
+            guess: first iterate of the stages, shape (s, n); None for what goes on as the step before.
+        """
+        solution = self._solve_with_jacobian(guess)
+        if isinstance(solution, StepOutcome) and not self.fresh:
+            # The Jacobian may be too old: the same step gets one of its own.
+            self.renew_jacobian()
+            solution = self._solve_with_jacobian(guess)
+        if isinstance(solution, StepOutcome):
+            # A shorter step has its middle elsewhere.
+            self.renew_jacobian()
+        return solution
+
+    def _solve_with_jacobian(self, guess: FloatArray | None) -> StageSolution | StepOutcome:
+        """Solve with the Jacobian in use, or a new one where there is none."""
+        if guess is None:
+            guess = self.guess()
+        linearisation = self.linearisation
+        if linearisation is None:
+            linearisation = self.equations.linearised(self._middle(guess))
+            self.linearisation = linearisation
+            self.jacobians += 1
+            self.fresh = True
+        if not linearisation.finite:
+            return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
+        if self.matrices is None or self.matrices.step != self.size:
+            self.matrices = step_matrices(self.method, self.size, linearisation, self.equations.differential)
+            self.factorisations += 1
+        if self.matrices is None:
+            return StepOutcome.SINGULAR
+        solution = solve_stages(self.equations, self.matrices, self.now, guess, self.bounds)
+        self.iterations += solution.iterations
+        if solution.outcome is StageOutcome.CONVERGED:
+            return solution
+        return StepOutcome.NOT_SOLVED if self._finite_here() else StepOutcome.NOT_FINITE
+
+    def _finite_here(self) -> bool:
+        """Whether F is finite at the start of the step and straight on from it: else no iterate is to blame."""
+        now = self.now
+        straight_on = Instant(now.time + self.size, now.x + self.size * now.v, now.v, now.a)
+        return all(bool(np.all(np.isfinite(self.equations.residual_at(instant)))) for instant in (now, straight_on))
+
+    def guess(self) -> FloatArray:
+        """First iterate of the stages: the polynomial of the step before, or the start."""
+        if self.steps:
+            return extrapolated(self.steps[-1], self.size)
+        unknowns = np.where(self.equations.differential, self.start.a, self.start.x)
+        return np.tile(unknowns, (self.method.stages, 1))
+
+    def _middle(self, guess: FloatArray) -> Instant:
+        """The middle of the step as the first iterate has it: a Jacobian there is nearest to those of all stages."""
+        time = self.now.time + self.size / 2.0
+        return motion_at(self.method, self.equations.differential, self.now, self.size, guess, 0.5, time)
+
+    def error_of(self, solution: StageSolution, after_a_jump: bool) -> float:
+        """Estimated error over tolerance of the step that was solved last."""
+        if self.matrices is None:
+            return float("nan")
+        return estimated_error(self.matrices, self.now, solution.unknowns, self.bounds, after_a_jump)
+
+    def accept(self, solution: StageSolution, end: float, error: float) -> None:
+        """Take a step, and decide whether its Jacobian serves the next one."""
+        differential = self.equations.differential
+        now = self.now
+        arrived = end_of(self.method, differential, now, self.size, solution.unknowns, end)
+        step = Step(
+            method=self.method,
+            differential=differential,
+            start=now,
+            size=self.size,
+            unknowns=solution.unknowns,
+            end=arrived,
+            error=error,
+            iterations=solution.iterations,
+            residual=solution.residual,
+            contraction=solution.contraction,
+        )
+        if self.settled is not None:
+            step = replace(step, end=self.settled(step))
+        self.steps.append(step)
+        self.fresh = False
+        if solution.iterations > FEW_ITERATIONS:
+            self.renew_jacobian()
+
+    def stopped_by_guard(self) -> bool:
+        """Whether a guard fell through zero in the last step; the step is then taken anew, and ends where it did."""
+        if self.guards is None:
+            return False
+        whole = self.steps[-1]
+        found = crossing(whole, self.guards)
+        if found is None:
+            return False
+        self.guard = found.guard
+        self.steps.pop()
+        wanted = self.size
+        begin = self.now.time
+        if found.time - begin > RESOLVED_TIME * max(abs(begin), abs(self.stop)):
+            self._step_to(restricted(whole, found.time), found.guard)
+        self.size = wanted
+        return True
+
+    def _step_to(self, cut: Step, guard: int) -> None:
+        """Take a step that ends where a guard vanishes.
+
+        Args:
+            cut: the part of a longer step to the time, about, at which it does; it stands where no step is found.
+            guard: number of the guard.
+        """
+        assert self.guards is not None
+        time = cut.end.time
+        for _ in range(MOST_LENGTHS):
+            self.size = time - cut.start.time
+            solution = self.solve()
+            if isinstance(solution, StepOutcome):
+                break
+            self.accept(solution, time, cut.error)
+            step = self.steps[-1]
+            value = self.guards(step.end)[guard]
+            before = self.guards(step.at(time - NEARBY * step.size))[guard]
+            rate = (value - before) / (NEARBY * step.size)
+            if abs(value) <= ON_GUARD:
+                return
+            self.steps.pop()
+            following = time - float(value / rate) if rate < 0.0 else time
+            # What needs a change of the time below its rounding, or another step altogether, is not found so.
+            if not cut.start.time < following <= 2.0 * cut.end.time - cut.start.time or following == time:
+                break
+            time = following
+        self.steps.append(cut)
