@@ -12,6 +12,7 @@ from cosserat_casadi.accuracy.tune import Tuning, tune
 from cosserat_casadi.codegen.acados import acados_expressions, write_acados
 from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
@@ -41,6 +42,7 @@ __version__ = version("cosserat-casadi")
 
 __all__ = [
     "Compiled",
+    "CompiledMotionStage",
     "CosseratError",
     "Discretisation",
     "EquilibriumPath",
@@ -64,6 +66,7 @@ __all__ = [
     "Tuning",
     "acados_expressions",
     "build",
+    "compiled_motion_stage",
     "compiled_stage",
     "discretise",
     "export",
