@@ -327,6 +327,17 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         raise SceneError(*problems)
 
 
+def check_movable(model: Model) -> None:
+    """Refuse a model that has no motion.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = immovable(model)
+    if problems:
+        raise SceneError(*problems)
+
+
 def immovable(model: Model) -> list[Problem]:
     """What keeps a model from having a motion: rods without mass, a rotation without velocities."""
     problems = []

@@ -107,7 +107,8 @@ class MotionStage:
         """By what the next state depends on the unknowns of the stage, sparse, shape (state_size, unknowns_size)."""
         positions = [weight * self.places.T for weight in self.method.position_weights.tolist()]
         velocities = [weight * self.places.T for weight in self.method.weights.tolist()]
-        return ca.vertcat(ca.horzcat(*positions), ca.horzcat(*velocities))
+        matrix: ca.DM = ca.vertcat(ca.horzcat(*positions), ca.horzcat(*velocities))
+        return matrix
 
     @cached_property
     def next_state(self) -> ca.Function:
@@ -186,8 +187,23 @@ class MotionStage:
     @cached_property
     def places(self) -> ca.DM:
         """Differential entries to their places in x, sparse, shape (model.size, state_size / 2)."""
-        rows = np.flatnonzero(self.differential)
-        return ca.DM(ca.Sparsity.triplet(self.model.size, len(rows), rows.tolist(), list(range(len(rows)))), 1.0)
+        return differential_places(self.model)
+
+
+def differential_places(model: Model) -> ca.DM:
+    """Matrix that puts the differential entries of x to their places, sparse, shape (model.size, differential ones)."""
+    return _places(model.discrete.unknowns.differential)
+
+
+def algebraic_places(model: Model) -> ca.DM:
+    """Matrix that puts the algebraic entries of x to their places, sparse, shape (model.size, algebraic ones)."""
+    return _places(~model.discrete.unknowns.differential)
+
+
+def _places(chosen: npt.NDArray[np.bool_]) -> ca.DM:
+    rows = np.flatnonzero(chosen).tolist()
+    pattern = ca.Sparsity.triplet(len(chosen), len(rows), rows, list(range(len(rows))))
+    return ca.DM(pattern, 1.0)
 
 
 def motion_stage(model: Model, duration: float, method: Collocation | None = None) -> MotionStage:

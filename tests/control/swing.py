@@ -91,7 +91,7 @@ class Task:
 
     def effort(self, rates: ca.MX) -> ca.MX:
         """What a stage costs: the squares of the rates."""
-        return 1e-4 * ca.sumsqr(rates)
+        return 1e-2 * ca.sumsqr(rates)
 
     def arrival(self, state: ca.MX, tensions: ca.MX, tip: Callable[[ca.MX, ca.MX], ca.MX] | None = None) -> ca.MX:
         """What the end costs: the gap of the tip, and what still moves."""
