@@ -1,5 +1,6 @@
 """Inverse problems and optimal control: what stands around the equations of rest or of motion, held as constraints."""
 
+from cosserat_casadi.control.condensing import Condensed, Condensing, Horizon
 from cosserat_casadi.control.embedding import Lifted, embedded, lifted
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
@@ -10,7 +11,10 @@ from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
 __all__ = [
     "Collocation",
+    "Condensed",
+    "Condensing",
     "Gap",
+    "Horizon",
     "Inverse",
     "Lifted",
     "MotionStage",

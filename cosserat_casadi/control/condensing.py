@@ -1,0 +1,126 @@
+"""A horizon of stages in motion, linearised, with its states as functions of the rates of the inputs alone.
+
+Newton's method on all stages at once takes the unknowns of each from its linearised equations of motion, and the
+states from one stage to the next: lifted Newton's method with condensing, J. Albersmeyer and M. Diehl, *SIAM J. Optim.*
+20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. What is left for a quadratic
+problem are the rates: a few numbers a stage, however many unknowns the rods have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.stage import MotionStage
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """A guess of a motion over N stages; its stages need not meet, and its equations need not hold.
+
+    Attributes:
+        states: at the ends of all stages, shape (N + 1, state_size); the first one is given.
+        unknowns: of all stages, shape (N, unknowns_size).
+    """
+
+    states: FloatArray
+    unknowns: FloatArray
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """The horizon linearised about a guess.
+
+    Attributes:
+        guess: the guess.
+        residual: largest entry of the equations of motion, and of the gaps between stages, at the guess.
+        states_by_rates: ∂ states / ∂ steered rates of all stages, shape (N + 1, state_size, N · steered).
+        states_shift: change of the states that closes the guess at its own rates, shape (N + 1, state_size).
+        unknowns_by_rates: the same of the unknowns, shape (N, unknowns_size, N · steered).
+        unknowns_shift: shape (N, unknowns_size).
+    """
+
+    guess: Horizon
+    residual: float
+    states_by_rates: FloatArray
+    states_shift: FloatArray
+    unknowns_by_rates: FloatArray
+    unknowns_shift: FloatArray
+
+    def moved(self, change: FloatArray) -> Horizon:
+        """The motion, to first order, when the steered rates change.
+
+        Args:
+            change: of the rates, stage by stage, shape (N · steered,), units per second.
+        """
+        states = self.guess.states + self.states_shift + self.states_by_rates @ change
+        unknowns = self.guess.unknowns + self.unknowns_shift + self.unknowns_by_rates @ change
+        return Horizon(states, unknowns)
+
+
+class Condensing:
+    """Linearises a horizon.
+
+    Args:
+        stage: every stage of it.
+        equations: those of the stage, compiled or not.
+        stages: number of stages N.
+        steered: numbers of the inputs whose rates are to be chosen; the others move as given.
+    """
+
+    def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+        self._stage = stage
+        self._stages = stages
+        self._steered = list(steered)
+        arguments = stage.symbols
+        slopes = equations.jacobian()(*arguments, ca.DM(stage.unknowns_size, 1))
+        results = [equations(*arguments), *map(ca.densify, slopes)]
+        self._evaluate = ca.Function("stages", arguments, results).map(stages)
+        self._transition = stage.transition.full()
+        self._drive = stage.drive.full()
+
+    def condensed(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> Condensed:
+        """The horizon linearised about a guess.
+
+        Args:
+            guess: states and unknowns.
+            inputs: at the beginnings of all stages, shape (N, inputs).
+            inputs_rate: in them, shape (N, inputs), units per second.
+
+        Raises:
+            numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
+        """
+        residual, *slopes = self._evaluate(guess.states[:-1].T, guess.unknowns.T, inputs.T, inputs_rate.T)
+        by_state, by_unknowns, by_inputs, by_rate = map(self._of_stages, slopes)
+        size = self._stage.state_size
+        count = len(self._steered)
+        unsolved = residual.full().T[:, :, None]
+        right = [unsolved, by_state, by_inputs[:, :, self._steered], by_rate[:, :, self._steered]]
+        solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
+        alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + count], axis=2)
+        gaps = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T - guess.states[1:]
+
+        states_by_rates = np.zeros((self._stages + 1, size, self._stages * count))
+        states_shift = np.zeros((self._stages + 1, size))
+        unknowns_by_rates = np.zeros((self._stages, self._stage.unknowns_size, self._stages * count))
+        unknowns_shift = np.zeros((self._stages, self._stage.unknowns_size))
+        for k in range(self._stages):
+            here = slice(k * count, (k + 1) * count)
+            unknowns_by_rates[k] = with_state[k] @ states_by_rates[k]
+            # Inputs at the beginning of a stage are the sum of what all rates before it have made of them.
+            unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k], k)
+            unknowns_by_rates[k, :, here] += with_rate[k]
+            unknowns_shift[k] = alone[k, :, 0] + with_state[k] @ states_shift[k]
+            states_by_rates[k + 1] = self._transition @ states_by_rates[k] + self._drive @ unknowns_by_rates[k]
+            states_shift[k + 1] = self._transition @ states_shift[k] + self._drive @ unknowns_shift[k] + gaps[k]
+        worst = max(float(np.abs(unsolved).max()), float(np.abs(gaps).max()))
+        return Condensed(guess, worst, states_by_rates, states_shift, unknowns_by_rates, unknowns_shift)
+
+    def _of_stages(self, stacked: ca.DM) -> FloatArray:
+        """Matrices that stand side by side as an array, shape (N, rows, columns)."""
+        rows, columns = stacked.shape
+        return np.asarray(stacked.full().reshape(rows, self._stages, columns // self._stages).transpose(1, 0, 2))
