@@ -39,6 +39,8 @@ class Condensed:
         guess: the guess.
         residual: largest entry of the equations of motion, and of the gaps between stages, at the guess.
         states_by_rates: ∂ states / ∂ steered rates of all stages, shape (N + 1, state_size, N · steered).
+        states_by_inputs: ∂ states / ∂ all inputs at the beginning, which then move on from there, shape (N + 1,
+            state_size, inputs).
         states_shift: change of the states that closes the guess at its own rates, shape (N + 1, state_size).
         unknowns_by_rates: the same of the unknowns, shape (N, unknowns_size, N · steered).
         unknowns_shift: shape (N, unknowns_size).
@@ -47,6 +49,7 @@ class Condensed:
     guess: Horizon
     residual: float
     states_by_rates: FloatArray
+    states_by_inputs: FloatArray
     states_shift: FloatArray
     unknowns_by_rates: FloatArray
     unknowns_shift: FloatArray
@@ -99,12 +102,14 @@ class Condensing:
         size = self._stage.state_size
         count = len(self._steered)
         unsolved = residual.full().T[:, :, None]
-        right = [unsolved, by_state, by_inputs[:, :, self._steered], by_rate[:, :, self._steered]]
+        right = [unsolved, by_state, by_inputs, by_rate[:, :, self._steered]]
         solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
-        alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + count], axis=2)
+        moving = inputs.shape[1]
+        alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + moving], axis=2)
         gaps = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T - guess.states[1:]
 
         states_by_rates = np.zeros((self._stages + 1, size, self._stages * count))
+        states_by_inputs = np.zeros((self._stages + 1, size, moving))
         states_shift = np.zeros((self._stages + 1, size))
         unknowns_by_rates = np.zeros((self._stages, self._stage.unknowns_size, self._stages * count))
         unknowns_shift = np.zeros((self._stages, self._stage.unknowns_size))
@@ -112,13 +117,23 @@ class Condensing:
             here = slice(k * count, (k + 1) * count)
             unknowns_by_rates[k] = with_state[k] @ states_by_rates[k]
             # Inputs at the beginning of a stage are the sum of what all rates before it have made of them.
-            unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k], k)
+            unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k][:, self._steered], k)
             unknowns_by_rates[k, :, here] += with_rate[k]
             unknowns_shift[k] = alone[k, :, 0] + with_state[k] @ states_shift[k]
             states_by_rates[k + 1] = self._transition @ states_by_rates[k] + self._drive @ unknowns_by_rates[k]
+            unknowns_by_inputs = with_inputs[k] + with_state[k] @ states_by_inputs[k]
+            states_by_inputs[k + 1] = self._transition @ states_by_inputs[k] + self._drive @ unknowns_by_inputs
             states_shift[k + 1] = self._transition @ states_shift[k] + self._drive @ unknowns_shift[k] + gaps[k]
         worst = max(float(np.abs(unsolved).max()), float(np.abs(gaps).max()))
-        return Condensed(guess, worst, states_by_rates, states_shift, unknowns_by_rates, unknowns_shift)
+        return Condensed(
+            guess=guess,
+            residual=worst,
+            states_by_rates=states_by_rates,
+            states_by_inputs=states_by_inputs,
+            states_shift=states_shift,
+            unknowns_by_rates=unknowns_by_rates,
+            unknowns_shift=unknowns_shift,
+        )
 
     def _of_stages(self, stacked: ca.DM) -> FloatArray:
         """Matrices that stand side by side as an array, shape (N, rows, columns)."""

@@ -55,6 +55,9 @@ def test_derivatives_vs_differences_of_simulations() -> None:
             sides.append(replayed(wanted, pulled(wanted, rates), wanted.stage.method))
         difference = (sides[0] - sides[1]) / (2 * step)
         assert_allclose(found.states_by_rates[:, :, number], difference, rtol=1e-5, atol=1e-9)
+    sides = [replayed(wanted, pulled(wanted, RATES) + [sign * step, 0.0], wanted.stage.method) for sign in (1, -1)]
+    difference = (sides[0] - sides[1]) / (2 * step)
+    assert_allclose(found.states_by_inputs[:, :, 0], difference, rtol=1e-5, atol=1e-8)
     change = np.zeros(STAGES)
     change[3] = 1e-3
     moved = found.moved(change)
