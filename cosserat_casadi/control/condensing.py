@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.stage import MotionStage
 
 
@@ -81,8 +82,10 @@ class Condensing:
         self._steered = list(steered)
         arguments = stage.symbols
         slopes = equations.jacobian()(*arguments, ca.DM(stage.unknowns_size, 1))
-        results = [equations(*arguments), *map(ca.densify, slopes)]
-        self._evaluate = ca.Function("stages", arguments, results).map(stages)
+        results = [equations(*arguments), *slopes]
+        self._widths = [result.shape[1] for result in results]
+        column = ca.vertcat(*[ca.vec(ca.densify(result)) for result in results])
+        self._evaluate = RepeatedCall(ca.Function("stages", arguments, [column]).map(stages))
         self._transition = stage.transition.full()
         self._drive = stage.drive.full()
 
@@ -97,11 +100,9 @@ class Condensing:
         Raises:
             numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
         """
-        residual, *slopes = self._evaluate(guess.states[:-1].T, guess.unknowns.T, inputs.T, inputs_rate.T)
-        by_state, by_unknowns, by_inputs, by_rate = map(self._of_stages, slopes)
+        unsolved, by_state, by_unknowns, by_inputs, by_rate = self._linearised(guess, inputs, inputs_rate)
         size = self._stage.state_size
         count = len(self._steered)
-        unsolved = residual.full().T[:, :, None]
         right = [unsolved, by_state, by_inputs, by_rate[:, :, self._steered]]
         solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
         moving = inputs.shape[1]
@@ -135,7 +136,10 @@ class Condensing:
             unknowns_shift=unknowns_shift,
         )
 
-    def _of_stages(self, stacked: ca.DM) -> FloatArray:
-        """Matrices that stand side by side as an array, shape (N, rows, columns)."""
-        rows, columns = stacked.shape
-        return np.asarray(stacked.full().reshape(rows, self._stages, columns // self._stages).transpose(1, 0, 2))
+    def _linearised(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> list[FloatArray]:
+        """Residual of the equations of all stages and their derivatives, each of shape (N, unknowns_size, columns)."""
+        arguments = [guess.states[:-1], guess.unknowns, inputs, inputs_rate]
+        columns = self._evaluate(*[argument.ravel() for argument in arguments])
+        # Entries stand by columns, one stage after the other.
+        stages = columns.reshape(self._stages, -1, self._stage.unknowns_size).transpose(0, 2, 1)
+        return np.split(stages, np.cumsum(self._widths)[:-1], axis=2)

@@ -9,6 +9,8 @@ from cosserat_casadi.control import Condensed, Condensing, Horizon
 from cosserat_casadi.maths.typing import FloatArray
 from tests.control.swing import STAGES, STEP, Task, replayed, task
 
+EAST = np.array([1.0, 0.0])
+EAST = np.array([1.0, 0.0])
 RATES = np.tile([0.8, -1.5], (STAGES, 1))
 """Of the tensions, N/s."""
 
@@ -55,7 +57,8 @@ def test_derivatives_vs_differences_of_simulations() -> None:
             sides.append(replayed(wanted, pulled(wanted, rates), wanted.stage.method))
         difference = (sides[0] - sides[1]) / (2 * step)
         assert_allclose(found.states_by_rates[:, :, number], difference, rtol=1e-5, atol=1e-9)
-    sides = [replayed(wanted, pulled(wanted, RATES) + [sign * step, 0.0], wanted.stage.method) for sign in (1, -1)]
+    tensions = pulled(wanted, RATES)
+    sides = [replayed(wanted, tensions + sign * step * EAST, wanted.stage.method) for sign in (1, -1)]
     difference = (sides[0] - sides[1]) / (2 * step)
     assert_allclose(found.states_by_inputs[:, :, 0], difference, rtol=1e-5, atol=1e-8)
     change = np.zeros(STAGES)
