@@ -20,6 +20,7 @@ from cosserat_casadi.codegen.compiled_motion import (
 )
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.motion_status import MotionStatus
+from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
@@ -50,6 +51,7 @@ __version__ = version("cosserat-casadi")
 __all__ = [
     "Compiled",
     "CompiledStep",
+    "CompiledMotionStage",
     "CosseratError",
     "Discretisation",
     "EquilibriumPath",
@@ -78,6 +80,7 @@ __all__ = [
     "Tuning",
     "acados_expressions",
     "build",
+    "compiled_motion_stage",
     "compiled_stage",
     "discretise",
     "export",

@@ -1,8 +1,11 @@
 """A model as acados takes it: expressions of an implicit DAE, or the C functions that acados makes of such expressions.
 
-The states are the model's inputs, the controls their rates, the algebraic states the unknowns of the rods:
-ẋ = u, 0 = residual(z, x), for the integrator IRK. All is scalar: acados differentiates the expressions anew, and the
-second derivatives of a graph of matrices take a compiler hundreds of times longer than those of scalars.
+At rest the states are the model's inputs, the controls their rates, the algebraic states the unknowns of the rods:
+ẋ = u, 0 = residual(z, x), for the integrator IRK. In motion the states begin with the unknowns that move, q, and their
+velocities v: q̇ = v, and 0 = F(q and z, v, v̇, inputs, u), the equations of motion; z are multipliers and tensions.
+
+All is scalar: acados differentiates the expressions anew, and the second derivatives of a graph of matrices take a
+compiler hundreds of times longer than those of scalars.
 
 Names and argument lists of the C functions, [x, ẋ, u, z, t, p] to values and Jacobians, are those of acados'
 ``casadi_function_generation.py``; the C signature is that of ``external_function_param_casadi`` in
@@ -27,6 +30,8 @@ from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.simulate import check_movable
+from cosserat_casadi.motion.stage import algebraic_places, differential_places
 
 
 @dataclass(frozen=True)
@@ -35,11 +40,12 @@ class AcadosExpressions:
 
     Attributes:
         name: of the model, a C identifier.
-        x: states, SX symbols: the stacked inputs, shape (model.inputs.size,).
+        x: states, SX symbols: the stacked inputs, shape (model.inputs.size,); in motion before them the differential
+            unknowns of the model and their velocities, 1/s.
         xdot: their derivatives.
         u: controls: the rates of the inputs, units per second.
-        z: algebraic states: the unknowns of the rods, shape (model.size,).
-        f_impl_expr: what the integrator holds at zero, ẋ − u and the residual.
+        z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
+        f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
     """
 
     name: str
@@ -55,42 +61,38 @@ class AcadosExpressions:
             setattr(target, entry.name, getattr(self, entry.name))
 
 
-def acados_expressions(model: Model, name: str) -> AcadosExpressions:
+def acados_expressions(model: Model, name: str, *, moving: bool = False) -> AcadosExpressions:
     """The model as an implicit DAE in SX.
 
-    ``model.tip[rod](expressions.z, expressions.x)`` and the like are outputs for a cost in the same symbols.
+    Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like.
+    In motion a model without algebraic unknowns has ``model.tip[rod](expressions.x[: model.size], inputs)`` with the
+    last entries of ``expressions.x`` for its inputs.
 
     Args:
         model: the model.
         name: what acados calls it, a C identifier.
+        moving: whether the equations are those of motion. With supports, joints or cables of given length they have the
+            index 3, for which acados promises nothing.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
+        SceneError: a rod has no mass.
     """
-    _check(model, name)
-    x, xdot, u, z = _symbols(model)
-    return AcadosExpressions(name, x, xdot, u, z, ca.vertcat(xdot - u, ca.cse(model.residual(z, x))))
+    _check(model, name, moving)
+    dae = _dae(model, moving)
+    return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.value)
 
 
-def acados_functions(model: Model, name: str) -> list[ca.Function]:
+def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[ca.Function]:
     """What acados' integrator IRK evaluates: the DAE and its Jacobians, with the model's own.
 
     Raises:
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
+        SceneError: it is to move, and a rod has no mass.
     """
-    dae = acados_expressions(model, name)
-    count = model.inputs.size
-    by_z, value = model.jacobian(dae.z, dae.x)
-    by_x = model.input_jacobian(dae.z, dae.x)
-    zeros = ca.SX(count, count)
-    identity = ca.SX.eye(count)
-    blocks = {
-        "fun": ca.vertcat(dae.xdot - dae.u, value),
-        "jac_x": ca.vertcat(zeros, by_x),
-        "jac_xdot": ca.vertcat(identity, ca.SX(model.size, count)),
-        "jac_u": ca.vertcat(-identity, ca.SX(model.size, count)),
-        "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
-    }
+    _check(model, name, moving)
+    dae = _dae(model, moving)
+    blocks = {"fun": dae.value, **dae.slopes}
     wanted = {
         "fun": ("fun",),
         "fun_jac_x_xdot_z": ("fun", "jac_x", "jac_xdot", "jac_z"),
@@ -106,21 +108,23 @@ def acados_functions(model: Model, name: str) -> list[ca.Function]:
     ]
 
 
-def write_acados(model: Model, directory: str | os.PathLike[str], name: str) -> Path:
+def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, moving: bool = False) -> Path:
     """Write the functions as C for ``external_function_param_casadi``, one file and header each.
 
     Args:
         model: the model.
         directory: a folder, new, empty, or of an earlier call.
         name: what every function begins with, a C identifier.
+        moving: as in :func:`acados_expressions`.
 
     Returns:
         the folder.
 
     Raises:
         ExportError: the name or the folder is refused, the model has no inputs or no scalar form; nothing was written.
+        SceneError: it is to move, and a rod has no mass; nothing was written.
     """
-    functions = acados_functions(model, name)
+    functions = acados_functions(model, name, moving=moving)
     folder = Path(directory)
     stale = check_folder(folder, MANIFEST)
     files: dict[str, str] = {}
@@ -133,13 +137,93 @@ def write_acados(model: Model, directory: str | os.PathLike[str], name: str) -> 
     return folder
 
 
-def _symbols(model: Model) -> tuple[ca.SX, ca.SX, ca.SX, ca.SX]:
+@dataclass(frozen=True)
+class _Dae:
+    """An implicit DAE in its symbols.
+
+    Attributes:
+        x: states.
+        xdot: their derivatives.
+        u: controls.
+        z: algebraic states.
+        value: what is held at zero.
+        slopes: its derivatives with x, ẋ, u and z under the names that they have in acados' functions.
+    """
+
+    x: ca.SX
+    xdot: ca.SX
+    u: ca.SX
+    z: ca.SX
+    value: ca.SX
+    slopes: dict[str, ca.SX]
+
+
+def _dae(model: Model, moving: bool) -> _Dae:
+    return _dae_in_motion(model) if moving else _dae_at_rest(model)
+
+
+def _dae_at_rest(model: Model) -> _Dae:
     count = model.inputs.size
-    return ca.SX.sym("x", count), ca.SX.sym("xdot", count), ca.SX.sym("u", count), ca.SX.sym("z", model.size)
+    x = ca.SX.sym("x", count)
+    xdot = ca.SX.sym("xdot", count)
+    u = ca.SX.sym("u", count)
+    z = ca.SX.sym("z", model.size)
+    by_z, _ = model.jacobian(z, x)
+    identity = ca.SX.eye(count)
+    slopes = {
+        "jac_x": ca.vertcat(ca.SX(count, count), model.input_jacobian(z, x)),
+        "jac_xdot": ca.vertcat(identity, ca.SX(model.size, count)),
+        "jac_u": ca.vertcat(-identity, ca.SX(model.size, count)),
+        "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
+    }
+    value = ca.vertcat(xdot - u, ca.cse(model.residual(z, x)))
+    return _Dae(x, xdot, u, z, value, slopes)
 
 
-def _check(model: Model, name: str) -> None:
+def _dae_in_motion(model: Model) -> _Dae:
+    places = differential_places(model)
+    held = algebraic_places(model)
+    count = model.inputs.size
+    size = places.shape[1]
+    states = 2 * size + count
+    x = ca.SX.sym("x", states)
+    xdot = ca.SX.sym("xdot", states)
+    u = ca.SX.sym("u", count)
+    z = ca.SX.sym("z", held.shape[1])
+    position, velocity, inputs = ca.vertsplit(x, [0, size, 2 * size, states])
+    position_rate, acceleration, inputs_rate = ca.vertsplit(xdot, [0, size, 2 * size, states])
+    steady = ca.DM(count, 1)
+    at = [places @ position + held @ z, places @ velocity, places @ acceleration, inputs, u, steady]
+    residual = ca.cse(model.inverse_dynamics(*at))
+    stiffness, damping, mass, _ = model.dynamics_jacobian(*at)
+    by_inputs = ca.jacobian(residual, inputs)
+    by_rate = ca.jacobian(residual, u)
+    value = ca.vertcat(position_rate - velocity, residual, inputs_rate - u)
+    # Rows: the rates of the unknowns, the equations of motion, the rates of the inputs.
+    one = ca.SX.eye(size)
+    one_input = ca.SX.eye(count)
+    none = ca.SX(size, size)
+    slopes = {
+        "jac_x": ca.vertcat(
+            ca.horzcat(none, -one, ca.SX(size, count)),
+            ca.horzcat(stiffness @ places, damping @ places, by_inputs),
+            ca.SX(count, states),
+        ),
+        "jac_xdot": ca.vertcat(
+            ca.horzcat(one, none, ca.SX(size, count)),
+            ca.horzcat(ca.SX(model.size, size), mass @ places, ca.SX(model.size, count)),
+            ca.horzcat(ca.SX(count, 2 * size), one_input),
+        ),
+        "jac_u": ca.vertcat(ca.SX(size, count), by_rate, -one_input),
+        "jac_z": ca.vertcat(ca.SX(size, z.numel()), stiffness @ held, ca.SX(count, z.numel())),
+    }
+    return _Dae(x, xdot, u, z, value, slopes)
+
+
+def _check(model: Model, name: str, moving: bool) -> None:
     library_names(name)
     check_scalar(model)
     if not model.inputs.size:
         raise ExportError(Problem("inputs", "none is free: there is nothing to control", "name some in the scene"))
+    if moving:
+        check_movable(model)

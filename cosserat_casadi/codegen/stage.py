@@ -78,8 +78,19 @@ def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Functio
     """
     plain = written(_stage(model, name), name)
     slopes = written(_slopes(model, plain), f"jac_{name}")
+    return differentiated(plain, slopes, curvature)
+
+
+def differentiated(plain: ca.Function, slopes: ca.Function, curvature: bool) -> list[ca.Function]:
+    """A function and its Jacobian with its adjoint, and the Jacobian of that.
+
+    Args:
+        plain: the function.
+        slopes: its Jacobian, as CasADi takes it.
+        curvature: whether the Jacobian of the adjoint is exact.
+    """
     adjoint = plain.reverse(1)
-    second = adjoint.jacobian() if curvature else _bare(plain, slopes, adjoint)
+    second = adjoint.jacobian() if curvature else bare_second(plain, slopes, adjoint)
     return [plain, slopes, written(adjoint, adjoint.name()), written(second, f"jac_{adjoint.name()}")]
 
 
@@ -95,10 +106,15 @@ def written(function: ca.Function, name: str) -> ca.Function:
     return in_loops(whole)
 
 
+def poses_of(model: Model) -> dict[str, ca.Function]:
+    """The poses of tips and bodies, under the names that they have as results."""
+    poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
+    return poses | {f"body_{body}": pose for body, pose in model.body.items()}
+
+
 def _stage(model: Model, name: str) -> ca.Function:
     x, inputs = model.residual.mx_in()
-    poses = {f"tip_{rod}": tip for rod, tip in model.tip.items()}
-    poses |= {f"body_{body}": pose for body, pose in model.body.items()}
+    poses = poses_of(model)
     results = [model.residual(x, inputs)]
     for pose in poses.values():
         position, quaternion, _ = pose(x, inputs)
@@ -113,10 +129,10 @@ def _slopes(model: Model, plain: ca.Function) -> ca.Function:
     blocks = [model.jacobian(x, inputs)[0], model.input_jacobian(x, inputs)]
     for pose in poses:
         blocks += pose(x, inputs)
-    return _jacobian(plain, [x, inputs], blocks)
+    return jacobian_of(plain, [x, inputs], blocks)
 
 
-def _bare(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
+def bare_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
     """Jacobian of the adjoint with its multipliers; with x and inputs it is left empty."""
     symbols = adjoint.mx_in()
     blocks = slopes.call(symbols[: slopes.n_in()])
@@ -124,10 +140,10 @@ def _bare(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.F
     for i in range(plain.n_in()):
         rows += [ca.MX(plain.size1_in(i), symbol.numel()) for symbol in symbols[: slopes.n_in()]]
         rows += [block.T for block in blocks[i :: plain.n_in()]]
-    return _jacobian(adjoint, symbols, rows)
+    return jacobian_of(adjoint, symbols, rows)
 
 
-def _jacobian(function: ca.Function, symbols: Sequence[Matrix], blocks: Sequence[Matrix]) -> ca.Function:
+def jacobian_of(function: ca.Function, symbols: Sequence[Matrix], blocks: Sequence[Matrix]) -> ca.Function:
     """Blocks as the function that CasADi takes for a Jacobian: its outputs are inputs too, without an entry."""
     outputs = [ca.MX.sym(f"out_{name}", ca.Sparsity(*function.size_out(name))) for name in function.name_out()]
     words_in = [*function.name_in(), *[f"out_{name}" for name in function.name_out()]]

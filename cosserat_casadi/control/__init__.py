@@ -1,18 +1,29 @@
-"""Inverse problems and optimal control: what stands around an equilibrium, with the equilibrium as constraints."""
+"""Inverse problems and optimal control: what stands around the equations of rest or of motion, held as constraints."""
 
+from cosserat_casadi.control.condensing import Condensed, Condensing, Horizon
 from cosserat_casadi.control.embedding import Lifted, embedded, lifted
 from cosserat_casadi.control.inverse import Inverse, inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.target_errors import Gap
+from cosserat_casadi.motion.stage import MotionStage, motion_stage
+from cosserat_casadi.numerics.collocation import Collocation, gauss, radau
 
 __all__ = [
+    "Collocation",
+    "Condensed",
+    "Condensing",
     "Gap",
+    "Horizon",
     "Inverse",
     "Lifted",
+    "MotionStage",
     "embedded",
+    "gauss",
     "inverse",
     "inverse_scene",
     "lifted",
+    "motion_stage",
+    "radau",
     "stability_margin",
 ]

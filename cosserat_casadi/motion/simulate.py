@@ -305,17 +305,35 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
     if simulation is None:
         remedy = "add a table [simulation] with duration = 1.0 (s)"
         problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))
+    problems += immovable(model)
+    if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
+        what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
+        problems.append(Problem("simulation.integrator", what, "use 'radau'"))
+    if problems:
+        raise SceneError(*problems)
+
+
+def check_movable(model: Model) -> None:
+    """Refuse a model that has no motion.
+
+    Raises:
+        SceneError: with all that is wrong.
+    """
+    problems = immovable(model)
+    if problems:
+        raise SceneError(*problems)
+
+
+def immovable(model: Model) -> list[Problem]:
+    """What keeps a model from having a motion: rods without mass, a rotation without velocities."""
+    problems = []
     for index, rod in enumerate(model.discrete.rods.values()):
         if rod.properties.linear_density is None:
             problems.append(_without_mass(model.scene.rods[index], index))
     if model.scene.accuracy.rotation == "permuted":
         what = "'permuted', the literal linear system, has no velocities"
         problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
-    if simulation is not None and simulation.integrator == "gauss" and not all(model.discrete.unknowns.differential):
-        what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
-        problems.append(Problem("simulation.integrator", what, "use 'radau'"))
-    if problems:
-        raise SceneError(*problems)
+    return problems
 
 
 def _without_mass(rod: Rod, index: int) -> Problem:

@@ -17,6 +17,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import ExportError, Model, build, discretise
 from cosserat_casadi.codegen.acados import acados_expressions, acados_functions, write_acados
 from tests.conftest import ROOT
+from tests.control.swing import arm
 from tests.scenes import WEIGHT, push, scene
 
 COMPILER = next((found for word in ("cc", "gcc", "clang") if (found := shutil.which(word))), None)
@@ -135,10 +136,12 @@ from acados_template import AcadosModel, AcadosSim
 from acados_template.casadi_function_generation import GenerateContext, generate_c_code_implicit_ode
 from cosserat_casadi.codegen.acados import acados_expressions
 from tests.codegen.test_acados import wire
+from tests.control.swing import arm
 sim = AcadosSim(acados_path="/nowhere")
-acados_expressions(wire(), "wire").assign(sim.model)
+moving = sys.argv[2] == "moving"
+acados_expressions(arm() if moving else wire(), "wire", moving=moving).assign(sim.model)
 sim.model.make_consistent(sim.dims)
-assert (sim.dims.nx, sim.dims.nu, sim.dims.nz) == (3, 3, wire().size)
+assert (sim.dims.nx, sim.dims.nu, sim.dims.nz) == ((8, 2, 0) if moving else (3, 3, wire().size))
 options = {"generate_hess": False, "ext_fun_expand": False, "code_export_directory": "."}
 context = GenerateContext(sim.model.p_global, "wire", options)
 generate_c_code_implicit_ode(context, sim.model, "theirs")
@@ -146,14 +149,19 @@ context.finalize()
 """
 
 
+@pytest.mark.parametrize("moving", [False, True], ids=["at rest", "in motion"])
 @pytest.mark.skipif(not BUNDLED or COMPILER is None, reason="acados' generator comes with rockit")
-def test_functions_vs_those_acados_generates(tmp_path: Path) -> None:
+def test_functions_vs_those_acados_generates(tmp_path: Path, moving: bool) -> None:
     """Its generator takes the expressions; what it makes of them has the names, arguments and values of ours."""
-    model = wire()
+    model = arm() if moving else wire()
     template = BUNDLED / "external" / "interfaces" / "acados_template"
     code = f"import sys; sys.path.insert(0, {str(ROOT)!r})\n{GENERATE}"
     done = subprocess.run(
-        [sys.executable, "-c", code, str(template)], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", code, str(template), "moving" if moving else "at rest"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     files = sorted((tmp_path / "theirs").glob("*.c"))
@@ -161,14 +169,15 @@ def test_functions_vs_those_acados_generates(tmp_path: Path) -> None:
     library = tmp_path / "theirs.so"
     command = [COMPILER, "-O0", "-fPIC", "-shared", *files, "-o", library, "-lm"]
     subprocess.run([str(word) for word in command], check=True)
-    handle, at = ctypes.CDLL(str(library)), point(model)
-    arguments = [*at.values(), np.zeros(1), np.zeros(1)]
-    for ours in acados_functions(model, "wire"):
+    handle = ctypes.CDLL(str(library))
+    functions = acados_functions(model, "wire", moving=moving)
+    random = np.random.default_rng(5)
+    at = [0.3 * random.standard_normal(functions[0].size1_in(i)) for i in range(4)]
+    arguments = [*at, np.zeros(1), np.zeros(1)]
+    for ours in functions:
         theirs = CasadiFunction(handle, ours.name())
         assert (theirs.inputs, theirs.outputs) == (ours.n_in(), ours.n_out())
-        for found, value in zip(
-            theirs(arguments), ours.call([*map(ca.DM, at.values()), ca.DM(0), ca.DM(0, 1)]), strict=True
-        ):
+        for found, value in zip(theirs(arguments), ours.call([*map(ca.DM, at), ca.DM(0), ca.DM(0, 1)]), strict=True):
             assert_allclose(found, value.full(), rtol=1e-11, atol=1e-12, err_msg=ours.name())
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.control import swing
 from tests.control.quasi_static import IPOPT, LARGEST, RATE, STAGES, STEP, arrival, effort, optimum, robot
 
 with warnings.catch_warnings():
@@ -50,3 +51,39 @@ def test_do_mpc_vs_nlp() -> None:
     expected = optimum()
     assert_allclose(found, expected, rtol=0, atol=1e-6)
     assert_allclose(near.inputs + STEP * first[:, 0], expected[0], rtol=0, atol=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
+def test_do_mpc_vs_nlp_in_motion() -> None:
+    """Unknowns of a stage are algebraic states of a discrete system, the equations of motion their equation."""
+    wanted = swing.task()
+    stage = wanted.stage
+    described = do_mpc.model.Model("discrete", symvar_type="MX")
+    state = described.set_variable("_x", "state", shape=(stage.state_size, 1))
+    tensions = described.set_variable("_x", "tensions", shape=(2, 1))
+    rates = described.set_variable("_u", "rates", shape=(2, 1))
+    unknowns = described.set_variable("_z", "unknowns", shape=(stage.unknowns_size, 1))
+    described.set_rhs("state", stage.next_state(state, unknowns))
+    described.set_rhs("tensions", tensions + swing.STEP * rates)
+    described.set_alg("motion", stage.equations(state, unknowns, tensions, rates))
+    described.setup()
+    controller = do_mpc.controller.MPC(described)
+    controller.settings.n_horizon = swing.STAGES
+    controller.settings.t_step = swing.STEP
+    controller.settings.nlpsol_opts = swing.IPOPT
+    controller.set_objective(mterm=wanted.arrival(state, tensions), lterm=wanted.effort(rates))
+    controller.set_rterm(rates=0.0)
+    for side, largest_rate, tension in (("lower", -swing.RATE, 0.0), ("upper", swing.RATE, swing.LARGEST)):
+        controller.bounds[side, "_u", "rates"] = largest_rate
+        controller.bounds[side, "_x", "tensions"] = tension
+        controller.terminal_bounds[side, "tensions"] = tension
+    controller.setup()
+    start = np.concatenate([wanted.start, wanted.near.inputs])
+    controller.x0, controller.z0, controller.u0 = start, stage.still(wanted.near.x), np.zeros(2)
+    controller.set_initial_guess()
+    first = controller.make_step(start)
+    assert controller.solver_stats["success"]
+    expected = swing.optimum(wanted).tensions
+    assert_allclose(wanted.near.inputs + swing.STEP * first[:, 0], expected[1], rtol=0, atol=1e-6)
+    last = controller.opt_x_num["_x", swing.STAGES, 0, -1].full()[:, 0]
+    assert_allclose(last[-2:], expected[-1], rtol=0, atol=1e-6)

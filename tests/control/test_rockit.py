@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import solve
+from tests.control import swing
 from tests.control.quasi_static import IPOPT, LARGEST, RATE, STAGES, STEP, arrival, effort, optimum, robot
 
 with warnings.catch_warnings():
@@ -46,3 +47,29 @@ def test_rockit_vs_nlp(method: Callable[[], object]) -> None:
     pulled = np.asarray(found.sample(tensions, grid="control")[1])
     assert_allclose(pulled[1:], optimum(), rtol=0, atol=1e-6)
     assert solve(model, dict(zip(model.inputs.names, pulled[-1], strict=True)), start=near).converged
+
+
+def test_rockit_vs_nlp_in_motion() -> None:
+    """Stages are steps of a discrete system: next states are linear, unknowns of the stage are controls."""
+    wanted = swing.task()
+    stage = wanted.stage
+    ocp = rockit.Ocp(T=swing.STAGES * swing.STEP)
+    count = len(swing.TENDONS)
+    state, tensions = ocp.state(stage.state_size), ocp.state(count)
+    unknowns, rates = ocp.control(stage.unknowns_size), ocp.control(count)
+    ocp.set_next(state, stage.next_state(state, unknowns))
+    ocp.set_next(tensions, tensions + swing.STEP * rates)
+    ocp.subject_to(stage.equations(state, unknowns, tensions, rates) == 0, include_last=False)
+    ocp.subject_to(ocp.at_t0(state) == wanted.start)
+    ocp.subject_to(ocp.at_t0(tensions) == wanted.near.inputs)
+    ocp.subject_to(tensions >= 0, include_first=False)
+    ocp.subject_to(tensions <= swing.LARGEST, include_first=False)
+    ocp.subject_to(rates >= -swing.RATE, include_last=False)
+    ocp.subject_to(rates <= swing.RATE, include_last=False)
+    ocp.add_objective(ocp.sum(wanted.effort(rates)) + ocp.at_tf(wanted.arrival(state, tensions)))
+    ocp.set_initial(state, wanted.start)
+    ocp.set_initial(tensions, wanted.near.inputs)
+    ocp.solver("ipopt", swing.IPOPT)
+    ocp.method(rockit.MultipleShooting(N=swing.STAGES))
+    pulled = np.asarray(ocp.solve().sample(tensions, grid="control")[1])
+    assert_allclose(pulled, swing.optimum(wanted).tensions, rtol=0, atol=1e-6)

@@ -1,0 +1,171 @@
+"""A stage of an optimal-control problem in motion, compiled, with the derivatives that its solver asks for.
+
+As in :mod:`stage` whole Jacobians are functions in C. Those of the equations are made of the derivatives of inverse
+dynamics at every instant, K with x, C with v, M with a: with the tables A, A² and the nodes c of the method
+
+    ∂R_i/∂x₀ = K, ∂R_i/∂(h v₀) = c_i K + C/h, ∂R_i/∂(h² a_j) = (A²)_ij K + A_ij C/h + δ_ij M/h²,
+
+and of an algebraic entry ∂R_i/∂z_j = δ_ij K. Poses are a function of their own: their second derivatives then do not
+evaluate the equations of motion.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.stage import bare_second, differentiated, jacobian_of, poses_of, written
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.motion.stage import MotionStage
+
+
+@dataclass(frozen=True)
+class CompiledMotionStage:
+    """What a solver evaluates of a stage in motion, in C.
+
+    Attributes:
+        equations: (state, unknowns, inputs, inputs_rate) ↦ residual, that of :attr:`MotionStage.equations`.
+        poses: (state, inputs) ↦ for every rod and body ``tip_…`` or ``body_…``, shape (7,): position, m, and
+            quaternion w x y z.
+    """
+
+    equations: ca.Function
+    poses: ca.Function
+
+
+def compiled_motion_stage(
+    stage: MotionStage,
+    name: str = "stage",
+    *,
+    curvature: bool = False,
+    compiler: str | None = None,
+    progress: Progress | None = None,
+) -> CompiledMotionStage:
+    """The equations of a stage in motion and its poses, compiled once, with compiled derivatives.
+
+    Args:
+        stage: the stage.
+        name: what the functions begin with, a C identifier.
+        curvature: as in :func:`compiled_stage`: whether second derivatives are exact. Those of the equations of motion
+            have several hundred times as many instructions as the equations: for models of a few unknowns.
+        compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
+        progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
+
+    Raises:
+        ExportError: the name is no C identifier, there is no compiler, or it fails.
+    """
+    library_names(name)
+    found = find_compiler(compiler)
+    equations = equations_functions(stage, f"{name}_equations", curvature)
+    poses = poses_functions(stage, f"{name}_poses", curvature)
+    texts: dict[str, str] = {}
+    for function in (*equations, *poses):
+        texts |= sources([function], function.name(), "long long int")
+    library = os.fspath(compiled_texts(name, texts, found, progress=progress))
+    return CompiledMotionStage(ca.external(equations[0].name(), library), ca.external(poses[0].name(), library))
+
+
+def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:
+    """The equations, their Jacobian, their adjoint and its Jacobian, named as ``casadi.external`` looks for them.
+
+    Args:
+        stage: the stage.
+        name: what the equations are called.
+        curvature: whether the last one is exact.
+    """
+    inverse_dynamics = written(stage.model.inverse_dynamics, f"{name}_at_instant")
+    plain = stage.equations_by(inverse_dynamics, name)
+    slopes = _equations_jacobian(stage, plain)
+    adjoint = plain.reverse(1)
+    second = adjoint.jacobian() if curvature else bare_second(plain, slopes, adjoint)
+    return [plain, slopes, adjoint, second]
+
+
+def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:
+    """As :func:`equations_functions`, of the poses of tips and bodies."""
+    model = stage.model
+    state, _, inputs, _ = stage.symbols
+    x = stage.x(state)
+    poses = poses_of(model)
+    results = []
+    for pose in poses.values():
+        position, quaternion, _ = pose(x, inputs)
+        results.append(ca.vertcat(position, quaternion))
+    whole = ca.Function(name, [state, inputs], results, ["state", "inputs"], [*poses])
+    plain = written(whole, name)
+    blocks = []
+    for slope in [*model.tip_jacobian.values(), *model.body_jacobian.values()]:
+        by_x, by_inputs = slope(x, inputs)
+        blocks += [_by_state(stage, by_x, 0.0 * by_x), by_inputs]
+    slopes = written(jacobian_of(plain, [state, inputs], blocks), f"jac_{name}")
+    return differentiated(plain, slopes, curvature)
+
+
+def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
+    """∂ residual / ∂ (state, unknowns, inputs, rates) from K, C and M at every instant."""
+    method = stage.method
+    tangents = _tangents(stage, f"{plain.name()}_tangents")
+    input_slopes = _input_slopes(stage, f"{plain.name()}_input_slopes")
+    arguments = stage.symbols
+    state, unknowns, inputs, rate = arguments
+    moving = stage.instants(state, unknowns)
+    rows = []
+    for i in range(method.stages):
+        now = stage.inputs_at(i, inputs, rate)
+        at = [moving.x[i], moving.v[i], moving.a[i], now, rate]
+        stiffness, damping, mass = tangents.call(at, False, True)
+        by_inputs, by_rate = input_slopes.call(at, False, True)
+        damping = damping / stage.duration
+        mass = mass / stage.duration**2
+        by_state = ca.horzcat(stiffness @ stage.places, (float(method.nodes[i]) * stiffness + damping) @ stage.places)
+        by_unknowns = []
+        for j in range(method.stages):
+            block = _columns(stage, method.matrix_squared[i, j], float(i == j), stiffness)
+            block += float(method.matrix[i, j]) * damping
+            if i == j:
+                block += mass
+            by_unknowns.append(block)
+        by_rate = by_rate + float(method.nodes[i]) * stage.duration * by_inputs
+        rows.append([by_state, ca.horzcat(*by_unknowns), by_inputs, by_rate])
+    blocks = [ca.vertcat(*[row[k] for row in rows]) for k in range(len(arguments))]
+    return jacobian_of(plain, arguments, blocks)
+
+
+def _tangents(stage: MotionStage, name: str) -> ca.Function:
+    """(x, v, a, inputs, inputs_rate) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a of inverse dynamics at an instant."""
+    jacobian = stage.model.dynamics_jacobian
+    arguments = jacobian.mx_in()
+    steady = ca.DM(stage.model.inputs.size, 1)
+    matrices = jacobian(*arguments[:-1], steady)[:3]
+    function = ca.Function(name, arguments[:-1], matrices, jacobian.name_in()[:-1], jacobian.name_out()[:3])
+    return written(function, name)
+
+
+def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
+    """(x, v, a, inputs, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂inputs_rate of inverse dynamics at an instant."""
+    plain = stage.model.inverse_dynamics
+    arguments = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
+    # Of scalars only what reads an input is differentiated: a matrix would be as a whole.
+    residual = ca.cse(plain(*arguments, ca.DM(stage.model.inputs.size, 1)))
+    slopes = [ca.jacobian(residual, argument) for argument in arguments[-2:]]
+    words = ["by_inputs", "by_rate"]
+    return written(ca.Function(name, arguments, slopes, plain.name_in()[:-1], words), name)
+
+
+def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:
+    """The stiffness with its columns of differential and of algebraic entries multiplied by a number each."""
+    if np.all(stage.differential):
+        return float(differential) * stiffness
+    weights: FloatArray = np.where(stage.differential, differential, algebraic)
+    return stiffness @ ca.diag(ca.DM(weights))
+
+
+def _by_state(stage: MotionStage, by_x: Matrix, by_v: Matrix) -> Matrix:
+    """Derivatives with x and with h v as derivatives with the state."""
+    return ca.horzcat(by_x @ stage.places, by_v @ stage.places)

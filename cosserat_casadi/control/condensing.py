@@ -1,0 +1,145 @@
+"""A horizon of stages in motion, linearised, with its states as functions of the rates of the inputs alone.
+
+Newton's method on all stages at once takes the unknowns of each from its linearised equations of motion, and the
+states from one stage to the next: lifted Newton's method with condensing, J. Albersmeyer and M. Diehl, *SIAM J. Optim.*
+20 (2010) 1655, and H. G. Bock, K.-J. Plitt, *IFAC Proceedings Volumes* 17 (1984) 1603. What is left for a quadratic
+problem are the rates: a few numbers a stage, however many unknowns the rods have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.stage import MotionStage
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """A guess of a motion over N stages; its stages need not meet, and its equations need not hold.
+
+    Attributes:
+        states: at the ends of all stages, shape (N + 1, state_size); the first one is given.
+        unknowns: of all stages, shape (N, unknowns_size).
+    """
+
+    states: FloatArray
+    unknowns: FloatArray
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """The horizon linearised about a guess.
+
+    Attributes:
+        guess: the guess.
+        residual: largest entry of the equations of motion, and of the gaps between stages, at the guess.
+        states_by_rates: ∂ states / ∂ steered rates of all stages, shape (N + 1, state_size, N · steered).
+        states_by_inputs: ∂ states / ∂ all inputs at the beginning, which then move on from there, shape (N + 1,
+            state_size, inputs).
+        states_shift: change of the states that closes the guess at its own rates, shape (N + 1, state_size).
+        unknowns_by_rates: the same of the unknowns, shape (N, unknowns_size, N · steered).
+        unknowns_shift: shape (N, unknowns_size).
+    """
+
+    guess: Horizon
+    residual: float
+    states_by_rates: FloatArray
+    states_by_inputs: FloatArray
+    states_shift: FloatArray
+    unknowns_by_rates: FloatArray
+    unknowns_shift: FloatArray
+
+    def moved(self, change: FloatArray) -> Horizon:
+        """The motion, to first order, when the steered rates change.
+
+        Args:
+            change: of the rates, stage by stage, shape (N · steered,), units per second.
+        """
+        states = self.guess.states + self.states_shift + self.states_by_rates @ change
+        unknowns = self.guess.unknowns + self.unknowns_shift + self.unknowns_by_rates @ change
+        return Horizon(states, unknowns)
+
+
+class Condensing:
+    """Linearises a horizon.
+
+    Args:
+        stage: every stage of it.
+        equations: those of the stage, compiled or not.
+        stages: number of stages N.
+        steered: numbers of the inputs whose rates are to be chosen; the others move as given.
+    """
+
+    def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+        self._stage = stage
+        self._stages = stages
+        self._steered = list(steered)
+        arguments = stage.symbols
+        slopes = equations.jacobian()(*arguments, ca.DM(stage.unknowns_size, 1))
+        results = [equations(*arguments), *slopes]
+        self._widths = [result.shape[1] for result in results]
+        column = ca.vertcat(*[ca.vec(ca.densify(result)) for result in results])
+        self._evaluate = RepeatedCall(ca.Function("stages", arguments, [column]).map(stages))
+        self._transition = stage.transition.full()
+        self._drive = stage.drive.full()
+
+    def condensed(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> Condensed:
+        """The horizon linearised about a guess.
+
+        Args:
+            guess: states and unknowns.
+            inputs: at the beginnings of all stages, shape (N, inputs).
+            inputs_rate: in them, shape (N, inputs), units per second.
+
+        Raises:
+            numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
+        """
+        unsolved, by_state, by_unknowns, by_inputs, by_rate = self._linearised(guess, inputs, inputs_rate)
+        size = self._stage.state_size
+        count = len(self._steered)
+        right = [unsolved, by_state, by_inputs, by_rate[:, :, self._steered]]
+        solved = -np.linalg.solve(by_unknowns, np.concatenate(right, axis=2))
+        moving = inputs.shape[1]
+        alone, with_state, with_inputs, with_rate = np.split(solved, [1, 1 + size, 1 + size + moving], axis=2)
+        gaps = guess.states[:-1] @ self._transition.T + guess.unknowns @ self._drive.T - guess.states[1:]
+
+        states_by_rates = np.zeros((self._stages + 1, size, self._stages * count))
+        states_by_inputs = np.zeros((self._stages + 1, size, moving))
+        states_shift = np.zeros((self._stages + 1, size))
+        unknowns_by_rates = np.zeros((self._stages, self._stage.unknowns_size, self._stages * count))
+        unknowns_shift = np.zeros((self._stages, self._stage.unknowns_size))
+        for k in range(self._stages):
+            here = slice(k * count, (k + 1) * count)
+            unknowns_by_rates[k] = with_state[k] @ states_by_rates[k]
+            # Inputs at the beginning of a stage are the sum of what all rates before it have made of them.
+            unknowns_by_rates[k, :, : k * count] += self._stage.duration * np.tile(with_inputs[k][:, self._steered], k)
+            unknowns_by_rates[k, :, here] += with_rate[k]
+            unknowns_shift[k] = alone[k, :, 0] + with_state[k] @ states_shift[k]
+            states_by_rates[k + 1] = self._transition @ states_by_rates[k] + self._drive @ unknowns_by_rates[k]
+            unknowns_by_inputs = with_inputs[k] + with_state[k] @ states_by_inputs[k]
+            states_by_inputs[k + 1] = self._transition @ states_by_inputs[k] + self._drive @ unknowns_by_inputs
+            states_shift[k + 1] = self._transition @ states_shift[k] + self._drive @ unknowns_shift[k] + gaps[k]
+        worst = max(float(np.abs(unsolved).max()), float(np.abs(gaps).max()))
+        return Condensed(
+            guess=guess,
+            residual=worst,
+            states_by_rates=states_by_rates,
+            states_by_inputs=states_by_inputs,
+            states_shift=states_shift,
+            unknowns_by_rates=unknowns_by_rates,
+            unknowns_shift=unknowns_shift,
+        )
+
+    def _linearised(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> list[FloatArray]:
+        """Residual of the equations of all stages and their derivatives, each of shape (N, unknowns_size, columns)."""
+        arguments = [guess.states[:-1], guess.unknowns, inputs, inputs_rate]
+        columns = self._evaluate(*[argument.ravel() for argument in arguments])
+        # Entries stand by columns, one stage after the other.
+        stages = columns.reshape(self._stages, -1, self._stage.unknowns_size).transpose(0, 2, 1)
+        return np.split(stages, np.cumsum(self._widths)[:-1], axis=2)

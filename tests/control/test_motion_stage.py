@@ -1,0 +1,163 @@
+"""A stage in motion against the simulator: the same equations, and an optimum that replays to Newton's tolerance."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import SceneError, build, compiled_motion_stage, scene_from_dict
+from cosserat_casadi.control import Collocation, gauss, motion_stage, radau
+from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.step import end_of, stages_of
+from tests.codegen.test_load import cached, needs_compiler
+from tests.control.swing import LARGEST, RATE, STAGES, STEP, TENDONS, optimum, replayed, task
+from tests.moving_scenes import FAMILIES, drawn_state, model_of
+
+METHODS = [radau(1), radau(2), radau(3), gauss(1), gauss(2)]
+
+
+def name_of(method: Collocation) -> str:
+    return method.name
+
+
+@pytest.mark.parametrize("method", METHODS, ids=name_of)
+@pytest.mark.parametrize("family", ["kirchhoff", "moving base"])
+def test_equations_vs_those_of_the_simulator(family: str, method: Collocation) -> None:
+    compare_with_the_simulator(family, method)
+
+
+@pytest.mark.parametrize("method", METHODS[:3], ids=name_of)
+@pytest.mark.parametrize("family", ["clamped tip", "given length"])
+def test_equations_with_algebraic_entries_vs_those_of_the_simulator(family: str, method: Collocation) -> None:
+    compare_with_the_simulator(family, method)
+
+
+def compare_with_the_simulator(family: str, method: Collocation) -> None:
+    """Any values of state and unknowns: residuals at the instants, and the end of the step."""
+    model = model_of(family)
+    differential = model.discrete.unknowns.differential
+    duration = 0.02
+    stage = motion_stage(model, duration, method)
+    drawn = drawn_state(model)
+    start = Instant(0.0, drawn.x, np.where(differential, drawn.v, 0.0), 0.0 * drawn.x)
+    unknowns = np.random.default_rng(1).standard_normal((method.stages, model.size))
+    stages = stages_of(method, differential, start, duration, unknowns)
+    steady = np.zeros(model.inputs.size)
+    rows = []
+    for i in range(method.stages):
+        inputs = drawn.inputs + stages.times[i] * drawn.inputs_rate
+        at = stages.x[i], stages.v[i], stages.a[i], inputs, drawn.inputs_rate, steady
+        rows.append(model.inverse_dynamics(*at).full()[:, 0])
+    scaled = np.where(differential, duration**2 * unknowns, unknowns).ravel()
+    state = stage.state(start.x, start.v)
+    found = stage.equations(state, scaled, drawn.inputs, drawn.inputs_rate).full()[:, 0]
+    assert_allclose(found, np.concatenate(rows), rtol=1e-10, atol=1e-11)
+    end = end_of(method, differential, start, duration, unknowns, duration)
+    following = stage.next_state(state, scaled).full()[:, 0]
+    assert_allclose(following, stage.state(end.x, end.v), rtol=1e-13, atol=1e-14)
+    assert_allclose(stage.transition @ state + stage.drive @ scaled, following[:, None], rtol=1e-13, atol=1e-14)
+    assert_allclose(stage.x(ca.DM(following)).full()[differential, 0], end.x[differential], rtol=1e-13, atol=1e-14)
+    assert_allclose(stage.v(ca.DM(following)).full()[:, 0], end.v, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize("method", [radau(1), radau(2), gauss(2)], ids=name_of)
+def test_an_optimum_replays_in_the_simulator(method: Collocation) -> None:
+    wanted = task(method)
+    found = optimum(wanted)
+    rates = np.diff(found.tensions, axis=0) / STEP
+    assert found.tensions.min() >= -1e-7
+    assert found.tensions.max() <= LARGEST + 1e-7
+    # Both bounds are active somewhere: the tip is asked to move fast.
+    assert_allclose(np.abs(rates).max(), RATE, rtol=1e-6, atol=0)
+    assert_allclose(found.tensions.max(), LARGEST, rtol=1e-6, atol=0)
+    assert_allclose(replayed(wanted, found.tensions, method), found.states, rtol=0, atol=1e-9)
+    tip = wanted.stage.model.tip["arm"](wanted.stage.x(found.states[-1]), found.tensions[-1])[0].full()[:, 0]
+    assert tip[0] > 0.1
+    half = wanted.stage.state_size // 2
+    assert np.abs(found.states[-1, half:]).max() < 0.5 * np.abs(found.states[STAGES // 2, half:]).max()
+
+
+@needs_compiler
+def test_fatrop_vs_ipopt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Variables and constraints stage by stage: the next state is linear, the equations of motion follow its gap."""
+    cached(tmp_path, monkeypatch)
+    wanted = task()
+    stage = wanted.stage
+    compiled = compiled_motion_stage(stage, "arm_stage")
+    count = len(TENDONS)
+    states = [ca.MX.sym(f"state_{k}", stage.state_size) for k in range(STAGES + 1)]
+    tensions = [ca.MX.sym(f"tensions_{k}", count) for k in range(STAGES + 1)]
+    free = np.inf * np.ones(stage.unknowns_size)
+    variables: list[ca.MX] = []
+    lower: list[float] = []
+    upper: list[float] = []
+    start: list[float] = []
+    constraints: list[ca.MX] = []
+    cost = ca.MX(0)
+    for k in range(STAGES):
+        unknowns = ca.MX.sym(f"unknowns_{k}", stage.unknowns_size)
+        rates = ca.MX.sym(f"rates_{k}", count)
+        variables += [states[k], tensions[k], unknowns, rates]
+        held = [-np.inf, np.inf] if k == 0 else [0.0, LARGEST]
+        lower += [*[-np.inf] * stage.state_size, *[held[0]] * count, *-free, *[-RATE] * count]
+        upper += [*[np.inf] * stage.state_size, *[held[1]] * count, *free, *[RATE] * count]
+        start += [*wanted.start, *wanted.near.inputs, *stage.still(wanted.near.x), *[0.0] * count]
+        constraints.append(states[k + 1] - stage.next_state(states[k], unknowns))
+        constraints.append(tensions[k + 1] - tensions[k] - STEP * rates)
+        if k == 0:
+            constraints += [states[k] - wanted.start, tensions[k] - wanted.near.inputs]
+        constraints.append(compiled.equations(states[k], unknowns, tensions[k], rates))
+        cost += wanted.effort(rates)
+    variables += [states[-1], tensions[-1]]
+    lower += [*[-np.inf] * stage.state_size, *[0.0] * count]
+    upper += [*[np.inf] * stage.state_size, *[LARGEST] * count]
+    start += [*wanted.start, *wanted.near.inputs]
+
+    def tip(state: ca.MX, pulled: ca.MX) -> ca.MX:
+        return compiled.poses(state, pulled)[:3]
+
+    cost += wanted.arrival(states[-1], tensions[-1], tip)
+    problem = {"x": ca.vertcat(*variables), "f": cost, "g": ca.vertcat(*constraints)}
+    first = stage.state_size + count
+    stages = {
+        "N": STAGES,
+        "nx": [first] * (STAGES + 1),
+        "nu": [stage.unknowns_size + count] * STAGES + [0],
+        "ng": [stage.unknowns_size + first] + [stage.unknowns_size] * (STAGES - 1) + [0],
+    }
+    options = {"structure_detection": "manual", **stages, "equality": [True] * problem["g"].numel()}
+    settings = {"fatrop.print_level": 0, "fatrop.tol": 1e-9, "print_time": False}
+    solver = ca.nlpsol("solver", "fatrop", problem, {**options, **settings})
+    found = solver(x0=start, lbx=lower, ubx=upper, lbg=0, ubg=0)["x"]
+    assert solver.stats()["success"]
+    pulled = ca.Function("pulled", [problem["x"]], [ca.horzcat(*tensions).T])(found).full()
+    moved = ca.Function("moved", [problem["x"]], [ca.horzcat(*states).T])(found).full()
+    assert_allclose(pulled, optimum(wanted).tensions, rtol=0, atol=1e-5)
+    assert_allclose(replayed(wanted, pulled, stage.method), moved, rtol=0, atol=1e-7)
+
+
+def test_stages_of_a_rod_at_rest_stay_at_rest() -> None:
+    wanted = task()
+    stage = wanted.stage
+    unknowns = stage.still(wanted.near.x)
+    still = np.zeros(stage.model.inputs.size)
+    assert_allclose(stage.next_state(wanted.start, unknowns).full()[:, 0], wanted.start, rtol=0, atol=0)
+    residual = stage.equations(wanted.start, unknowns, wanted.near.inputs, still)
+    assert_allclose(residual, 0.0, rtol=0, atol=1e-11)
+
+
+def test_what_cannot_move_is_refused() -> None:
+    held = model_of("clamped tip")
+    with pytest.raises(SceneError, match=r"duration: 0\.0 s is no positive time") as refused:
+        motion_stage(held, 0.0, gauss(2))
+    assert "Gauss, stages 2 does not converge" in str(refused.value)
+    tables = FAMILIES["planar"]()
+    del tables["rods"][0]["linear_density"]
+    del tables["rods"][0]["rotary_inertia"]
+    del tables["rods"][0]["damping"]
+    with pytest.raises(SceneError, match="'a' has no mass"):
+        motion_stage(build(scene_from_dict(tables), moving=True), 0.1)
