@@ -29,7 +29,7 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.inertia import RodInertia, section_masses
+from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
@@ -134,6 +134,13 @@ class System:
             if masses is not None:
                 inertias[name] = RodInertia(motion, masses)
         return inertias
+
+    def inertia_of(self, rod: str) -> RodInertia:
+        """Inertia of a rod in motion, be it that of a rod without mass, which stores nothing."""
+        if rod in self.inertias:
+            return self.inertias[rod]
+        motion = self.motions[rod]
+        return RodInertia(motion, SectionMasses(np.zeros(motion.rod.grid.size), {}))
 
     @cached_property
     def viscosities(self) -> dict[str, Viscosity]:
@@ -359,7 +366,7 @@ class System:
     def _rod_loads(self, rod: str) -> RodLoads:
         base = RodBase(self.base(rod).position, self._base_R_world(rod))
         ratio = ratio_of(self.discrete, rod, self.arguments)
-        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio)
+        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, self.motions.get(rod))
 
     @cached_property
     def cable_lengths(self) -> dict[str, CableLength]:

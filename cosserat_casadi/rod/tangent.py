@@ -165,9 +165,12 @@ class Tangent:
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
         grid = self.rod.grid
-        integrate = ca.DM(grid.integration_matrix)
+        integrate = ca.DM(grid.integration_matrix[load.nodes])
         moved = [integrate @ component for component in ca.vertsplit(self.tangent, grid.size)]
-        return ca.vertcat(*moved, self._with_linear_columns(self.rotation))
+        turned = self.rotation
+        if not load.everywhere:
+            turned = ca.vertcat(*[component[load.nodes, :] for component in ca.vertsplit(turned, grid.size)])
+        return ca.vertcat(*moved, self._with_linear_columns(turned))
 
     def wrench_variation(self, load: LoadedSections) -> Matrix:
         """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""

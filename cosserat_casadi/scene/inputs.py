@@ -22,8 +22,8 @@ class InputField:
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
         lower: least value that each number can have by what it is; None where there is none.
-        axes: axes of the components: "none" of a number, those of the world, or "frame" for those that the record's
-            own ``frame`` names.
+        axes: axes of the components: "none" of a number, those of the world or of the section, or "frame" for those
+            that the record's own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
             must have a velocity.
         continuous: whether its path in a motion must not jump: it prescribes a length.
@@ -35,7 +35,7 @@ class InputField:
     positive: bool = False
     nonzero: bool = False
     lower: float | None = None
-    axes: Literal["none", "world", "frame"] = "none"
+    axes: Literal["none", "world", "section", "frame"] = "none"
     geometry: bool = False
     continuous: bool = False
 
