@@ -434,7 +434,8 @@ def is_dead_force(discrete: DiscreteScene, load: scenes.Load) -> bool:
 
 
 def _is_dead_force(kernel: TracedLoad, values: Mapping[str, Matrix]) -> bool:
-    if kernel.follower or not kernel.pose_free:
+    # What depends on rates may be nothing at rest, and do work in motion.
+    if kernel.follower or not kernel.pose_free or kernel.moving is not None:
         return False
     _, moment = kernel.coefficients(values)
     return moment is None

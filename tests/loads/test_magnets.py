@@ -108,7 +108,7 @@ def with_tip_magnet(**field: Any) -> dict[str, Any]:
 FIELDS: dict[str, dict[str, Any]] = {
     "uniform": {"field": [0.4, 1.0, -0.6]},
     "gradient": {"gradient": [[1.0, 0.5, 0.2], [0.5, -3.0, 0.4], [0.2, 0.4, 2.0]]},
-    "dipole": {"dipole": {"position": SOURCE.tolist(), "moment": (1e5 * SOURCE_MOMENT).tolist()}},
+    "dipole": {"dipole": {"position": SOURCE.tolist(), "moment": (2e3 * SOURCE_MOMENT).tolist()}},
 }
 FIELDS["all"] = {key: value for field in FIELDS.values() for key, value in field.items()}
 
@@ -116,7 +116,7 @@ FIELDS["all"] = {key: value for field in FIELDS.values() for key, value in field
 def field_at(place: np.ndarray, given: dict[str, Any]) -> np.ndarray:
     field = np.array(given.get("field", np.zeros(3))) + np.array(given.get("gradient", np.zeros((3, 3)))) @ place
     if "dipole" in given:
-        field = field + dipole_field(place, SOURCE, 1e5 * SOURCE_MOMENT)
+        field = field + dipole_field(place, SOURCE, 2e3 * SOURCE_MOMENT)
     return field
 
 
@@ -127,7 +127,7 @@ def test_force_and_moment_of_a_dipole_vs_differences_of_its_energy(name: str) ->
     assert solution.converged
     tip = solution.tip()
     place, moment = tip.position[0], tip.rotation[0] @ [0.3, -0.2, 0.8]
-    step = 1e-5
+    step = 2e-6
     force = [
         moment @ (field_at(place + step * unit, given) - field_at(place - step * unit, given)) / (2 * step)
         for unit in np.eye(3)
@@ -149,9 +149,9 @@ def test_force_between_dipoles_on_one_axis() -> None:
 
 def test_a_source_that_moves_is_an_input() -> None:
     names = ["magnet.dipole.position", "magnet.dipole.moment"]
-    source = {"position": SOURCE.tolist(), "moment": (1e5 * SOURCE_MOMENT).tolist()}
+    source = {"position": SOURCE.tolist(), "moment": (2e3 * SOURCE_MOMENT).tolist()}
     free = build(scene(with_tip_magnet(dipole=source), accuracy=FEW, inputs=names))
-    moved, turned = SOURCE + [0.1, 0.05, 0.0], 1e5 * SOURCE_MOMENT[::-1]
+    moved, turned = SOURCE + np.array([0.1, 0.05, 0.0]), 2e3 * SOURCE_MOMENT[::-1]
     elsewhere = {"position": moved.tolist(), "moment": turned.tolist()}
     fixed = build(scene(with_tip_magnet(dipole=elsewhere), accuracy=FEW, inputs=[]))
     assert [entry.unit for entry, _ in free.inputs] == ["m", "A m²"]
@@ -191,8 +191,10 @@ def plate(load: dict[str, Any]) -> dict[str, Any]:
 
 def test_a_magnet_on_a_body_vs_one_on_the_tip_that_holds_it() -> None:
     body = {"name": "magnet", "kind": "magnet", "body": "plate", "moment": [0.3, -0.2, 0.8], "position": [0, 0, -0.1]}
-    on_body = solve(build(scene_from_dict(plate({**body, **FIELDS["all"]}))))
-    on_tip = solve(build(scene(with_tip_magnet(**FIELDS["all"]), accuracy=FEW)))
+    # Weak enough that the source does not draw the body off while its joint is still limp.
+    weak = {**FIELDS["all"], "dipole": {"position": SOURCE.tolist(), "moment": (4e2 * SOURCE_MOMENT).tolist()}}
+    on_body = solve(build(scene_from_dict(plate({**body, **weak}))))
+    on_tip = solve(build(scene(with_tip_magnet(**weak), accuracy=FEW)))
     assert on_body.converged
     assert_allclose(on_body.tip().position, on_tip.tip().position, rtol=0, atol=1e-10)
     assert_allclose(on_body.base_wrench().moment, on_tip.base_wrench().moment, rtol=0, atol=1e-9)
@@ -203,18 +205,18 @@ def test_what_a_field_does_not_have_costs_nothing() -> None:
     (load,) = scene(magnet(field=[0.1, 0.2, 0.3])).loads
     trace = traced(EFFECTS["magnet"], load, {"field": ca.DM([0.1, 0.2, 0.3])}, data_size=1)
     assert trace.kernel.wrench.nnz_out(0) == 0
-    assert trace.kernel.stiffness.sparsity_out(0)[:, :3].nnz() == 0
-    assert trace.kernel.stiffness.sparsity_out(0)[:3, :].nnz() == 0
+    stiffness = np.array(ca.DM(trace.kernel.stiffness.sparsity_out(0), 1.0))
+    assert np.count_nonzero(stiffness) == np.count_nonzero(stiffness[3:, 3:]) > 0
     assert trace.moving is None
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({}, "field: missing; give field, gradient or dipole"),
+    ({}, r"field: missing \(give field, gradient or dipole\)"),
     ({"field": [0, 20, 0], "rod": None}, "rod: missing"),
     ({"field": [0, 2000.0, 0]}, r"field\[1\]: must be at most 100 T, got 2000"),
     ({"field": [0, 0.1, 0], "moment": [0, 0, 1]}, "moment: stands beside magnetisation"),
     ({"field": [0, 0.1, 0], "magnetisation": [0, 0, 0]}, "magnetisation: must not be zero"),
-    ({"field": [0, 0.1, 0], "magnetisation": None}, "magnetisation: missing; give magnetisation or moment"),
+    ({"field": [0, 0.1, 0], "magnetisation": None}, r"magnetisation: missing \(give magnetisation or moment\)"),
     ({"field": [0, 0.1, 0], "magnetisation": None, "moment": [0, 0, 0]}, "moment: must not be zero"),
     ({"field": [0, 0.1, 0], "at": 0.5}, "at: stands without moment"),
     ({"field": [0, 0.1, 0], "position": [0, 0, 0.1]}, "position: is a point of a body"),
