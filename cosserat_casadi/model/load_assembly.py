@@ -188,9 +188,12 @@ def _numbers(field: Matrix) -> FloatArray:
 
 
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
-    """Indices of the inputs of loads that depend on poses: the equations need not be linear in them."""
+    """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
     indices: list[int] = []
+    for entry, span in layout:
+        if entry.declared.nonlinear:
+            indices.extend(range(span.start, span.stop))
     for load in discrete.scene.loads:
         free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
         if not free:
@@ -444,6 +447,22 @@ def _is_dead_force(kernel: TracedLoad, values: Mapping[str, Matrix]) -> bool:
 # Actuators
 
 
+def actuators_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
+    """Whether the forces of all actuators of a scene are gradients at these inputs."""
+    values = load_values(discrete.scene, discrete.layout, inputs)
+    for actuator in discrete.scene.actuators:
+        member = EFFECTS[actuator.kind]
+        # Inputs that are zero leave no entry: a direction of friction that is zero rubs nowhere.
+        numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[actuator.name].items()}
+        without_effort = not member.prescribes_conjugate(actuator) and not numbers[member.effort].nnz()
+        rod = discrete.rods[actuator.rod]
+        quantity = member.worked_on(actuator, rod.grid, numbers)
+        unloaded = shape(rod, ca.DM.zeros(rod.size))
+        if not without_effort and not quantity.on(unloaded).conservative:
+            return False
+    return True
+
+
 def rod_actuation(discrete: DiscreteScene, rod: str, inputs: Matrix) -> list[Actuation]:
     """Efforts on one rod that the scene or its inputs give."""
     actuation = []
@@ -454,6 +473,7 @@ def rod_actuation(discrete: DiscreteScene, rod: str, inputs: Matrix) -> list[Act
             continue
         effort = input_value(discrete.layout, actuator, member.effort, inputs)
         if effort is not None:
-            quantity = member.quantity(actuator, discrete.rods[rod].grid)
+            values = input_values(discrete.layout, actuator, inputs)
+            quantity = member.worked_on(actuator, discrete.rods[rod].grid, values)
             actuation.append(Actuation(quantity, member.energy_sign * effort))
     return actuation

@@ -315,6 +315,20 @@ class Tangent:
         return sum(parts[1:], parts[0]) / -self.rod.energy_unit
 
     def _actuation_stiffness(self) -> Matrix | None:
+        """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts, n×n; None where it vanishes."""
+        parts = []
+        curved = self._curvature_stiffness()
+        if curved is not None:
+            parts.append(curved)
+        for effort, conjugate in self.igm.efforts:
+            further = conjugate.further_stiffness
+            if further is not None:
+                parts.append(effort / self.rod.energy_unit * further)
+        if not parts:
+            return None
+        return sum(parts[1:], parts[0])
+
+    def _curvature_stiffness(self) -> Matrix | None:
         """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
         admitted = self.rod.admitted
         blocks = {}

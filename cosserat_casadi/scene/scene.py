@@ -102,7 +102,7 @@ inputs = ["push.force", "cable.tension"]
             FreeInput(record, field, declared)
             for record in self.causes
             for field, declared in record.inputs.items()
-            if field in record.model_fields_set
+            if field in record.model_fields_set and not declared.on_request
         )
 
     def input_names(self) -> tuple[str, ...]:
