@@ -29,6 +29,12 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
 from cosserat_casadi.rod.kinematics import Shape
 
+Rows = tuple[Row, Row, Row]
+"""A vector field in the axes of the sections."""
+
+BETWEEN = 4
+"""Gauss points between neighbouring nodes: |dt/dX| has a kink where the cable straightens, which needs many."""
+
 STRAIGHT = 1e-6
 """Turn of a whole rod, rad, below which a cable's turn is smooth: its derivative is finite where it is straight."""
 
@@ -81,12 +87,11 @@ class RubbingCable(RoutedCable):
 
     @cached_property
     def turn_rate(self) -> Matrix:
-        """|dt/dX|, 1×k, rad: √(u·u + ε²) with u = t' + ℓ K × t."""
-        squares = added(*[product(row, row) for row in self._turning])
-        smooth = STRAIGHT**2
+        """|dt/dX| at points between the nodes, 1×f, rad: √(u·u + ε²) with u = t' + ℓ K × t."""
+        squares = added(*[product(row, row) for row in self._turning_between])
         if squares is None:
-            return ca.DM.ones(1, len(self.routing.nodes)) * STRAIGHT
-        return ca.sqrt(squares + smooth)
+            return ca.DM.ones(1, self._integrate.shape[1]) * STRAIGHT
+        return ca.sqrt(squares + STRAIGHT**2)
 
     @cached_property
     def pull(self) -> Matrix:
@@ -144,7 +149,7 @@ class RubbingCable(RoutedCable):
         return ca.diag(by_turn) @ (ca.DM(self._integrate) @ self._turn_rate_gradient)
 
     @cached_property
-    def _turning(self) -> tuple[Row, Row, Row]:
+    def _turning(self) -> Rows:
         """U = t' + ℓ K × t in the sections' frames, three rows, rad."""
         x, y, z = self.direction
         kx, ky, kz = self._curvature
@@ -155,39 +160,52 @@ class RubbingCable(RoutedCable):
         )
 
     @cached_property
-    def _curvature(self) -> tuple[Row, Row, Row]:
+    def _curvature(self) -> Rows:
         """ℓ K, three rows, rad."""
         length = self.shape.rod.length
         x, y, z = (None if row is None else length * row for row in self._strain[:3])
         return x, y, z
 
+    @cached_property
+    def _turning_between(self) -> list[Row]:
+        """U at the points between the nodes, three rows, rad."""
+        between = ca.DM(self._between).T
+        return [None if row is None else row @ between for row in self._turning]
+
     @property
     def _turn_rate_gradient(self) -> Matrix:
-        """∂|dt/dX|/∂q, k×n: with e = u/|u|, e·(δt)' + (e × ℓK)·δt + ℓ (t × e)·δK."""
-        ex, ey, ez = (None if row is None else row / self.turn_rate for row in self._turning)
-        e = (ex, ey, ez)
-        across = _crossed(e, self._curvature)
-        about = _crossed(self.direction, e)
+        """∂|dt/dX|/∂q = (u/|u|)·∂u/∂q at the points between the nodes, f×n."""
+        units = [None if row is None else row / self.turn_rate for row in self._turning_between]
         columns = []
         for c in self.shape.rod.admitted:
             phi = ca.DM(self._phi(c))
-            total: Matrix = ca.DM(*phi.shape)
-            for axis, rate in enumerate(self._direction_rate(c)):
-                if rate is None:
+            total: Matrix = ca.DM(self._integrate.shape[1], phi.shape[1])
+            for unit, by_slope, by_value in zip(units, *self._turning_rates(c), strict=True):
+                if unit is None:
                     continue
-                moved = ca.diag(rate) @ phi
-                unit, turned = e[axis], across[axis]
-                if unit is not None:
-                    total = total + ca.diag(unit) @ (ca.DM(self._differentiate) @ moved)
-                if turned is not None:
-                    total = total + ca.diag(turned) @ moved
-            by_curvature = about[c] if c < 3 else None
-            if by_curvature is not None:
-                total = total + ca.diag(self.shape.rod.length * by_curvature) @ phi
+                changed: Matrix = ca.DM(*phi.shape)
+                if by_slope is not None:
+                    changed = changed + ca.DM(self._differentiate) @ (ca.diag(by_slope) @ phi)
+                if by_value is not None:
+                    changed = changed + ca.diag(by_value) @ phi
+                total = total + ca.diag(unit) @ (ca.DM(self._between) @ changed)
             columns.append(total)
         return ca.horzcat(*columns)
 
-    def _direction_rate(self, c: int) -> tuple[Row, Row, Row]:
+    def _turning_rates(self, c: int) -> tuple[Rows, Rows]:
+        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: what is differentiated, and what is not."""
+        direction_rate = self._direction_rate(c)
+        turned = _crossed(self._curvature, direction_rate)
+        if c >= 3:
+            return direction_rate, turned
+        axis: list[Row] = [None, None, None]
+        axis[c] = self.shape.rod.length * ca.DM.ones(1, len(self.routing.nodes))
+        x, y, z = axis
+        about = _crossed((x, y, z), self.direction)
+        x, y, z = (added(first, second) for first, second in zip(turned, about, strict=True))
+        return direction_rate, (x, y, z)
+
+    def _direction_rate(self, c: int) -> Rows:
         """∂t/∂ξ_c = (∂T/∂ξ_c − t ∂|T|/∂ξ_c) / |T|, three rows; None for one that vanishes."""
         # A cable parallel to the rod stays so.
         if self.direction[0] is None and self.direction[1] is None:
@@ -213,16 +231,52 @@ class RubbingCable(RoutedCable):
         return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
 
     @cached_property
-    def _integrate(self) -> FloatArray:
-        """Matrix of the integral over X from the beginning of the course, shape (k, k)."""
+    def _between(self) -> FloatArray:
+        """Matrix from values at the nodes to those at the points between them, shape (f, k)."""
         nodes = self.routing.nodes
-        return np.asarray(self.shape.rod.grid.integration_matrix[np.ix_(nodes, nodes)])
+        return np.asarray(_between(self.shape.rod.grid.intervals, len(nodes))[0])
+
+    @cached_property
+    def _integrate(self) -> FloatArray:
+        """Matrix of the integral over X from the beginning of the course to the nodes, shape (k, f)."""
+        grid = self.shape.rod.grid
+        nodes = self.routing.nodes
+        _, weights = _between(grid.intervals, len(nodes))
+        first = nodes[:: grid.intervals + 1]
+        last = nodes[grid.intervals :: grid.intervals + 1]
+        widths = grid.nodes[last] - grid.nodes[first]
+        per_element = weights.shape[1] // len(widths)
+        return np.asarray(weights * np.repeat(widths, per_element))
 
     @cached_property
     def _differentiate(self) -> FloatArray:
         """Matrix of the derivative with X inside each element, shape (k, k)."""
         nodes = self.routing.nodes
         return np.asarray(_differentiation_matrix(self.shape.rod.grid)[np.ix_(nodes, nodes)])
+
+
+def _between(intervals: int, count: int) -> tuple[FloatArray, FloatArray]:
+    """Interpolation to Gauss points between the nodes of each element, and running sums to the nodes.
+
+    Args:
+        intervals: between the nodes of an element.
+        count: nodes of all elements.
+
+    Returns:
+        matrices (f, count), and (count, f) for elements of width one.
+    """
+    nodes = chebyshev.nodes(intervals)
+    points, weights = np.polynomial.legendre.leggauss(BETWEEN)
+    widths = np.diff(nodes)
+    places = nodes[:-1, None] + widths[:, None] * (points + 1) / 2
+    local = chebyshev.interpolation_matrix(intervals, places.ravel())
+    shares = np.kron(np.diag(widths), weights[None, :] / 2)
+    sums = np.vstack([np.zeros((1, shares.shape[1])), np.cumsum(shares, axis=0)])
+    elements = count // (intervals + 1)
+    # An element begins with all that those before it add.
+    before = np.tril(np.ones((elements, elements)), -1)
+    running = np.kron(np.eye(elements), sums) + np.kron(before, np.tile(sums[-1:], (intervals + 1, 1)))
+    return np.kron(np.eye(elements), local), running
 
 
 def _differentiation_matrix(grid: Grid) -> FloatArray:
@@ -232,7 +286,7 @@ def _differentiation_matrix(grid: Grid) -> FloatArray:
     return np.asarray(np.kron(np.diag(1 / widths), local))
 
 
-def _crossed(a: tuple[Row, Row, Row], b: tuple[Row, Row, Row]) -> tuple[Row, Row, Row]:
+def _crossed(a: Rows, b: Rows) -> Rows:
     """Cross product of fields that are three rows each."""
     ax, ay, az = a
     bx, by, bz = b

@@ -121,7 +121,7 @@ def test_it_is_in_the_words_of_errors_and_in_the_json_schema() -> None:
     assert where == "loads[0].kind"
     assert problem == (
         "must be one of 'gravity', 'tip_wrench', 'point_wrench', 'distributed_wrench', 'body_wrench', "
-        "'spring_to_point', got 'glue'"
+        "'flow', 'foundation', 'magnet', 'spring_to_point', got 'glue'"
     )
     schema = scene_json_schema()
     assert {"$ref": "#/$defs/SpringToPoint"} in schema["properties"]["loads"]["items"]["oneOf"]
