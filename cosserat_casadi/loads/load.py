@@ -184,6 +184,8 @@ class Load(ABC, Generic[RecordType]):
     ) -> list[Arrow]:
         """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
 
+        A load per length that has no force is drawn by its moment.
+
         Args:
             load: the load as the scene has it.
             label: its name in the legend; empty where the legend names it already.
@@ -193,12 +195,17 @@ class Load(ABC, Generic[RecordType]):
         """
         if self.abscissa(load) is not None:
             return self.point_arrows(label, position, force, moment)
-        largest = float(np.linalg.norm(force, axis=0).max())
-        legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
+        sort: Sort = "line"
+        drawn, unit = force, UNITS[sort]
+        if not np.any(force):
+            sort = "moment"
+            drawn, unit = moment, "N m/m"
+        largest = float(np.linalg.norm(drawn, axis=0).max())
+        legend = f"{label}: up to {largest:.3g} {unit}" if label else ""
         arrows = []
-        for start, vector in zip(position.T, force.T, strict=True):
+        for start, vector in zip(position.T, drawn.T, strict=True):
             if np.any(vector):
-                arrows.append(Arrow(start, vector, "line", legend))
+                arrows.append(Arrow(start, vector, sort, legend))
             # One entry in the legend is enough.
             legend = ""
         return arrows

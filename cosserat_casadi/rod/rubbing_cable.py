@@ -18,12 +18,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.blocks import cumulative_sum
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
@@ -83,14 +85,17 @@ class RubbingCable(RoutedCable):
     @cached_property
     def turn(self) -> Matrix:
         """Angle φ that the cable has turned through since its base, 1×k, rad."""
-        return self.turn_rate @ ca.DM(self._integrate).T
+        turned = self.turn_rate @ self._interval_weights.T
+        # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
+        sections = ca.cumsum(ca.densify(ca.horzcat(ca.DM(1, 1), turned)), 1)
+        return sections[:, self._sections]
 
     @cached_property
     def turn_rate(self) -> Matrix:
         """|dt/dX| at points between the nodes, 1×f, rad: √(u·u + ε²) with u = t' + ℓ K × t."""
         squares = added(*[product(row, row) for row in self._turning_between])
         if squares is None:
-            return ca.DM.ones(1, self._integrate.shape[1]) * STRAIGHT
+            return ca.DM.ones(1, self._interval_weights.shape[1]) * STRAIGHT
         return ca.sqrt(squares + STRAIGHT**2)
 
     @cached_property
@@ -146,7 +151,9 @@ class RubbingCable(RoutedCable):
     def _weighted_change(self) -> Matrix:
         """Derivative of the shares with q times the lengths of the nodes, k×n, m."""
         by_turn = -self.friction * (self.shares * ca.DM(self._node_lengths).T)
-        return ca.diag(by_turn) @ (ca.DM(self._integrate) @ self._turn_rate_gradient)
+        passed = cumulative_sum(self._interval_turn_gradient, self._interval_weights.shape[0])
+        turned = ca.vertcat(ca.DM(1, passed.shape[1]), passed)[self._sections, :]
+        return ca.diag(by_turn) @ turned
 
     @cached_property
     def _turning(self) -> Rows:
@@ -169,26 +176,27 @@ class RubbingCable(RoutedCable):
     @cached_property
     def _turning_between(self) -> list[Row]:
         """U at the points between the nodes, three rows, rad."""
-        between = ca.DM(self._between).T
-        return [None if row is None else row @ between for row in self._turning]
+        return [None if row is None else row @ self._between.T for row in self._turning]
 
     @property
-    def _turn_rate_gradient(self) -> Matrix:
-        """∂|dt/dX|/∂q = (u/|u|)·∂u/∂q at the points between the nodes, f×n."""
+    def _interval_turn_gradient(self) -> Matrix:
+        """Derivative with q of the angle that each interval between nodes turns through, Σ w (u/|u|)·∂u/∂q, I×n."""
         units = [None if row is None else row / self.turn_rate for row in self._turning_between]
+        # From values at the nodes to the angles of the intervals: few rows, which all strains share.
+        to_angles = [
+            None if unit is None else self._interval_weights @ (ca.diag(unit) @ self._between) for unit in units
+        ]
         columns = []
         for c in self.shape.rod.admitted:
             phi = ca.DM(self._phi(c))
-            total: Matrix = ca.DM(self._integrate.shape[1], phi.shape[1])
-            for unit, by_slope, by_value in zip(units, *self._turning_rates(c), strict=True):
-                if unit is None:
+            total: Matrix = ca.DM(self._interval_weights.shape[0], phi.shape[1])
+            for to_angle, by_slope, by_value in zip(to_angles, *self._turning_rates(c), strict=True):
+                if to_angle is None:
                     continue
-                changed: Matrix = ca.DM(*phi.shape)
                 if by_slope is not None:
-                    changed = changed + ca.DM(self._differentiate) @ (ca.diag(by_slope) @ phi)
+                    total = total + (to_angle @ self._differentiate) @ (ca.diag(by_slope) @ phi)
                 if by_value is not None:
-                    changed = changed + ca.diag(by_value) @ phi
-                total = total + ca.diag(unit) @ (ca.DM(self._between) @ changed)
+                    total = total + to_angle @ (ca.diag(by_value) @ phi)
             columns.append(total)
         return ca.horzcat(*columns)
 
@@ -224,66 +232,63 @@ class RubbingCable(RoutedCable):
             return None
         if isinstance(row, ca.DM) and float(ca.mmax(row)) == float(ca.mmin(row)):
             return None
-        return row @ ca.DM(self._differentiate).T
+        return row @ self._differentiate.T
 
     def _phi(self, c: int) -> FloatArray:
         """Φ of a strain at the nodes of the routing, shape (k, n_c)."""
         return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
 
-    @cached_property
-    def _between(self) -> FloatArray:
-        """Matrix from values at the nodes to those at the points between them, shape (f, k)."""
-        nodes = self.routing.nodes
-        return np.asarray(_between(self.shape.rod.grid.intervals, len(nodes))[0])
-
-    @cached_property
-    def _integrate(self) -> FloatArray:
-        """Matrix of the integral over X from the beginning of the course to the nodes, shape (k, f)."""
+    @property
+    def _elements(self) -> FloatArray:
+        """Widths of the elements that the cable passes, shape (E,)."""
         grid = self.shape.rod.grid
         nodes = self.routing.nodes
-        _, weights = _between(grid.intervals, len(nodes))
         first = nodes[:: grid.intervals + 1]
         last = nodes[grid.intervals :: grid.intervals + 1]
-        widths = grid.nodes[last] - grid.nodes[first]
-        per_element = weights.shape[1] // len(widths)
-        return np.asarray(weights * np.repeat(widths, per_element))
+        return np.asarray(grid.nodes[last] - grid.nodes[first])
+
+    @property
+    def _sections(self) -> list[int]:
+        """Index of each node among the distinct sections of the course."""
+        intervals = self.shape.rod.grid.intervals
+        local = np.arange(intervals + 1)
+        starts = intervals * np.arange(len(self._elements))
+        return list(map(int, (starts[:, None] + local).ravel()))
 
     @cached_property
-    def _differentiate(self) -> FloatArray:
-        """Matrix of the derivative with X inside each element, shape (k, k)."""
-        nodes = self.routing.nodes
-        return np.asarray(_differentiation_matrix(self.shape.rod.grid)[np.ix_(nodes, nodes)])
+    def _between(self) -> ca.DM:
+        """Matrix from values at the nodes to those at the points between them, f×k."""
+        places, _ = _gauss_points(self.shape.rod.grid.intervals)
+        local = chebyshev.interpolation_matrix(self.shape.rod.grid.intervals, places.ravel())
+        return _sparse(np.kron(np.eye(len(self._elements)), local))
+
+    @cached_property
+    def _interval_weights(self) -> ca.DM:
+        """Weights of the integral over X of each interval between nodes, I×f."""
+        _, weights = _gauss_points(self.shape.rod.grid.intervals)
+        shares = np.zeros((len(weights), weights.size))
+        for interval, row in enumerate(weights):
+            shares[interval, interval * BETWEEN : (interval + 1) * BETWEEN] = row
+        return _sparse(np.kron(np.diag(self._elements), shares))
+
+    @cached_property
+    def _differentiate(self) -> ca.DM:
+        """Matrix of the derivative with X inside each element, k×k."""
+        local = chebyshev.differentiation_matrix(self.shape.rod.grid.intervals)
+        return _sparse(np.kron(np.diag(1 / self._elements), local))
 
 
-def _between(intervals: int, count: int) -> tuple[FloatArray, FloatArray]:
-    """Interpolation to Gauss points between the nodes of each element, and running sums to the nodes.
-
-    Args:
-        intervals: between the nodes of an element.
-        count: nodes of all elements.
-
-    Returns:
-        matrices (f, count), and (count, f) for elements of width one.
-    """
+def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss points between the nodes of an element of width one and their weights, shape (intervals, points) each."""
     nodes = chebyshev.nodes(intervals)
-    points, weights = np.polynomial.legendre.leggauss(BETWEEN)
-    widths = np.diff(nodes)
-    places = nodes[:-1, None] + widths[:, None] * (points + 1) / 2
-    local = chebyshev.interpolation_matrix(intervals, places.ravel())
-    shares = np.kron(np.diag(widths), weights[None, :] / 2)
-    sums = np.vstack([np.zeros((1, shares.shape[1])), np.cumsum(shares, axis=0)])
-    elements = count // (intervals + 1)
-    # An element begins with all that those before it add.
-    before = np.tril(np.ones((elements, elements)), -1)
-    running = np.kron(np.eye(elements), sums) + np.kron(before, np.tile(sums[-1:], (intervals + 1, 1)))
-    return np.kron(np.eye(elements), local), running
+    points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
+    widths = np.diff(nodes)[:, None]
+    return nodes[:-1, None] + widths * (points + 1) / 2, widths * weights / 2
 
 
-def _differentiation_matrix(grid: Grid) -> FloatArray:
-    """Derivative with X of the polynomials of each element, shape (M, M)."""
-    local = chebyshev.differentiation_matrix(grid.intervals)
-    widths = np.diff(np.asarray(grid.breaks))
-    return np.asarray(np.kron(np.diag(1 / widths), local))
+def _sparse(matrix: npt.NDArray[Any]) -> ca.DM:
+    """A matrix without its zeros."""
+    return ca.sparsify(ca.DM(matrix))
 
 
 def _crossed(a: Rows, b: Rows) -> Rows:
