@@ -20,7 +20,7 @@ from cosserat_casadi.model.load_assembly import unloaded_poses
 from cosserat_casadi.model.registry import EFFECTS
 
 DRAWN_SECTIONS = np.linspace(0.05, 0.95, 8)
-"""Abscissae at which a load per length is drawn."""
+"""Where a load per length is drawn, as shares of its span."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,8 @@ class LoadArrows:
     def _on_rods(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
-        X = DRAWN_SECTIONS
+        start, end = member.span(load)
+        X = start + (end - start) * DRAWN_SECTIONS
         if at is not None:
             X = np.array([at])
         arrows: list[Arrow] = []

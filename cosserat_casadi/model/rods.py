@@ -39,6 +39,8 @@ def rod_properties(rod: scenes.Rod) -> RodProperties:
         linear_density=_linear_density(rod),
         rotary_inertia=_rotary_inertia(rod),
         damping=_damping(rod, hooke),
+        area=_area(rod),
+        diameter=_diameter(rod),
     )
     _refuse_out_of_range(properties)
     return properties
@@ -152,6 +154,25 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     density = rod.material.density
     shape = _section_shape(rod.section)
     return lambda X: density * shape(X).second_moments
+
+
+def _area(rod: scenes.Rod) -> Field | None:
+    """Area of the sections (k,); None of a rod that is given by its stiffness."""
+    if rod.section is None:
+        return None
+    shape = _section_shape(rod.section)
+    return lambda X: shape(X).area
+
+
+def _diameter(rod: scenes.Rod) -> Field | None:
+    """Outer diameter of round sections (k,); None of others."""
+    if isinstance(rod.section, scenes.Circle):
+        radius = _linear(rod.section.radius)
+    elif isinstance(rod.section, scenes.Annulus):
+        radius = _linear(rod.section.outer_radius)
+    else:
+        return None
+    return lambda X: 2 * _array(radius, X)
 
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:

@@ -18,6 +18,7 @@ import numpy as np
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
 
 Row = Matrix | None
@@ -49,7 +50,7 @@ class Routing:
 
 
 @dataclass(frozen=True)
-class RoutedCable:
+class RoutedCable(Lossless):
     """A cable on its routing through a deformed rod.
 
     Attributes:
@@ -69,9 +70,9 @@ class RoutedCable:
         length = self.shape.rod.length
         slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
         return (
-            _sum(gx, _negative(_product(kz, dy)), slope_x),
-            _sum(gy, _product(kz, dx), slope_y),
-            _sum(gz, _product(kx, dy), _negative(_product(ky, dx))),
+            added(gx, negative(product(kz, dy)), slope_x),
+            added(gy, product(kz, dx), slope_y),
+            added(gz, product(kx, dy), negative(product(ky, dx))),
         )
 
     @cached_property
@@ -80,7 +81,7 @@ class RoutedCable:
         x, y, z = self.tangent
         if x is None and y is None and z is not None:
             return z
-        squares = _sum(*[_product(row, row) for row in self.tangent])
+        squares = added(*[product(row, row) for row in self.tangent])
         assert squares is not None, "a cable has a tangent"
         return ca.sqrt(squares)
 
@@ -104,9 +105,9 @@ class RoutedCable:
         x, y, z = self.direction
         dx, dy = self._offset
         levers = {
-            0: _product(z, dy),
-            1: _negative(_product(z, dx)),
-            2: _sum(_product(y, dx), _negative(_product(x, dy))),
+            0: product(z, dy),
+            1: negative(product(z, dx)),
+            2: added(product(y, dx), negative(product(x, dy))),
             3: x,
             4: y,
             5: z,
@@ -132,6 +133,16 @@ class RoutedCable:
                 parts.append(weighted.T @ lever.T)
         return ca.vertcat(*parts)
 
+    @property
+    def mean_share(self) -> Matrix | None:
+        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
+        return None
+
+    @property
+    def mean_share_gradient(self) -> Matrix | None:
+        """Its derivative with q, n×1; None where it is the same."""
+        return None
+
     def curvature(self, a: int, b: int) -> Row:
         """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.
 
@@ -142,8 +153,8 @@ class RoutedCable:
         if x is None and y is None:
             return None
         metric = _constant(self._metric(a, b))
-        along = _negative(_product(self.lever[a], self.lever[b]))
-        across = _sum(metric, along)
+        along = negative(product(self.lever[a], self.lever[b]))
+        across = added(metric, along)
         if across is None:
             return None
         row = across / self.stretch * ca.DM(self._node_lengths).T
@@ -164,12 +175,23 @@ class RoutedCable:
         dx, dy = self.routing.offset
         return _constant(dx), _constant(dy)
 
+    @property
+    def tangent_rates(self) -> list[tuple[Row, Row, Row]]:
+        """∂T/∂ξ_c of the six strains, three rows each."""
+        return [tuple(map(_constant, rate)) for rate in self._rates]  # type: ignore[misc]
+
     def _metric(self, a: int, b: int) -> FloatArray:
         """Scalar product of the rates of T with two strains, shape (k,)."""
+        product_of_rates = self._rates[a] * self._rates[b]
+        return np.asarray(product_of_rates.sum(axis=0))
+
+    @property
+    def _rates(self) -> list[FloatArray]:
+        """∂T/∂ξ_c of the six strains, shape (3, k) each."""
         dx, dy = self.routing.offset
         zero = np.zeros_like(dx)
         unit = np.ones_like(dx)
-        rates = [
+        return [
             np.array([zero, zero, dy]),
             np.array([zero, zero, -dx]),
             np.array([-dy, dx, zero]),
@@ -177,8 +199,6 @@ class RoutedCable:
             np.array([zero, unit, zero]),
             np.array([zero, zero, unit]),
         ]
-        product = rates[a] * rates[b]
-        return np.asarray(product.sum(axis=0))
 
     @property
     def _node_lengths(self) -> FloatArray:
@@ -193,14 +213,16 @@ def _constant(row: FloatArray) -> Row:
     return ca.DM(row).T
 
 
-def _sum(*rows: Row) -> Row:
+def added(*rows: Row) -> Row:
+    """Sum of fields."""
     present = [row for row in rows if row is not None]
     if not present:
         return None
     return sum(present[1:], present[0])
 
 
-def _product(a: Row, b: Row) -> Row:
+def product(a: Row, b: Row) -> Row:
+    """Product of two fields, node by node."""
     if a is None or b is None:
         return None
     return a * b
@@ -212,7 +234,8 @@ def _quotient(a: Row, b: Matrix) -> Row:
     return a / b
 
 
-def _negative(row: Row) -> Row:
+def negative(row: Row) -> Row:
+    """A field of the other sign."""
     if row is None:
         return None
     return -row

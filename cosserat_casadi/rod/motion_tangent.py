@@ -220,6 +220,47 @@ class MotionTangent:
         """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
         return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), rows)))
 
+    # Variations at all nodes, in the order of the coordinates: loads that depend on rates act anywhere.
+
+    @cached_property
+    def section_rotation(self) -> Jet:
+        """δθ at all nodes with its rates, 3M×columns, rad."""
+        nodes = self.tangent.rod.grid.size
+        none = ca.DM(3 * nodes, self._other_count)
+        orders = [ca.horzcat(self._at_all_nodes(order), none) for order in self.rotation.orders]
+        return Jet(*[self._ordered_columns(order) for order in orders])
+
+    @cached_property
+    def section_tangent(self) -> Jet:
+        """δt at all nodes with its rates, 3M×columns, m."""
+        rows = 3 * len(self._nodes)
+        by_z, by_rate, by_acceleration = (self._at_all_nodes(part) for part in ca.vertsplit(self._accelerations, rows))
+        turning = [by_acceleration, by_rate / 2, by_z]
+        if self._stretch is None:
+            return Jet(*[self._ordered_columns(order) for order in turning])
+        others = [self._stretch.mass, self._stretch.damping / 2, self._stretch.stiffness]
+        orders = [ca.horzcat(one, self._without_shift_rows(other)) for one, other in zip(turning, others, strict=True)]
+        return Jet(*[self._ordered_columns(order) for order in orders])
+
+    @property
+    def _other_count(self) -> int:
+        """Number of the columns that turn nothing."""
+        return 0 if self._stretch is None else int(self._stretch.mass.shape[1])
+
+    def _at_all_nodes(self, rows: Matrix) -> Matrix:
+        """Rows of the nodes that turn among those of all nodes, 3M×k, zero at the others."""
+        count = len(self._nodes)
+        pattern = ca.Sparsity.triplet(self.tangent.rod.grid.size, count, self._nodes, list(range(count)))
+        places = ca.DM(pattern, 1.0)
+        return ca.kron(ca.DM.eye(3), places) @ rows
+
+    def _without_shift_rows(self, rows: Matrix) -> Matrix:
+        """Rows of the nodes alone, where a floating base has added one for its shift to each component."""
+        if not self.floating:
+            return rows
+        nodes = self.tangent.rod.grid.size
+        return ca.vertcat(*[component[:nodes, :] for component in ca.vertsplit(rows, nodes + 1)])
+
     # The parts of the matrices by rows and columns: turning ones, then the others.
 
     @cached_property
@@ -283,13 +324,24 @@ class MotionTangent:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
         if not self.floating:
             return matrix
+        return matrix[self._order, self._order]
+
+    def _ordered_columns(self, matrix: Matrix) -> Matrix:
+        """A matrix whose columns are in the order of the coordinates."""
+        if not self.floating:
+            return matrix
+        return matrix[:, self._order]
+
+    @cached_property
+    def _order(self) -> list[int]:
+        """Columns of a floating rod in the order of the coordinates."""
         turning = self.tangent.angular_size
         linear = self.tangent.rod.size - turning
         strains = [*range(turning), *range(turning + 3, turning + 3 + linear)]
         turns = list(range(turning, turning + 3))
-        shifts = list(range(matrix.shape[0] - 3, matrix.shape[0]))
-        order = [*strains, *turns, *shifts]
-        return matrix[order, order]
+        first_shift = turning + 3 + linear
+        shifts = list(range(first_shift, first_shift + 3))
+        return [*strains, *turns, *shifts]
 
     @cached_property
     def _section_rotations(self) -> tuple[Matrix, Matrix, Matrix]:

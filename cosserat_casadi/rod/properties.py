@@ -32,6 +32,8 @@ class RodProperties:
             None where the rod has none.
         damping: abscissae (k,) ↦ diagonal of the Kelvin–Voigt tensor Υ (k, 6), N m² s and N s, whose stress is Υ ξ̇;
             None where the rod has none. Rows of strains that are not admitted are not read.
+        area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
+        diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
     """
 
     name: str
@@ -43,6 +45,8 @@ class RodProperties:
     linear_density: Callable[[Array], Array] | None = None
     rotary_inertia: Callable[[Array], Array] | None = None
     damping: Callable[[Array], Array] | None = None
+    area: Callable[[Array], Array] | None = None
+    diameter: Callable[[Array], Array] | None = None
 
     def intrinsic_strain(self, X: Array) -> Array:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""

@@ -60,10 +60,15 @@ Legendre coefficients, however the scene writes it.
 
 UNITS = (
     "without unit",
+    "A m²",
+    "A/m",
+    "T/m",
+    "T",
     "N m/m",
     "N m² s",
     "N m²",
     "N m",
+    "N/m²",
     "N/m",
     "N s",
     "N",
@@ -73,6 +78,7 @@ UNITS = (
     "kg m",
     "kg",
     "m/s²",
+    "m/s",
     "m²",
     "m",
     "1/m",
