@@ -16,7 +16,7 @@ from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import CONSISTENT
 from cosserat_casadi.numerics import consistent_start, stage_newton, step_matrices
 from cosserat_casadi.numerics.collocation import radau
-from cosserat_casadi.numerics.time_steps import FEW_ITERATIONS
+from cosserat_casadi.numerics.step_run import FEW_ITERATIONS
 
 MOTION_FILES = ("motion.h", "elimination.c", "step.c", "step_sensitivity.c", "motion.c")
 """Files of the folder ``c`` that a library with motions includes."""
