@@ -148,13 +148,8 @@ def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike |
     """
     if values is None or isinstance(values, Mapping):
         return model.pack(values)
-    stacked = np.asarray(values, dtype=float).ravel()
-    size = model.inputs.size
-    if stacked.size != size:
-        names = ", ".join(model.inputs.names) or "none"
-        raise SceneError(Problem("inputs", f"must be {size} numbers, got {stacked.size}", f"they are {names}"))
     # By name once more: each input has faults of its own.
-    return model.pack(model.inputs.unpack(stacked))
+    return model.pack(model.inputs.split(values))
 
 
 def check_potential(model: Model, inputs: FloatArray) -> None:

@@ -40,14 +40,14 @@ def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
     return not np.any(value)
 
 
-def matrix(numbers: Numbers) -> Matrix:
+def as_matrix(numbers: Numbers) -> Matrix:
     """Numbers as a CasADi matrix; a vector is a column."""
     if isinstance(numbers, ca.MX | ca.DM):
         return numbers
     return ca.DM(numbers)
 
 
-def vector(values: Sequence[Scalar]) -> Numbers:
+def as_vector(values: Sequence[Scalar]) -> Numbers:
     """Scalars as a vector, of which those that are zero are not stored where one is an expression."""
     if not is_symbolic(values):
         return np.asarray(values, dtype=float)
@@ -60,7 +60,7 @@ def side_by_side(columns: Sequence[Numbers]) -> Numbers:
     """Vectors of one length as the columns of a table."""
     if not is_symbolic(list(columns)):
         return np.stack(columns, axis=-1)
-    table: Matrix = ca.horzcat(*[ca.sparsify(matrix(c)) if not is_symbolic(c) else c for c in columns])
+    table: Matrix = ca.horzcat(*[ca.sparsify(as_matrix(c)) if not is_symbolic(c) else c for c in columns])
     return table
 
 
@@ -68,6 +68,19 @@ def column(table: Numbers, index: int) -> Numbers:
     """A column of a table, as a vector."""
     part: Numbers = table[:, index]
     return part
+
+
+def rows_of(table: Numbers) -> list[Numbers]:
+    """The rows of a table, each as a vector."""
+    if is_symbolic(table):
+        return [row.T for row in ca.vertsplit(table)]
+    return list(table)
+
+
+def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
+    """Vectors of one length as the rows of a table."""
+    table = side_by_side(rows)
+    return table.T if is_symbolic(table) else np.stack(rows)
 
 
 def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:

@@ -12,11 +12,12 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
-from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.motion_functions import MotionFunctions
+from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -38,8 +39,36 @@ class Model(functions.ModelFunctions, MotionFunctions):
 
     @property
     def scene(self) -> scenes.Scene:
-        """The scene this is a model of."""
+        """The scene this is a model of; its parameters have the values of its file, or those that are bound."""
+        if self.parameters.size:
+            return self.discrete.nominal.scene
         return self.discrete.scene
+
+    @property
+    def parameters(self) -> ParameterLayout:
+        """Names, order and default values of the parameters, the third argument of the functions; often none."""
+        return self.discrete.parameters
+
+    def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Model:
+        """The model with its parameters fixed: its functions take unknowns and inputs alone.
+
+        Unknowns mean what they mean here: they are counted in units of the scene's own numbers.
+
+        Args:
+            values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
+                (parameters.size,).
+
+        Raises:
+            SceneError: a name is unknown, or the scene refuses a value.
+        """
+        layout = self.parameters
+        if values is not None and not isinstance(values, Mapping):
+            values = layout.split(values)
+        if not layout.size:
+            layout.pack(values)
+            return self
+        nominal = self.discrete.nominal
+        return Model(with_numbers(nominal, layout.set_in(nominal.scene, values)))
 
     @property
     def inputs(self) -> InputLayout:
@@ -75,12 +104,13 @@ class Model(functions.ModelFunctions, MotionFunctions):
 
     def length_ratio(self, rod: str, inputs: FloatArray) -> float:
         """Length of a rod for these inputs, relative to the scene's."""
-        ratio = ratio_of(self.discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
-        return 1.0 if ratio is None else float(ratio)
+        discrete = self.at().discrete
+        ratio = ratio_of(discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
+        return 1.0 if ratio is None else float(ca.evalf(ca.MX(ratio)))
 
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
-        return loads_have_potential(self.discrete, inputs)
+        return loads_have_potential(self.at().discrete, inputs)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""
@@ -110,4 +140,8 @@ def build(
     """
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
-    return Model(discrete_scene(scene, input_layout(scene), chosen))
+    nominal = discrete_scene(scene, input_layout(scene), chosen)
+    parameters = parameter_layout(scene)
+    if not parameters.size:
+        return Model(nominal)
+    return Model(with_numbers(nominal, parameters.written(scene, parameters.symbol), parameters))

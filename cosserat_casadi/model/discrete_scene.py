@@ -15,10 +15,11 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints
+from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
@@ -72,19 +73,40 @@ class DiscreteScene:
     """A scene with its constant matrices.
 
     Attributes:
-        scene: the scene.
+        scene: the scene that the equations are of; its numbers may be expressions of parameters.
         layout: its inputs.
         rods: the constant matrices of each rod.
+        parameters: the parameters that its expressions are of.
+        scaling: the scene with the numbers that scale the equations; None where these are its own.
     """
 
     scene: scenes.Scene
     layout: InputLayout
     rods: dict[str, DiscreteRod]
+    parameters: ParameterLayout = NO_PARAMETERS
+    scaling: DiscreteScene | None = None
+
+    @property
+    def nominal(self) -> DiscreteScene:
+        """The scene with the numbers that scale the equations: those that its file gives."""
+        return self if self.scaling is None else self.scaling
 
     @cached_property
     def unloaded(self) -> UnloadedScene:
-        """Poses of rods and bodies where nothing acts."""
+        """Poses of rods and bodies where nothing acts and no parameter differs: deviations are counted from them."""
+        if self.scaling is not None:
+            return self.scaling.unloaded
         return UnloadedScene(self.scene, self.rods)
+
+    @cached_property
+    def records(self) -> dict[str, scenes.Rod]:
+        """Rods of the scene by name."""
+        return {rod.name: rod for rod in self.scene.rods}
+
+    @cached_property
+    def bodies(self) -> dict[str, scenes.Body]:
+        """Bodies of the scene by name."""
+        return {body.name: body for body in self.scene.bodies}
 
     @property
     def frames(self) -> dict[FrameName, FloatingFrame]:
@@ -94,6 +116,8 @@ class DiscreteScene:
     @cached_property
     def constraints(self) -> list[PlacedConstraint]:
         """Supports, bases of carried rods and joints, in the order of their multipliers."""
+        if self.scaling is not None:
+            return written_constraints(self.scaling.constraints, self.scene)
         return placed_constraints(self.unloaded)
 
     @cached_property
@@ -105,8 +129,15 @@ class DiscreteScene:
             if member.prescribes_conjugate(actuator):
                 rod = self.rods[actuator.rod]
                 routing = member.quantity(actuator, rod.grid)
-                cables.append(CableOfLength(actuator, routing, _softness(rod, routing)))
+                cables.append(CableOfLength(actuator, routing, self._softness(actuator)))
         return cables
+
+    def _softness(self, actuator: scenes.Actuator) -> float:
+        """Softness of a rod to a cable, by the numbers that scale the equations."""
+        nominal = self.nominal
+        rod = nominal.rods[actuator.rod]
+        (tendon,) = [other for other in nominal.scene.actuators if other.name == actuator.name]
+        return _softness(rod, EFFECTS[tendon.kind].quantity(tendon, rod.grid))
 
     def constraint(self, where: str) -> SectionConstraint:
         """The constraint of a table of the scene, by its path.
@@ -217,3 +248,21 @@ def discrete_scene(
         properties = rod_properties(rod)
         rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
     return DiscreteScene(scene, layout, rods)
+
+
+def with_numbers(
+    nominal: DiscreteScene, scene: scenes.Scene, parameters: ParameterLayout = NO_PARAMETERS
+) -> DiscreteScene:
+    """A scene with other numbers, or expressions, under the scaling and the grids of another.
+
+    Args:
+        nominal: the scene that scales the equations.
+        scene: the same with other numbers.
+        parameters: what its expressions are of.
+    """
+    rods = {}
+    for rod in scene.rods:
+        scaling = nominal.rods[rod.name]
+        properties = rod_properties(rod, scaling.properties)
+        rods[rod.name] = DiscreteRod(properties, scaling.discretisation)
+    return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)

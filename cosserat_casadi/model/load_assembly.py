@@ -12,6 +12,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
+from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -101,7 +102,7 @@ class RodLoads:
         if coefficients is None:
             return None
         profiles = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
-        if not np.any(profiles):
+        if is_zero(profiles):
             return None
         scaled = per_reference_length(coefficients, self.ratio)
         if force is None:
@@ -236,7 +237,7 @@ class BodyLoad:
         stiffness: 6×6 derivative of [force; moment] with the [δr; δθ] of the point; None for a dead load or a follower.
     """
 
-    position: tuple[float, float, float]
+    position: tuple[Scalar, Scalar, Scalar]
     arm: Matrix
     force: Matrix
     moment: Matrix
@@ -361,7 +362,7 @@ class BodyLoads:
         )
 
     def _arm(self, point: BodyPoint) -> Matrix:
-        return self.rotation @ ca.DM(point.position)
+        return self.rotation @ as_matrix(as_vector(point.position))
 
 
 # Potential

@@ -10,7 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, repeated, side_by_side, vector
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, is_symbolic, repeated, side_by_side
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
@@ -86,10 +86,10 @@ def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
 
 def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
     """World position (3,) and quaternion (4,) of the rod's base, whose numbers may be expressions of parameters."""
-    position = vector(rod.base.position)
+    position = as_vector(rod.base.position)
     if rod.base.tangent is not None:
         return position, quaternion_from_tangent(rod.base.tangent)
-    quaternion = vector(rod.base.quaternion)
+    quaternion = as_vector(rod.base.quaternion)
     if is_symbolic(quaternion):
         # As of an input: its norm does not matter.
         quaternion = quaternion / ca.sqrt(ca.sumsqr(quaternion))
@@ -202,7 +202,7 @@ def _linear_density(rod: scenes.Rod) -> Field | None:
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     """Moments of inertia per length (k, 3): as given, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
     if rod.rotary_inertia is not None:
-        given = vector(rod.rotary_inertia)
+        given = as_vector(rod.rotary_inertia)
         if is_symbolic(given):
             return lambda X: given.T
         return lambda X: np.tile(given, (len(X), 1))

@@ -15,8 +15,9 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, product, row_times, rows_of
 from cosserat_casadi.maths.shapes import check_shape
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 
 
@@ -64,11 +65,11 @@ class StrainSum:
 
     Attributes:
         components: the strains c that it depends on.
-        densities: g, shape (len(components), M).
+        densities: g, shape (len(components), M), numbers or expressions.
     """
 
     components: Sequence[int]
-    densities: FloatArray
+    densities: Numbers
 
     def on(self, shape: Shape) -> StrainSumOnRod:
         """The quantity on a rod of this shape."""
@@ -95,7 +96,7 @@ class StrainSumOnRod:
         total = ca.DM(0.0)
         for row, weights in zip(strains, self._weighted, strict=True):
             if row is not None:
-                total = total + row @ ca.DM(weights)
+                total = total + row @ as_matrix(weights)
         return total
 
     @cached_property
@@ -108,7 +109,9 @@ class StrainSumOnRod:
             phi = rod.at_nodes[c]
             # A strain that the quantity does not depend on has no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
-            rows.append(phi.T @ own)
+            rows.append(phi.T @ own if not is_symbolic(own) else product(phi.T, own))
+        if is_symbolic(rows):
+            return ca.vertcat(*[ca.sparsify(as_matrix(row)) if not is_symbolic(row) else row for row in rows])
         gradient = np.concatenate(rows)
         return ca.sparsify(ca.DM(gradient))
 
@@ -117,7 +120,7 @@ class StrainSumOnRod:
         return
 
     @property
-    def _weighted(self) -> FloatArray:
-        """ℓ w g, shape (len(components), M)."""
+    def _weighted(self) -> list[Numbers]:
+        """ℓ w g of each component, shape (M,)."""
         lengths = self.shape.rod.node_lengths
-        return np.asarray(lengths * self.quantity.densities)
+        return [row_times(lengths, row) for row in rows_of(self.quantity.densities)]

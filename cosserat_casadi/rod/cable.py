@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, is_zero, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -30,13 +31,13 @@ class Routing:
 
     Attributes:
         nodes: indices of the nodes, shape (k,).
-        offset: D_x and D_y in the section, shape (2, k), m.
+        offset: D_x and D_y in the section, shape (2, k), m, numbers or expressions.
         slope: dD/dX, shape (2, k), m.
     """
 
     nodes: Indices
-    offset: FloatArray
-    slope: FloatArray
+    offset: Numbers
+    slope: Numbers
 
     def __post_init__(self) -> None:
         count = len(self.nodes)
@@ -67,7 +68,7 @@ class RoutedCable:
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
         length = self.shape.rod.length
-        slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
+        slope_x, slope_y = (_constant(row / length) for row in rows_of(self.routing.slope))
         return (
             _sum(gx, _negative(_product(kz, dy)), slope_x),
             _sum(gy, _product(kz, dx), slope_y),
@@ -161,12 +162,14 @@ class RoutedCable:
 
     @property
     def _offset(self) -> tuple[Row, Row]:
-        dx, dy = self.routing.offset
+        dx, dy = rows_of(self.routing.offset)
         return _constant(dx), _constant(dy)
 
-    def _metric(self, a: int, b: int) -> FloatArray:
+    def _metric(self, a: int, b: int) -> Numbers:
         """Scalar product of the rates of T with two strains, shape (k,)."""
-        dx, dy = self.routing.offset
+        dx, dy = rows_of(self.routing.offset)
+        if is_symbolic([dx, dy]):
+            return self._symbolic_metric(a, b)
         zero = np.zeros_like(dx)
         unit = np.ones_like(dx)
         rates = [
@@ -180,17 +183,27 @@ class RoutedCable:
         product = rates[a] * rates[b]
         return np.asarray(product.sum(axis=0))
 
+    def _symbolic_metric(self, a: int, b: int) -> Matrix:
+        """The same where the offset is an expression."""
+        dx, dy = (as_matrix(row) for row in rows_of(self.routing.offset))
+        unit = ca.DM.ones(*dx.shape)
+        rates: list[dict[int, Matrix]] = [{2: dy}, {2: -dx}, {0: -dy, 1: dx}, {0: unit}, {1: unit}, {2: unit}]
+        total: Matrix = ca.DM(*dx.shape)
+        for axis in rates[a].keys() & rates[b].keys():
+            total = total + rates[a][axis] * rates[b][axis]
+        return total
+
     @property
     def _node_lengths(self) -> FloatArray:
         """Length of rod that each node of the routing stands for, ℓ w, shape (k,), m."""
         return self.shape.rod.node_lengths[self.routing.nodes]
 
 
-def _constant(row: FloatArray) -> Row:
-    """A row of numbers; None where all are zero."""
-    if not np.any(row):
+def _constant(row: Numbers) -> Row:
+    """A row of numbers or expressions; None where all are zero."""
+    if is_zero(row):
         return None
-    return ca.DM(row).T
+    return as_matrix(row).T
 
 
 def _sum(*rows: Row) -> Row:

@@ -28,6 +28,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
@@ -243,9 +244,18 @@ class MotionTangent:
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
-        weighted = (rod.node_lengths * self.inertia.masses.mass)[:, None] * integrate
+        mass = self.inertia.masses.mass
+        if is_symbolic(mass):
+            return ca.kron(ca.DM.eye(3), self._symbolic_gram(integrate, mass))
+        weighted = (rod.node_lengths * mass)[:, None] * integrate
         gram = integrate.T @ weighted
         return ca.sparsify(ca.DM(np.kron(np.eye(3), gram)))
+
+    def _symbolic_gram(self, integrate: FloatArray, mass: Matrix) -> Matrix:
+        """Sᵀ μ S where the masses are expressions: linear in the mass of each node."""
+        weighted = self.tangent.rod.node_lengths[:, None, None] * integrate[:, :, None] * integrate[:, None, :]
+        columns = integrate.shape[1]
+        return ca.reshape(product(weighted.reshape(len(weighted), -1).T, mass), columns, columns)
 
     @cached_property
     def _rotary_operators(self) -> tuple[Matrix, Matrix, Matrix]:
@@ -253,7 +263,7 @@ class MotionTangent:
         totals: list[Matrix] = [ca.DM(3 * self.tangent.rod.grid.size, 3 * self.tangent.rod.grid.size)] * 3
         lengths = self.tangent.rod.node_lengths
         for axis, second_moment in self.inertia.masses.second_moments.items():
-            weights = lengths * second_moment
+            weights = row_times(lengths, second_moment)
             director = self.motion.shape.directors[axis]
             rate = self.motion.director_rate(axis)
             acceleration = self.motion.director_acceleration(axis)
@@ -270,14 +280,14 @@ class MotionTangent:
         return [hat_operator(field) for field in fields]
 
 
-def _weighted(operator: Matrix, weights: FloatArray) -> Matrix:
+def _weighted(operator: Matrix, weights: Numbers) -> Matrix:
     """Rows of an operator on stacked 3-vectors, each times the weight of its point."""
-    return ca.diag(ca.DM(np.tile(weights, 3))) @ operator
+    return ca.diag(ca.repmat(as_matrix(weights), 3, 1)) @ operator
 
 
-def _outer(left: Matrix, right: Matrix, weights: FloatArray) -> Matrix:
+def _outer(left: Matrix, right: Matrix, weights: Numbers) -> Matrix:
     """Operator v ↦ weight · left (right·v) at every point, 3k×3k, from 3×k fields."""
-    columns = ca.DM(weights)
+    columns = as_matrix(weights)
     rows: list[Sequence[Matrix]] = []
     for left_row in ca.vertsplit(left):
         weighted = left_row.T * columns

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, is_zero, side_by_side, vector
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, is_symbolic, is_zero, side_by_side
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]
@@ -63,7 +63,7 @@ class RodProperties:
         for coefficients in self.intrinsic:
             if is_symbolic(coefficients):
                 polynomials = legendre.legvander(2 * X - 1, len(coefficients) - 1)
-                columns.append(ca.DM(polynomials) @ vector(coefficients))
+                columns.append(ca.DM(polynomials) @ as_vector(coefficients))
                 continue
             values = legendre.legval(2 * X - 1, np.asarray(coefficients))
             # A constant gives one number for all abscissae.

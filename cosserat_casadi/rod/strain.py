@@ -27,12 +27,12 @@ from cosserat_casadi.maths import chebyshev, magnus
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import (
     Numbers,
+    as_matrix,
+    as_vector,
     column,
     is_symbolic,
     is_zero,
-    matrix,
     product,
-    vector,
     without_rounding,
 )
 from cosserat_casadi.maths.typing import Matrix
@@ -252,7 +252,7 @@ class DiscreteRod:
         element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
         X = np.concatenate([X for X, _ in points])
         weights = np.concatenate([weight for _, weight in points])
-        coefficients = matrix(diagonal(X))
+        coefficients = as_matrix(diagonal(X))
         blocks = []
         for c in self.columns:
             phi = self.shape_functions(c, X, element)
@@ -266,12 +266,12 @@ class DiscreteRod:
     @cached_property
     def stiffness_matrix(self) -> Matrix:
         """K_εε / (EI/ℓ), n×n, without its zeros."""
-        return ca.sparsify(matrix(self.stiffness)) if not is_symbolic(self.stiffness) else self.stiffness
+        return ca.sparsify(as_matrix(self.stiffness)) if not is_symbolic(self.stiffness) else self.stiffness
 
     @cached_property
     def viscosity_matrix(self) -> Matrix:
         """The matrix of the viscosity, n×n, s, without its zeros."""
-        return ca.sparsify(matrix(self.viscosity)) if not is_symbolic(self.viscosity) else self.viscosity
+        return ca.sparsify(as_matrix(self.viscosity)) if not is_symbolic(self.viscosity) else self.viscosity
 
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
@@ -279,7 +279,7 @@ class DiscreteRod:
         intrinsic = self.properties.intrinsic_strain(X)
         rows = []
         for c in range(6):
-            row = matrix(column(intrinsic, c)).T
+            row = as_matrix(column(intrinsic, c)).T
             if c in self.columns:
                 phi = ca.DM(self.shape_functions(c, X, element))
                 strain = phi @ q[self.columns[c]]
@@ -296,7 +296,7 @@ class DiscreteRod:
             row = None
             own = column(intrinsic, c)
             if not is_zero(own):
-                row = per_reference_length(matrix(own).T, ratio)
+                row = per_reference_length(as_matrix(own).T, ratio)
             if c in self.columns:
                 varying = (self.node_matrix(c) @ q[self.columns[c]]).T
                 row = varying if row is None else row + varying
@@ -341,7 +341,7 @@ class DiscreteRod:
                 degrees = np.arange(len(own))
                 # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
                 by_coefficient = turn[:, : len(own)] * (degrees >= order)
-                rows.append(product(by_coefficient, vector(own)).T)
+                rows.append(product(by_coefficient, as_vector(own)).T)
         return ca.vertcat(*rows)
 
     @cached_property

@@ -15,7 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.blocks import unstack
-from cosserat_casadi.maths.numbers import column, matrix
+from cosserat_casadi.maths.numbers import as_matrix, column
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -176,7 +176,7 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
 
 def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
-    intrinsic = matrix(rod.intrinsic_turn)
+    intrinsic = as_matrix(rod.intrinsic_turn)
     varying = unstack(rod.turn_matrix @ q, intrinsic.shape[0])
     return per_reference_length(intrinsic, ratio) + varying
 
@@ -275,7 +275,7 @@ def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     intrinsic = rod.properties.intrinsic_strain(rod.grid.nodes)
     rows = []
     for axis in range(3):
-        row = per_reference_length(matrix(column(intrinsic, axis)).T, ratio)
+        row = per_reference_length(as_matrix(column(intrinsic, axis)).T, ratio)
         if axis in rod.columns:
             varying = ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]
             row = row + varying.T

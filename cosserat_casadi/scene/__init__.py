@@ -34,6 +34,7 @@ from cosserat_casadi.scene.loads import (
     TipWrench,
 )
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.scene.rods import (
     Annulus,
@@ -83,6 +84,7 @@ __all__ = [
     "Load",
     "LoadRecord",
     "Material",
+    "NamedNumbers",
     "PinnedSupport",
     "PointWrench",
     "PoseTarget",

@@ -1,0 +1,239 @@
+"""Parameters: a model with named numbers against a model of a scene with these numbers, and their derivatives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Model, Scene, build, scene_from_dict
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discretise import discretise
+from tests.scenes import WEIGHT, push
+
+WIRE: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.8,
+    "strain": "kirchhoff",
+    "material": {"youngs_modulus": 2.0e9, "poisson_ratio": 0.3, "density": 1200.0},
+    "section": {"shape": "annulus", "outer_radius": [0.011, 0.008], "inner_radius": 0.005},
+    "damping": {"retardation_time": 0.03},
+    "intrinsic": {"curvature": [0.2, [1.4, 0.3], 0.0], "tangent": [0, 0, 1]},
+    "base": {"position": [0.1, 0, 0.2], "quaternion": [0.8, 0.0, 0.6, 0.0]},
+}
+
+ELASTIC: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.8,
+    "strain": "reissner",
+    "stiffness": {
+        "bending_x": 1.0,
+        "bending_y": [1.4, 1.1],
+        "torsion": 0.7,
+        "shear_x": 40.0,
+        "shear_y": 60.0,
+        "extension": 90.0,
+    },
+    "linear_density": [0.9, 0.7],
+    "rotary_inertia": [2e-4, 3e-4, 4e-4],
+    "damping": {"bending_x": 0.01, "torsion": 0.02, "extension": 0.4},
+}
+
+PLATE: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.5,
+    "strain": "reissner",
+    "material": {"youngs_modulus": 2.0e9, "shear_modulus": 7e8, "density": 1200.0},
+    "section": {"shape": "rectangle", "width": [0.02, 0.01], "height": 0.004, "shear_correction": 0.85},
+}
+
+CABLES = [
+    {"name": "east", "kind": "tendon", "rod": "wire", "tension": 1.0, "offset": [[8e-3, -2e-3], 1e-3]},
+    {"name": "coil", "kind": "tendon", "rod": "wire", "tension": 0.7, "helix": {"radius": 6e-3, "turns": 1.2}},
+    {"name": "air", "kind": "chamber", "rod": "wire", "pressure": 2e4, "area": 3e-6, "offset": [0.0, 4e-3]},
+]
+
+
+def tables(rod: dict[str, Any], *parameters: str, **changes: Any) -> dict[str, Any]:
+    load = push(rod="wire", force=[0.4, 0.2, -0.3], moment=[0.02, 0.0, 0.01])
+    return {
+        "schema": 1,
+        "rods": [rod],
+        "loads": [load, WEIGHT],
+        "inputs": ["push.force"],
+        "parameters": list(parameters),
+        **changes,
+    }
+
+
+PLATFORM: dict[str, Any] = {
+    "rods": [
+        {**WIRE, "name": "left", "base": {"position": [-0.1, 0, 0]}},
+        {**WIRE, "name": "right", "base": {"position": [0.1, 0, 0]}},
+    ],
+    "bodies": [{"name": "plate", "mass": 0.2, "centre_of_mass": [0.01, 0.0, 0.02], "inertia": [1e-3, 2e-3, 2.5e-3]}],
+    "joints": [
+        {"body": "plate", "rod": "left", "kind": "fixed", "position": [-0.1, 0, 0]},
+        {"body": "plate", "rod": "right", "kind": "spherical", "position": [0.1, 0, 0]},
+    ],
+    "loads": [
+        WEIGHT,
+        {"name": "pull", "kind": "body_wrench", "body": "plate", "force": [0.3, 0.1, 0], "position": [0.02, 0.03, 0]},
+    ],
+    "inputs": ["pull.force"],
+}
+
+CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "moduli": (tables(WIRE), {"wire.material.youngs_modulus": 3.1e9, "wire.material.poisson_ratio": 0.21}),
+    "modulus of a uniform rod": (
+        tables({**WIRE, "section": {"shape": "circle", "radius": 0.01}}),
+        {"wire.material.youngs_modulus": 3.1e9},
+    ),
+    "density": (tables(WIRE), {"wire.material.density": 1450.0}),
+    "radii": (tables(WIRE), {"wire.section.outer_radius": [0.012, 0.0075], "wire.section.inner_radius": 0.004}),
+    "tip radius": (tables(WIRE), {"wire.section.outer_radius.tip": 0.0085}),
+    "rectangle": (
+        tables(PLATE),
+        {"wire.section.width": [0.018, 0.012], "wire.section.height": 0.005, "wire.section.shear_correction": 0.8},
+    ),
+    "shear modulus": (tables(PLATE), {"wire.material.shear_modulus": 6e8}),
+    "stiffness": (
+        tables(ELASTIC),
+        {"wire.stiffness.bending_y": [1.6, 1.0], "wire.stiffness.torsion": 0.9, "wire.stiffness.shear_x": 33.0},
+    ),
+    "inertia": (
+        tables(ELASTIC),
+        {"wire.linear_density": [0.8, 1.1], "wire.rotary_inertia": [3e-4, 2.5e-4, 5e-4]},
+    ),
+    "damping": (tables(ELASTIC), {"wire.damping.torsion": 0.05, "wire.damping.bending_x": 0.015}),
+    "retardation": (tables(WIRE), {"wire.damping.retardation_time": 0.05, "wire.material.youngs_modulus": 1.7e9}),
+    "curvature": (tables(WIRE), {"wire.intrinsic.curvature": [[0.4, -0.1], [1.0, 0.5], [0.3, 0.2]]}),
+    "one coefficient": (tables(WIRE), {"wire.intrinsic.curvature.y[1]": -0.4}),
+    "tangent": (tables(ELASTIC), {"wire.intrinsic.tangent": [0.02, -0.01, 1.03]}),
+    "base": (
+        tables(WIRE),
+        {"wire.base.position": [0.3, -0.2, 0.1], "wire.base.quaternion": [0.6, 0.0, 0.0, 0.8]},
+    ),
+    "length": (tables(WIRE), {"wire.length": 0.95}),
+    "length and sections": (
+        tables(ELASTIC),
+        {"wire.length": 0.7, "wire.stiffness.bending_x": 1.2, "wire.intrinsic.curvature.x": 0.4},
+    ),
+    "loads": (tables(WIRE), {"push.moment": [0.0, 0.03, 0.01], "weight.acceleration.z": -9.0}),
+    "offsets": (tables(ELASTIC, actuators=CABLES), {"east.offset": [[7e-3, -1e-3], [2e-3, 1e-3]]}),
+    "helix": (
+        tables(ELASTIC, actuators=CABLES),
+        {"coil.helix.radius": 7e-3, "coil.helix.turns": 0.9, "coil.helix.phase": 0.4},
+    ),
+    "chamber": (
+        tables(ELASTIC, actuators=CABLES),
+        {"air.area": 4e-6, "air.offset.y": 3e-3, "air.pressure": 3e4, "east.tension": 1.5},
+    ),
+    "bodies": (
+        {"schema": 1, **PLATFORM},
+        {
+            "plate.mass": 0.3,
+            "plate.centre_of_mass": [0.0, 0.02, 0.01],
+            "plate.inertia": [2e-3, 1.5e-3, 3e-3],
+            "pull.position": [0.0, 0.05, 0.01],
+            "left.material.youngs_modulus": 1.5e9,
+        },
+    ),
+}
+
+SIZE = 1e-2
+"""Length of the elastic rods, N m², of what a difference of a parameter is measured by."""
+
+
+def scene_of(case: str) -> Scene:
+    given, values = CASES[case]
+    return scene_from_dict({**given, "parameters": list(values)})
+
+
+def model_of(case: str) -> Model:
+    scene = scene_of(case)
+    return build(scene, discretise(scene, 4, 8), moving=True)
+
+
+def point(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Unknowns, their rates, inputs and rates of the inputs, drawn at random."""
+    random = np.random.default_rng(7)
+    x, v, a = 0.3 * random.standard_normal((3, model.size))
+    inputs = model.pack() + 0.1 * random.standard_normal(model.inputs.size)
+    return x, v, a, inputs, np.zeros(model.inputs.size)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
+    model = model_of(case)
+    baked = build(scene_of(case).baked(), model.discretisation, moving=True)
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack()
+    for wanted, found in (
+        (baked.residual(x, inputs), model.residual(x, inputs, p)),
+        (baked.jacobian(x, inputs)[0], model.jacobian(x, inputs, p)[0]),
+        (
+            baked.inverse_dynamics(x, v, a, inputs, still, still),
+            model.inverse_dynamics(x, v, a, inputs, p, still, still),
+        ),
+        (baked.mass_matrix(x, inputs), model.mass_matrix(x, inputs, p)),
+        (baked.energy(x, inputs), model.energy(x, inputs, p)),
+    ):
+        wanted_entries = wanted.full()
+        assert_allclose(found.full(), wanted_entries, rtol=1e-13, atol=1e-14 * np.abs(wanted_entries).max())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_elsewhere_it_is_the_model_with_these_numbers(case: str) -> None:
+    """The bound model computes with plain numbers: none of its constants is an expression."""
+    model = model_of(case)
+    values = CASES[case][1]
+    bound = model.at(values)
+    assert not bound.parameters.size
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack(values)
+    matrices = model.dynamics_jacobian(x, v, a, inputs, p, still, still)
+    wanted_matrices = bound.dynamics_jacobian(x, v, a, inputs, still, still)
+    pairs = [
+        (bound.residual(x, inputs), model.residual(x, inputs, p)),
+        (bound.jacobian(x, inputs)[0], model.jacobian(x, inputs, p)[0]),
+        *zip(wanted_matrices, matrices, strict=True),
+        *zip(
+            bound.energies(x, v, inputs, still), model.energies(x, v, inputs, p, still), strict=True
+        ),
+        *zip(
+            bound.powers(x, v, a, inputs, still, still), model.powers(x, v, a, inputs, p, still, still), strict=True
+        ),
+    ]
+    for wanted, found in pairs:
+        wanted_entries = wanted.full()
+        assert_allclose(found.full(), wanted_entries, rtol=1e-12, atol=1e-13 * np.abs(wanted_entries).max(initial=1e-9))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_derivatives_with_the_parameters(case: str) -> None:
+    """First derivatives against differences, and second ones finite, at a shape and in the unloaded rod."""
+    model = model_of(case)
+    random_x, _, _, inputs, _ = point(model)
+    p = model.parameters.pack()
+    step = np.maximum(np.abs(p), 1e-3) * 1e-5
+    argument = model.parameters.symbol
+    x_symbol = ca.MX.sym("x", model.size)
+    residual = model.residual(x_symbol, inputs, argument)
+    second = ca.Function("second", [x_symbol, argument], [ca.hessian(ca.sumsqr(residual), argument)[0]])
+    for x in (random_x, np.zeros(model.size)):
+        found = model.parameter_jacobian(x, inputs, p).full()
+        columns = []
+        for i, width in enumerate(step):
+            there, back = p.copy(), p.copy()
+            there[i] += width
+            back[i] -= width
+            difference = model.residual(x, inputs, there) - model.residual(x, inputs, back)
+            columns.append(difference.full()[:, 0] / (2 * width))
+        wanted = np.stack(columns, axis=1)
+        scale = np.abs(wanted).max(axis=0, initial=1e-12)
+        assert_allclose(found / scale, wanted / scale, rtol=0, atol=2e-8)
+        assert np.all(np.isfinite(second(x, p).full()))
