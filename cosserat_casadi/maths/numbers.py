@@ -91,10 +91,12 @@ def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:
 
 
 def repeated(numbers: Numbers, count: int) -> Numbers:
-    """A vector of so many entries; an expression that stands for all of them is repeated."""
-    if is_symbolic(numbers) and numbers.shape[0] == 1 and count != 1:
+    """A vector of so many entries; one that stands for all of them is repeated."""
+    if numbers.shape[0] != 1 or count == 1:
+        return numbers
+    if is_symbolic(numbers):
         return ca.repmat(numbers, count, 1)
-    return numbers
+    return np.repeat(numbers, count)
 
 
 def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
@@ -104,8 +106,11 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
         linear_map: shape (m, k).
         numbers: shape (k,); or one expression that stands for all k.
     """
+    if is_symbolic(numbers) and not ca.symvar(numbers):
+        # A column of a table of expressions may be known all the same.
+        numbers = repeated(ca.evalf(numbers).full()[:, 0], linear_map.shape[1])
     if not is_symbolic(numbers):
-        return ca.DM(linear_map @ numbers)
+        return ca.sparsify(ca.DM(without_rounding(linear_map @ numbers)))
     if numbers.shape[0] == 1 and linear_map.shape[1] != 1:
         total = without_rounding(linear_map.sum(axis=1))
         return ca.sparsify(ca.DM(total)) * numbers

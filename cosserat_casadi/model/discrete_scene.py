@@ -117,7 +117,7 @@ class DiscreteScene:
     def constraints(self) -> list[PlacedConstraint]:
         """Supports, bases of carried rods and joints, in the order of their multipliers."""
         if self.scaling is not None:
-            return written_constraints(self.scaling.constraints, self.scene)
+            return written_constraints(self.scaling.constraints, self.scaling.scene, self.scene)
         return placed_constraints(self.unloaded)
 
     @cached_property

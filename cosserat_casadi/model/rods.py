@@ -89,11 +89,15 @@ def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
     position = as_vector(rod.base.position)
     if rod.base.tangent is not None:
         return position, quaternion_from_tangent(rod.base.tangent)
-    quaternion = as_vector(rod.base.quaternion)
+    return position, unit_quaternion(rod.base.quaternion)
+
+
+def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
+    """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
+    quaternion = as_vector(entries)
     if is_symbolic(quaternion):
-        # As of an input: its norm does not matter.
-        quaternion = quaternion / ca.sqrt(ca.sumsqr(quaternion))
-    return position, quaternion
+        return quaternion / ca.sqrt(ca.sumsqr(quaternion))
+    return quaternion
 
 
 def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:

@@ -59,8 +59,17 @@ class RodProperties:
 
     def intrinsic_strain(self, X: Array) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""
+        return self._along(self.intrinsic, X)
+
+    def intrinsic_curvature(self, X: Array) -> Numbers:
+        """The three angular components of ξ⁰ at abscissae X, shape (len(X), 3), 1/m."""
+        return self._along(self.intrinsic[:3], X)
+
+    @staticmethod
+    def _along(components: tuple[tuple[Scalar, ...], ...], X: Array) -> Numbers:
+        """Legendre series at abscissae, one column a component."""
         columns = []
-        for coefficients in self.intrinsic:
+        for coefficients in components:
             if is_symbolic(coefficients):
                 polynomials = legendre.legvander(2 * X - 1, len(coefficients) - 1)
                 columns.append(ca.DM(polynomials) @ as_vector(coefficients))

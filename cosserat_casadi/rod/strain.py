@@ -349,7 +349,7 @@ class DiscreteRod:
         """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
 
         def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
-            return np.asarray(self.properties.intrinsic_strain(X)[:, :3])
+            return np.asarray(self.properties.intrinsic_curvature(X))
 
         return self._taylor(curvature)
 

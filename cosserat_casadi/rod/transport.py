@@ -272,7 +272,7 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
 
 def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     """K at the nodes, per reference length, 3×M, 1/m."""
-    intrinsic = rod.properties.intrinsic_strain(rod.grid.nodes)
+    intrinsic = rod.properties.intrinsic_curvature(rod.grid.nodes)
     rows = []
     for axis in range(3):
         row = per_reference_length(as_matrix(column(intrinsic, axis)).T, ratio)

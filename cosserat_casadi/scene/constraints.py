@@ -197,6 +197,8 @@ class JointRecord(Entry):
         """An axis decides which directions are held."""
         if key == "axis":
             return "is an axis, which decides the directions that the joint holds", "build a scene for each value"
+        if key == "quaternion" and "axis" in type(self).model_fields:
+            return "turns the axis of the joint", "build a scene for each value"
         return super().parameter_refusal(key)
 
 
