@@ -103,6 +103,8 @@ def solve_scene(
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
+    # Parameters have the scene's values: what is solved is one scene.
+    scene = scene.baked()
     solver = _SceneSolver(scene, values, stable, progress, report)
     solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
     # The last correction alone may need no step: a user asks what the search has cost.

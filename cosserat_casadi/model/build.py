@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -68,7 +68,26 @@ class Model(functions.ModelFunctions, MotionFunctions):
             layout.pack(values)
             return self
         nominal = self.discrete.nominal
-        return Model(with_numbers(nominal, layout.set_in(nominal.scene, values)))
+        p = layout.pack(values).tobytes()
+        known = self.__dict__.setdefault("_bound", {})
+        if p not in known:
+            # The last one is kept: a loop solves a model with one set of parameters again and again.
+            known.clear()
+            known[p] = Model(with_numbers(nominal, layout.set_in(nominal.scene, values)))
+        bound: Model = known[p]
+        return bound
+
+    def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
+        """The model, without parameters, of a scene that differs in what is held, on the same modes and nodes.
+
+        Args:
+            change: the scene ↦ the other scene, of the same rods.
+        """
+        bound = self.at()
+        nominal = build(change(bound.discrete.nominal.scene).baked(), self.discretisation)
+        if bound.discrete.scaling is None:
+            return nominal
+        return Model(with_numbers(nominal.discrete, change(bound.scene)))
 
     @property
     def inputs(self) -> InputLayout:

@@ -15,6 +15,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
+from cosserat_casadi.maths.numbers import is_symbolic
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -97,6 +98,20 @@ class DiscreteScene:
         if self.scaling is not None:
             return self.scaling.unloaded
         return UnloadedScene(self.scene, self.rods)
+
+    @cached_property
+    def own_unloaded(self) -> UnloadedScene:
+        """Poses of rods where nothing acts, by the scene's own numbers."""
+        return UnloadedScene(self.scene, self.rods)
+
+    def moves_unloaded(self, rod: str) -> bool:
+        """Whether an expression of parameters places the unloaded rod, or one that carries it."""
+        record = self.records[rod]
+        if is_symbolic([record.length, *record.intrinsic.curvature, *record.intrinsic.tangent]):
+            return True
+        if is_symbolic([*record.base.position, *record.base.quaternion]):
+            return True
+        return record.base.rod is not None and self.moves_unloaded(record.base.rod)
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:

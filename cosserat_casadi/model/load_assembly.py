@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector, is_zero
@@ -143,16 +144,22 @@ def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
 
 
 def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> Poses:
-    """World poses of sections in the unloaded scene, at the lengths and bases that the scene gives.
+    """World poses of sections in the unloaded scene, at the numbers that the scene gives.
 
     Args:
         discrete: the scene.
         rod: name of the rod.
         interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
+
+    Raises:
+        SceneError: parameters move the unloaded rod.
     """
+    if discrete.moves_unloaded(rod):
+        problem = "is bound to where the unloaded rod was, which parameters move"
+        raise SceneError(Problem(f"a load on {rod!r}", problem, "name no length, base or intrinsic strain of this rod"))
     discrete_rod = discrete.rods[rod]
-    base = discrete.unloaded.base(rod)
-    unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
+    base = discrete.own_unloaded.base(rod)
+    unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size), discrete_rod.properties.ratio)
     nodal_position = _numbers(unloaded.position)
     directors = [_numbers(director) @ interpolation.T for director in unloaded.directors]
     # Column a of the rotation matrix is director a.

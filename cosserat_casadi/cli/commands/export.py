@@ -16,6 +16,7 @@ from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.scene import read_scene
 
 
@@ -37,6 +38,7 @@ def export(
     # All that can be refused is refused before the solve, which may take a minute.
     check_export(output, name)
     exported_scene = read_scene(scene, tuple(settings or ()))
+    refuse_parameters(exported_scene)
     scene_names(name, exported_scene)
 
     solution = solve_with_progress(exported_scene)
