@@ -10,7 +10,7 @@ from numpy.polynomial import polynomial
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.grid import Grid, Indices
-from cosserat_casadi.maths.numbers import Numbers, as_vector, is_symbolic, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_vector, is_symbolic, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.cable import Routing
 
@@ -52,7 +52,7 @@ def _polynomial(offset: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
     values: list[Numbers] = []
     slopes: list[Numbers] = []
     for component in offset:
-        if is_symbolic(component):
+        if any_symbolic([component]):
             powers = as_vector(component if isinstance(component, tuple) else (component,))
             degree = powers.shape[0] - 1
             values.append(ca.DM(polynomial.polyvander(X, degree)) @ powers)

@@ -20,7 +20,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, is_symbolic, is_zero
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, is_zero
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -198,7 +198,7 @@ class Load(ABC, Generic[RecordType]):
 
 def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers:
     """Three components, each a number or a list of Legendre coefficients, as one (3, k) array."""
-    if is_symbolic(components):
+    if any_symbolic(components):
         return _symbolic_coefficients(components)
     rows = [np.atleast_1d(np.asarray(component, dtype=float)) for component in components]
     longest = max(len(row) for row in rows)
@@ -222,4 +222,4 @@ def constant(values: Numbers) -> Matrix | None:
         return None
     if is_symbolic(values):
         return values
-    return ca.sparsify(ca.DM(values))
+    return ca.sparsify(as_matrix(values))

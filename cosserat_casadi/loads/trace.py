@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_symbolic, known, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
@@ -52,7 +53,7 @@ class TracedLoad:
         force, moment = self.member.wrench(self.load, nowhere, values)
         return _unless_zero(force), _unless_zero(moment)
 
-    def data(self, site: Site) -> FloatArray:
+    def data(self, site: Site) -> Numbers:
         """What the kernel takes as data at the sections of a rod, shape (d, k)."""
         force_columns, moment_columns = self.columns
         rows = [
@@ -60,7 +61,11 @@ class TracedLoad:
             self.member.profiles(self.load, site.rod, site.X, moment_columns),
             self.member.data(self.load, site),
         ]
-        return np.vstack(rows)
+        if any_symbolic(rows):
+            # One profile may stand for all sections.
+            columns = [repeated(row.T, len(site.X)) if is_symbolic(row) else row.T for row in rows]
+            return ca.vertcat(*[as_matrix(own).T for own in columns])
+        return np.vstack([known(row) for row in rows])
 
 
 def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:

@@ -6,13 +6,16 @@ What is known stays NumPy, to the last bit; what a parameter enters is an MX. A 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TypeAlias
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
 
 Numbers: TypeAlias = FloatArray | Matrix
 """Numbers that are known, or expressions of parameters."""
@@ -24,11 +27,20 @@ ROUNDING = 1e-15
 """Share of the largest entry below which an entry is zero by orthogonality."""
 
 
-def is_symbolic(value: object) -> bool:
-    """Whether a value is an expression, or a sequence with one in it."""
-    if isinstance(value, tuple | list):
-        return any(is_symbolic(entry) for entry in value)
+def is_symbolic(value: object) -> TypeIs[Matrix]:
+    """Whether a value is an expression."""
     return isinstance(value, ca.MX)
+
+
+def any_symbolic(values: Iterable[object]) -> bool:
+    """Whether there is an expression among values, or in a sequence among them."""
+    return any(any_symbolic(value) if isinstance(value, tuple | list) else is_symbolic(value) for value in values)
+
+
+def known(numbers: Numbers) -> FloatArray:
+    """Numbers of which no parameter is part, as an array."""
+    assert isinstance(numbers, np.ndarray), "asked for where no parameter is free"
+    return numbers
 
 
 def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
@@ -36,8 +48,8 @@ def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
     if isinstance(value, tuple | list):
         return all(is_zero(entry) for entry in value)
     if isinstance(value, ca.MX | ca.DM):
-        return value.nnz() == 0
-    return not np.any(value)
+        return bool(value.nnz() == 0)
+    return not np.any(np.asarray(value))
 
 
 def as_matrix(numbers: Numbers) -> Matrix:
@@ -49,7 +61,7 @@ def as_matrix(numbers: Numbers) -> Matrix:
 
 def as_vector(values: Sequence[Scalar]) -> Numbers:
     """Scalars as a vector, of which those that are zero are not stored where one is an expression."""
-    if not is_symbolic(values):
+    if not any_symbolic(values):
         return np.asarray(values, dtype=float)
     entries = [value if isinstance(value, ca.MX) else ca.sparsify(ca.DM(value)) for value in values]
     stacked: Matrix = ca.vertcat(*entries)
@@ -58,9 +70,10 @@ def as_vector(values: Sequence[Scalar]) -> Numbers:
 
 def side_by_side(columns: Sequence[Numbers]) -> Numbers:
     """Vectors of one length as the columns of a table."""
-    if not is_symbolic(list(columns)):
-        return np.stack(columns, axis=-1)
-    table: Matrix = ca.horzcat(*[ca.sparsify(as_matrix(c)) if not is_symbolic(c) else c for c in columns])
+    if not any_symbolic(columns):
+        return np.stack([known(own) for own in columns], axis=-1)
+    # What is zero is not stored.
+    table: Matrix = ca.horzcat(*[own if is_symbolic(own) else ca.sparsify(as_matrix(own)) for own in columns])
     return table
 
 
@@ -74,13 +87,14 @@ def rows_of(table: Numbers) -> list[Numbers]:
     """The rows of a table, each as a vector."""
     if is_symbolic(table):
         return [row.T for row in ca.vertsplit(table)]
-    return list(table)
+    return list(known(table))
 
 
 def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
     """Vectors of one length as the rows of a table."""
-    table = side_by_side(rows)
-    return table.T if is_symbolic(table) else np.stack(rows)
+    if any_symbolic(rows):
+        return side_by_side(rows).T
+    return np.stack([known(row) for row in rows])
 
 
 def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:
@@ -96,7 +110,7 @@ def repeated(numbers: Numbers, count: int) -> Numbers:
         return numbers
     if is_symbolic(numbers):
         return ca.repmat(numbers, count, 1)
-    return np.repeat(numbers, count)
+    return np.repeat(known(numbers), count)
 
 
 def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
@@ -110,7 +124,7 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
         # A column of a table of expressions may be known all the same.
         numbers = repeated(ca.evalf(numbers).full()[:, 0], linear_map.shape[1])
     if not is_symbolic(numbers):
-        return ca.sparsify(ca.DM(without_rounding(linear_map @ numbers)))
+        return ca.sparsify(ca.DM(without_rounding(linear_map @ known(numbers))))
     if numbers.shape[0] == 1 and linear_map.shape[1] != 1:
         total = without_rounding(linear_map.sum(axis=1))
         return ca.sparsify(ca.DM(total)) * numbers
@@ -121,8 +135,8 @@ def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
     # The product of the known matrices is known: one multiplication for each parameter is left.
     columns = (linear_map @ slope).T
     by_symbol = np.stack([without_rounding(own) for own in columns], axis=-1)
-    known = without_rounding(linear_map @ constant)
-    return ca.sparsify(ca.DM(known)) + ca.sparsify(ca.DM(by_symbol)) @ symbol
+    at_zero = without_rounding(linear_map @ constant)
+    return ca.sparsify(ca.DM(at_zero)) + ca.sparsify(ca.DM(by_symbol)) @ symbol
 
 
 def without_rounding(entries: FloatArray) -> FloatArray:

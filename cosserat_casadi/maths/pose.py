@@ -8,7 +8,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
@@ -89,9 +89,9 @@ class NumericPose:
 
 def written_pose(position: Numbers, quaternion: Numbers) -> NumericPose | Pose:
     """A pose of numbers, or of expressions where one of its parts is an expression."""
-    if is_symbolic([position, quaternion]):
+    if any_symbolic([position, quaternion]):
         return Pose(as_matrix(position), as_matrix(quaternion))
-    return NumericPose(np.asarray(position), np.asarray(quaternion))
+    return NumericPose(known(position), known(quaternion))
 
 
 def numeric(pose: Pose) -> NumericPose:

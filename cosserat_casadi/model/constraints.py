@@ -89,7 +89,9 @@ def written_constraints(
         start = before[entry.where]
         assert isinstance(start, NumericPose)
         # Of the two signs of a quaternion, the one that the nominal place has.
-        sign = np.sign(entry.constraint.place.quaternion @ start.quaternion)
+        closing = entry.constraint.place
+        assert isinstance(closing, NumericPose)
+        sign = float(np.sign(closing.quaternion @ start.quaternion))
         if isinstance(place, Pose):
             place = Pose(place.position, sign * place.quaternion)
         else:

@@ -15,7 +15,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.maths.numbers import is_symbolic
+from cosserat_casadi.maths.numbers import any_symbolic, known
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
@@ -65,7 +65,7 @@ def _softness(rod: DiscreteRod, routing: Routing) -> float:
     unloaded = shape(rod, ca.MX.zeros(rod.size))
     gradient = ca.evalf(ca.MX(routing.on(unloaded).gradient)).full()[:, 0]
     pull = gradient / rod.properties.length
-    softness = float(pull @ np.linalg.solve(rod.stiffness, pull))
+    softness = float(pull @ np.linalg.solve(known(rod.stiffness), pull))
     return softness if softness > NO_SOFTNESS else 1.0
 
 
@@ -107,9 +107,9 @@ class DiscreteScene:
     def moves_unloaded(self, rod: str) -> bool:
         """Whether an expression of parameters places the unloaded rod, or one that carries it."""
         record = self.records[rod]
-        if is_symbolic([record.length, *record.intrinsic.curvature, *record.intrinsic.tangent]):
+        if any_symbolic([record.length, record.intrinsic.curvature, record.intrinsic.tangent]):
             return True
-        if is_symbolic([*record.base.position, *record.base.quaternion]):
+        if any_symbolic([record.base.position, record.base.quaternion]):
             return True
         return record.base.rod is not None and self.moves_unloaded(record.base.rod)
 

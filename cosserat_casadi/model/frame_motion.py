@@ -12,7 +12,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, as_vector, is_symbolic
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FloatingFrame
@@ -151,12 +151,13 @@ class FloatingFrameMotion:
 
 def body_inertia(body: scenes.Body) -> Numbers:
     """Inertia of a body about its centre of mass, body axes, shape (3, 3), kg m²."""
-    if not is_symbolic(body.inertia):
+    if not any_symbolic(body.inertia):
         return body.inertia_matrix
     rows = [as_matrix(as_vector(row)).T for row in body.inertia if isinstance(row, tuple)]
     if rows:
         return ca.vertcat(*rows)
-    return ca.diag(as_vector(body.inertia))
+    moments = [moment for moment in body.inertia if not isinstance(moment, tuple)]
+    return ca.diag(as_matrix(as_vector(moments)))
 
 
 @dataclass(frozen=True)

@@ -314,7 +314,8 @@ def _parametric_response(written: Expressions) -> Matrix:
     rate = ca.jacobian(equations.residual, load_factor)
     at_start = ca.substitute([equations.jacobian, rate], [load_factor], [ca.MX(0.0)])
     jacobian, right_side = at_start
-    return -ca.solve(jacobian, right_side, "qr")
+    response: Matrix = -ca.solve(jacobian, right_side, "qr")
+    return response
 
 
 def _without_noise(values: FloatArray) -> FloatArray:

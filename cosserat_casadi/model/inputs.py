@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.load import coefficients
-from cosserat_casadi.maths.numbers import Numbers
+from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.model.stacked import StackedLayout
@@ -125,14 +126,13 @@ class InputLayout(StackedLayout[Input]):
 
 def scene_value(record: Entry, field: str) -> Numbers:
     """An input of a load or an actuator as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
-    value = getattr(record, field, None)
+    value: Any = getattr(record, field, None)
     if value is None:
         components = record.inputs[field].components
         return np.zeros((components, 1))
     if isinstance(value, int | float):
         return np.array([[float(value)]])
-    if not isinstance(value, tuple):
-        # An expression of parameters.
+    if is_symbolic(value):
         return value
     return coefficients(value)
 
@@ -148,7 +148,7 @@ def _input(free: scenes.FreeInput) -> Input:
         default = _rod_value(record, free.field)
         of_rod = True
     else:
-        default = scene_value(record, free.field)
+        default = known(scene_value(record, free.field))
         of_rod = False
     return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod)
 
@@ -180,7 +180,7 @@ def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) ->
     """Values of every load and actuator for given inputs, by name and field: the scene's where they are fixed."""
     values: dict[str, dict[str, FloatArray]] = {}
     for record in scene.causes:
-        values[record.name] = {field: scene_value(record, field) for field in record.inputs}
+        values[record.name] = {field: known(scene_value(record, field)) for field in record.inputs}
     for entry, span in layout:
         if not entry.of_rod:
             values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")

@@ -10,7 +10,16 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, is_symbolic, repeated, side_by_side
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_vector,
+    is_symbolic,
+    known,
+    repeated,
+    side_by_side,
+)
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
@@ -96,13 +105,16 @@ def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
     """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
     quaternion = as_vector(entries)
     if is_symbolic(quaternion):
-        return quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        unit: Matrix = quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        return unit
     return quaternion
 
 
 def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
+    if isinstance(component, tuple) and any_symbolic(component):
+        return component
     if is_symbolic(component):
-        return component if isinstance(component, tuple) else (component,)
+        return (component,)
     values = np.atleast_1d(np.asarray(component, dtype=float))
     return tuple(float(v) for v in values)
 
@@ -111,9 +123,11 @@ def _linear(value: Scalar | Sequence[Scalar]) -> Field:
     """A size along the rod: constant, or linear from base to tip."""
     if isinstance(value, int | float):
         return lambda X: value + 0.0 * X
-    if not isinstance(value, tuple):
-        # An expression: one stands for all abscissae.
-        return lambda X: value
+    if is_symbolic(value):
+        # One stands for all abscissae.
+        expression: Numbers = value
+        return lambda X: expression
+    assert isinstance(value, tuple)
     base, tip = value
     return lambda X: base + (tip - base) * X
 
@@ -189,7 +203,7 @@ def _along(field: Field, X: FloatArray) -> Numbers:
     values = field(X)
     if is_symbolic(values):
         return repeated(values, len(X))
-    return np.broadcast_to(values, X.shape)
+    return np.broadcast_to(known(values), X.shape)
 
 
 def _linear_density(rod: scenes.Rod) -> Field | None:
@@ -209,7 +223,7 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
         given = as_vector(rod.rotary_inertia)
         if is_symbolic(given):
             return lambda X: given.T
-        return lambda X: np.tile(given, (len(X), 1))
+        return lambda X: np.tile(known(given), (len(X), 1))
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density

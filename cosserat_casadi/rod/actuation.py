@@ -15,9 +15,9 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, product, row_times, rows_of
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, product, row_times, rows_of
 from cosserat_casadi.maths.shapes import check_shape
-from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 
 
@@ -104,15 +104,15 @@ class StrainSumOnRod:
         """∂L/∂q, n×1."""
         rod = self.shape.rod
         weights = dict(zip(self.quantity.components, self._weighted, strict=True))
-        rows = []
+        rows: list[tuple[FloatArray, Numbers]] = []
         for c in rod.admitted:
             phi = rod.at_nodes[c]
             # A strain that the quantity does not depend on has no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
-            rows.append(phi.T @ own if not is_symbolic(own) else product(phi.T, own))
-        if is_symbolic(rows):
-            return ca.vertcat(*[ca.sparsify(as_matrix(row)) if not is_symbolic(row) else row for row in rows])
-        gradient = np.concatenate(rows)
+            rows.append((phi.T, own))
+        if any_symbolic(own for _, own in rows):
+            return ca.vertcat(*[product(to_rows, own) for to_rows, own in rows])
+        gradient = np.concatenate([to_rows @ known(own) for to_rows, own in rows])
         return ca.sparsify(ca.DM(gradient))
 
     def curvature(self, a: int, b: int) -> None:

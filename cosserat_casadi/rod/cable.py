@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, is_zero, rows_of
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_zero, known, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -168,8 +168,9 @@ class RoutedCable:
     def _metric(self, a: int, b: int) -> Numbers:
         """Scalar product of the rates of T with two strains, shape (k,)."""
         dx, dy = rows_of(self.routing.offset)
-        if is_symbolic([dx, dy]):
+        if any_symbolic([dx, dy]):
             return self._symbolic_metric(a, b)
+        dx, dy = known(dx), known(dy)
         zero = np.zeros_like(dx)
         unit = np.ones_like(dx)
         rates = [

@@ -15,7 +15,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, column, is_symbolic, repeated, row_times
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, column, is_symbolic, known, repeated, row_times
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion import RodMotion
@@ -32,8 +32,9 @@ def second_moments(rotary_inertia: Numbers) -> Numbers:
     if is_symbolic(rotary_inertia):
         half_sum = ca.sum2(rotary_inertia) / 2
         return ca.repmat(half_sum, 1, 3) - rotary_inertia
-    half_sum = rotary_inertia.sum(axis=1, keepdims=True) / 2
-    return np.asarray(half_sum - rotary_inertia)
+    about_axes = known(rotary_inertia)
+    half_sum = about_axes.sum(axis=1, keepdims=True) / 2
+    return np.asarray(half_sum - about_axes)
 
 
 @dataclass(frozen=True)
@@ -70,9 +71,9 @@ def _axes_with_moment(properties: RodProperties, along_axes: Numbers) -> list[in
     if is_symbolic(along_axes):
         # Of a plane section the moment along the tangent is zero, J_x + J_y − J_z.
         return [0, 1] if properties.plane_sections else [0, 1, 2]
-    largest = np.abs(along_axes).max()
+    sizes = np.abs(known(along_axes))
     # Zero by cancellation in a plane section.
-    return [axis for axis in range(3) if np.any(np.abs(along_axes[:, axis]) > 1e-12 * largest)]
+    return [axis for axis in range(3) if np.any(sizes[:, axis] > 1e-12 * sizes.max())]
 
 
 @dataclass(frozen=True)

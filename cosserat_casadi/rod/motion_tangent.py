@@ -28,7 +28,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, product, row_times
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
@@ -247,7 +247,7 @@ class MotionTangent:
         mass = self.inertia.masses.mass
         if is_symbolic(mass):
             return ca.kron(ca.DM.eye(3), self._symbolic_gram(integrate, mass))
-        weighted = (rod.node_lengths * mass)[:, None] * integrate
+        weighted = (rod.node_lengths * known(mass))[:, None] * integrate
         gram = integrate.T @ weighted
         return ca.sparsify(ca.DM(np.kron(np.eye(3), gram)))
 

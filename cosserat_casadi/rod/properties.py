@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_vector, is_symbolic, is_zero, side_by_side
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_vector, is_zero, known, side_by_side
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]
@@ -68,9 +68,9 @@ class RodProperties:
     @staticmethod
     def _along(components: tuple[tuple[Scalar, ...], ...], X: Array) -> Numbers:
         """Legendre series at abscissae, one column a component."""
-        columns = []
+        columns: list[Numbers] = []
         for coefficients in components:
-            if is_symbolic(coefficients):
+            if any_symbolic(coefficients):
                 polynomials = legendre.legvander(2 * X - 1, len(coefficients) - 1)
                 columns.append(ca.DM(polynomials) @ as_vector(coefficients))
                 continue
@@ -86,7 +86,7 @@ class RodProperties:
             return self.nominal.mean_hooke
         points, weights = legendre.leggauss(8)
         X = (points + 1) / 2
-        return np.asarray((weights / 2) @ self.hooke(X))
+        return np.asarray((weights / 2) @ known(self.hooke(X)))
 
     @property
     def bending_stiffness(self) -> float:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, Scalar, is_symbolic, side_by_side
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, is_symbolic, known, side_by_side
+from cosserat_casadi.maths.typing import Matrix
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,14 @@ def _rectangle_torsion_constant(width: Numbers, height: Numbers) -> Numbers:
     tanh is 1 to rounding from n = 13 on for every a ≥ b, so the rest of the series is a constant: 31 ζ(5)/32 is
     the sum of 1/n⁵, and only the deficits 1 − tanh are summed.
     """
-    if is_symbolic([width, height]):
-        a = ca.fmax(width, height)
-        b = ca.fmin(width, height)
+    a: Numbers
+    b: Numbers
+    if any_symbolic([width, height]):
+        a = ca.fmax(as_matrix(width), as_matrix(height))
+        b = ca.fmin(as_matrix(width), as_matrix(height))
     else:
-        a = np.maximum(width, height)
-        b = np.minimum(width, height)
+        a = np.maximum(known(width), known(height))
+        b = np.minimum(known(width), known(height))
     # Σ 1/n⁵ over all odd n, 31/32 of ζ(5).
     all_odd = 31 / 32 * 1.0369277551433699
     series = 64 / np.pi**5 * (b / a) * (all_odd - _tanh_deficit(a / b))
@@ -91,8 +94,9 @@ def _tanh_deficit(slenderness: Numbers) -> Numbers:
     if is_symbolic(slenderness):
         # One row a section, one column a term.
         deficits = 1 - ca.tanh(slenderness @ ca.DM(n * np.pi / 2).T)
-        return deficits @ ca.DM(1 / n**5)
-    terms = (1 - np.tanh(n * np.pi / 2 * slenderness[..., None])) / n**5
+        total: Matrix = deficits @ ca.DM(1 / n**5)
+        return total
+    terms = (1 - np.tanh(n * np.pi / 2 * known(slenderness)[..., None])) / n**5
     return np.asarray(terms.sum(axis=-1))
 
 

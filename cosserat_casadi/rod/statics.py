@@ -16,7 +16,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, product, repeated
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, repeated
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -149,7 +149,7 @@ class Statics:
     def _at_every_node(self, profiles: Numbers) -> Matrix:
         """Values of profiles at the nodes, k×M."""
         if is_symbolic(profiles):
-            return repeated(profiles.T, self.shape.rod.grid.size).T
+            return as_matrix(repeated(profiles.T, self.shape.rod.grid.size).T)
         return as_matrix(profiles)
 
     @property
@@ -179,9 +179,10 @@ class Statics:
         if wrench.follower or wrench.profiles is None:
             return self.line(wrench, force) @ ca.DM(to_covector)
         # Profiles are numbers: a dead force per length needs no product with S at run time.
-        if not is_symbolic(wrench.profiles):
-            return force @ ca.DM(wrench.profiles @ to_covector)
-        rows = [product(to_covector.T, profile.T).T for profile in ca.vertsplit(wrench.profiles)]
+        profiles = wrench.profiles
+        if not is_symbolic(profiles):
+            return force @ ca.DM(known(profiles) @ to_covector)
+        rows = [product(to_covector.T, profile.T).T for profile in ca.vertsplit(profiles)]
         return force @ ca.vertcat(*rows)
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:

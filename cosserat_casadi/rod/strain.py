@@ -27,11 +27,13 @@ from cosserat_casadi.maths import chebyshev, magnus
 from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import (
     Numbers,
+    any_symbolic,
     as_matrix,
     as_vector,
     column,
     is_symbolic,
     is_zero,
+    known,
     product,
     without_rounding,
 )
@@ -222,11 +224,11 @@ class DiscreteRod:
         """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n)."""
         points = [self._gauss_points(e) for e in range(self.grid.elements)]
         coefficients = [diagonal(X) for X, _ in points]
-        if is_symbolic(coefficients):
+        if any_symbolic(coefficients):
             return self._symbolic_section_matrix(diagonal)
         result = np.zeros((self.size, self.size))
         for e, (X, weight) in enumerate(points):
-            weighted = coefficients[e] * weight[:, None]
+            weighted = known(coefficients[e]) * weight[:, None]
             element = np.full(len(X), e)
             # Strains do not couple: the tensor is diagonal, and so are its blocks.
             for c, columns in self.columns.items():
@@ -266,12 +268,14 @@ class DiscreteRod:
     @cached_property
     def stiffness_matrix(self) -> Matrix:
         """K_εε / (EI/ℓ), n×n, without its zeros."""
-        return ca.sparsify(as_matrix(self.stiffness)) if not is_symbolic(self.stiffness) else self.stiffness
+        stiffness = self.stiffness
+        return stiffness if is_symbolic(stiffness) else ca.sparsify(as_matrix(stiffness))
 
     @cached_property
     def viscosity_matrix(self) -> Matrix:
         """The matrix of the viscosity, n×n, s, without its zeros."""
-        return ca.sparsify(as_matrix(self.viscosity)) if not is_symbolic(self.viscosity) else self.viscosity
+        viscosity = self.viscosity
+        return viscosity if is_symbolic(viscosity) else ca.sparsify(as_matrix(viscosity))
 
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
@@ -329,11 +333,11 @@ class DiscreteRod:
         """
         axes = list(self.properties.turning_axes)
         curvatures = self.properties.intrinsic[:3]
-        if not is_symbolic(curvatures):
+        if not any_symbolic(curvatures):
             return np.concatenate([taylor[:, axes].T for taylor in self.intrinsic_taylor])
         # The turn is linear in the Legendre coefficients.
         highest = max(map(len, curvatures)) - 1
-        turns = self._taylor(lambda X, element: legendre.legvander(2 * X - 1, highest))
+        turns = self._taylor(lambda X, element: np.asarray(legendre.legvander(2 * X - 1, highest), dtype=float))
         rows = []
         for order, turn in enumerate(turns):
             for axis in axes:
@@ -349,7 +353,7 @@ class DiscreteRod:
         """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
 
         def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
-            return np.asarray(self.properties.intrinsic_curvature(X))
+            return known(self.properties.intrinsic_curvature(X))
 
         return self._taylor(curvature)
 
