@@ -120,7 +120,8 @@ def named_numbers(name: str, holders: Holders) -> NamedNumbers | None:
         first = f"{first}[{int(segments.pop(0)[:9])}]"
     if first not in holders:
         problem = f"no rod, load, actuator, body, joint or support is named {shown(first)}"
-        raise RefusedParameter(problem, closest(first, holders))
+        names = [word for word in holders if "[" not in word]
+        raise RefusedParameter(problem, closest(first, names))
     if not segments:
         raise RefusedParameter("must name a number of an entry", "such as 'finger.material.youngs_modulus'")
     holder = _with_key(holders[first], segments[0])
