@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Model, Scene, build, scene_from_dict
+from cosserat_casadi import ExportError, Model, Scene, SceneError, build, export, scene_from_dict, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from tests.scenes import WEIGHT, push
@@ -264,3 +265,87 @@ def test_derivatives_with_the_parameters(case: str) -> None:
         scale = np.abs(wanted).max()
         assert_allclose(found * step, wanted, rtol=1e-6, atol=1e-7 * scale)
         assert np.all(np.isfinite(second(x, p).full()))
+
+
+PRICES = {
+    "modulus of a uniform rod": 30,
+    "one coefficient": 30,
+    "density": 60,
+    "length": 200,
+    "base": 60,
+}
+"""Most scalar operations that the parameters of a case add to the residual."""
+
+
+@pytest.mark.parametrize("case", PRICES)
+def test_parameters_cost_what_they_compute(case: str) -> None:
+    model = model_of(case)
+    bound = model.at()
+    added = model.operations(model.residual) - bound.operations(bound.residual)
+    assert added <= PRICES[case]
+
+
+def test_a_scene_without_parameters_has_no_argument_for_them() -> None:
+    model = build(scene_of("density").baked())
+    assert model.residual.name_in() == ["x", "inputs"]
+    assert model.parameter_jacobian is None
+    assert not model.parameters.names
+    assert model.at() is model
+
+
+def test_functions_take_parameters_behind_the_inputs() -> None:
+    model = model_of("radii")
+    assert model.residual.name_in() == ["x", "inputs", "p"]
+    assert model.path_jacobian.name_in() == ["x", "inputs", "p", "load_factor"]
+    assert model.energies.name_in() == ["x", "v", "inputs", "p", "inputs_rate"]
+    assert model.igm["wire"].name_in() == ["q", "base_position", "base_quaternion", "inputs", "p"]
+    assert model.parameters.names == ("wire.section.outer_radius", "wire.section.inner_radius")
+    assert model.parameters.units == ["m", "m", "m"]
+    assert [parameter.shape for parameter in model.parameters.entries] == [(1, 2), (1, 1)]
+
+
+@pytest.mark.parametrize("case", ["radii", "length and sections", "curvature", "offsets", "bodies", "base"])
+def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
+    """The scene with these numbers has another scaling, and another model: poses are compared."""
+    model = model_of(case)
+    values = CASES[case][1]
+    found = solve(model, parameters=values)
+    rebuilt = build(model.parameters.set_in(model.scene, values), model.discretisation, moving=True)
+    wanted = solve(rebuilt)
+    assert found.converged
+    assert wanted.converged
+    for rod in model.discrete.rods:
+        assert_allclose(found.tip(rod).position, wanted.tip(rod).position, rtol=0, atol=1e-10)
+    p = model.parameters.pack(values)
+    assert np.abs(model.residual(found.x, found.inputs, p).full()).max() < 1e-9
+
+
+def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
+    model = model_of("length and sections")
+    values = CASES["length and sections"][1]
+    inputs = model.pack()
+    bound = model.at(values)
+    found = model.path_tangent(inputs, model.parameters.pack(values))
+    wanted = bound.path_tangent(inputs).full()
+    assert_allclose(found.full(), wanted, rtol=1e-10, atol=1e-12 * np.abs(wanted).max())
+
+
+def test_values_that_the_scene_refuses_are_refused() -> None:
+    model = model_of("radii")
+    with pytest.raises(SceneError, match="must be < outer_radius at both ends"):
+        model.at({"wire.section.inner_radius": 0.02})
+    with pytest.raises(SceneError, match="is not a parameter of this model"):
+        model.at({"wire.section.radius": 0.02})
+    with pytest.raises(SceneError, match="must have 2 numbers, got 1"):
+        model.at({"wire.section.outer_radius": 0.02})
+    with pytest.raises(SceneError, match="parameters: must be 3 numbers, got 2"):
+        model.at([0.01, 0.02])
+    with pytest.raises(SceneError, match="is not a parameter of this model"):
+        model.at().at({"wire.section.inner_radius": 0.004})
+
+
+def test_functions_in_c_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    model = model_of("density")
+    with pytest.raises(ExportError, match="functions in C take unknowns and inputs alone"):
+        export(model, tmp_path / "folder")
+    assert not (tmp_path / "folder").exists()
