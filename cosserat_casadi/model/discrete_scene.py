@@ -7,7 +7,7 @@ tensions of the cables of given length, as in docs/theory.md, section 8.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -123,10 +123,14 @@ class DiscreteScene:
         """Bodies of the scene by name."""
         return {body.name: body for body in self.scene.bodies}
 
-    @property
+    @cached_property
     def frames(self) -> dict[FrameName, FloatingFrame]:
-        """Floating frames by name."""
-        return self.unloaded.frames
+        """Floating frames by name, with the bodies of this scene."""
+        frames = dict(self.unloaded.frames)
+        for name, frame in frames.items():
+            if frame.body is not None:
+                frames[name] = replace(frame, body=self.bodies[name.name])
+        return frames
 
     @cached_property
     def constraints(self) -> list[PlacedConstraint]:

@@ -163,7 +163,7 @@ class System:
 
     def _turning_mass(self, name: FrameName) -> float:
         """Moment of inertia of the size that the body, or the rod, of a floating frame has, kg m²."""
-        frame = self.discrete.frames[name]
+        frame = self.discrete.nominal.frames[name]
         if frame.body is not None:
             return frame.body.mass * frame.length**2 + float(np.trace(frame.body.inertia_matrix))
         rod = self.discrete.nominal.rods[name.name]
@@ -177,9 +177,9 @@ class System:
         """Inertia of every body that moves and has any, world axes."""
         inertias = {}
         for name, frame_motion in self.frame_motions.items():
-            if frame_motion.frame.body is None:
+            body = frame_motion.frame.body
+            if body is None:
                 continue
-            body = self.discrete.bodies[name.name]
             inertia = body_inertia(body)
             if is_zero(body.mass) and is_zero(inertia):
                 continue

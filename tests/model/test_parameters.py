@@ -272,7 +272,7 @@ PRICES = {
     "one coefficient": 30,
     "density": 60,
     "length": 200,
-    "base": 60,
+    "base": 150,
 }
 """Most scalar operations that the parameters of a case add to the residual."""
 
@@ -304,7 +304,28 @@ def test_functions_take_parameters_behind_the_inputs() -> None:
     assert [parameter.shape for parameter in model.parameters.entries] == [(1, 2), (1, 1)]
 
 
-@pytest.mark.parametrize("case", ["radii", "length and sections", "curvature", "offsets", "bodies", "base"])
+EQUILIBRIA = (
+    "moduli",
+    "density",
+    "radii",
+    "rectangle",
+    "tangent",
+    "length and sections",
+    "curvature",
+    "base",
+    "loads",
+    "offsets",
+    "helix",
+    "chamber",
+    "places of joints",
+    "places of hinges and slides",
+    "place of a branch",
+    "bodies",
+)
+"""Cases whose parameters move an equilibrium."""
+
+
+@pytest.mark.parametrize("case", EQUILIBRIA)
 def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
     """The scene with these numbers has another scaling, and another model: poses are compared."""
     model = model_of(case)
@@ -318,6 +339,34 @@ def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
         assert_allclose(found.tip(rod).position, wanted.tip(rod).position, rtol=0, atol=1e-10)
     p = model.parameters.pack(values)
     assert np.abs(model.residual(found.x, found.inputs, p).full()).max() < 1e-9
+
+
+SAME_SCALING = (
+    "density",
+    "inertia",
+    "damping",
+    "curvature",
+    "one coefficient",
+    "tangent",
+    "base",
+    "loads",
+    "offsets",
+    "helix",
+    "chamber",
+)
+"""Cases whose parameters leave stiffness and length alone, so that unknowns mean the same in a scene of its own."""
+
+
+@pytest.mark.parametrize("case", SAME_SCALING)
+def test_equations_of_motion_are_those_of_a_scene_of_its_own(case: str) -> None:
+    model = model_of(case)
+    values = CASES[case][1]
+    rebuilt = build(model.parameters.set_in(model.scene, values), model.discretisation, moving=True)
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack(values)
+    wanted = rebuilt.inverse_dynamics(x, v, a, inputs, still, still).full()
+    found = model.inverse_dynamics(x, v, a, inputs, p, still, still).full()
+    assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
 
 def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
