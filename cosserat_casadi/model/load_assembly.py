@@ -11,6 +11,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.expressions import expressions_in
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
 from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector, is_zero
@@ -178,6 +179,8 @@ def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs of loads that depend on poses: the equations need not be linear in them."""
     layout = discrete.layout
     indices: list[int] = []
+    # What depends on a pose does so whatever its numbers are.
+    discrete = discrete.nominal
     for load in discrete.scene.loads:
         free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
         if not free:
@@ -205,8 +208,11 @@ def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Ma
 
 
 def input_values(layout: InputLayout, record: scenes.Load | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
-    """Inputs of a load or an actuator; zero for good is a matrix that stores nothing."""
-    values = {}
+    """Inputs of a load or an actuator, and its numbers that are expressions of parameters.
+
+    What is zero for good is a matrix that stores nothing.
+    """
+    values = expressions_in(record)
     for field in record.inputs:
         value = input_value(layout, record, field, inputs)
         if value is None:

@@ -13,6 +13,8 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import ExportError, Model, Scene, SceneError, build, export, scene_from_dict, solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.scene.loads import LoadRecord
+from tests.loads.kinds import DipoleRecord, FoundationRecord, registered, with_loads
 from tests.scenes import WEIGHT, push
 
 WIRE: dict[str, Any] = {
@@ -398,3 +400,43 @@ def test_functions_in_c_are_refused_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="functions in C take unknowns and inputs alone"):
         export(model, tmp_path / "folder")
     assert not (tmp_path / "folder").exists()
+
+
+def with_kind(load: LoadRecord, rod: dict[str, Any], *parameters: str) -> Scene:
+    """A scene of one rod with a load of a kind that does not ship."""
+    scene = with_loads({"schema": 1, "rods": [rod]}, load, inputs=())
+    return scene.model_copy(update={"parameters": parameters})
+
+
+def test_coefficients_of_loads_that_depend_on_poses() -> None:
+    with registered():
+        dipole = DipoleRecord(
+            name="magnet", kind="dipole", rod="wire", at=1.0, dipole=(0.1, 0.0, 0.3), gradient=0.4, field=(0.2, 0.1, 0)
+        )
+        model = build(with_kind(dipole, WIRE, "magnet.gradient", "magnet.field.x", "wire.length"))
+        values = {"magnet.gradient": 0.9, "magnet.field.x": -0.3, "wire.length": 0.7}
+        x, _, _, inputs, _ = point(model)
+        p = model.parameters.pack(values)
+        bound = model.at(values)
+        assert_allclose(model.residual(x, inputs, p).full(), bound.residual(x, inputs).full(), rtol=1e-12, atol=1e-13)
+        wanted = bound.jacobian(x, inputs)[0].full()
+        assert_allclose(model.jacobian(x, inputs, p)[0].full(), wanted, rtol=1e-11, atol=1e-13 * np.abs(wanted).max())
+        assert np.abs(model.parameter_jacobian(x, inputs, p).full()).max(axis=0).min() > 1e-3
+
+
+def test_what_is_bound_to_the_unloaded_rod_refuses_parameters_that_move_it() -> None:
+    with registered():
+        bed = FoundationRecord(name="bed", kind="foundation", rod="wire", strength=20.0)
+        moving = build(with_kind(bed, WIRE, "wire.intrinsic.curvature"))
+        with pytest.raises(SceneError, match="bound to where the unloaded rod was, which parameters move"):
+            _ = moving.residual
+        values = {"wire.intrinsic.curvature": [[0.0, 0.1], [0.9, 0.0], [0.2, 0.0]]}
+        bound = moving.at(values)
+        rebuilt = build(moving.parameters.set_in(moving.scene, values))
+        x, _, _, inputs, _ = point(bound)
+        assert_allclose(bound.residual(x, inputs).full(), rebuilt.residual(x, inputs).full(), rtol=1e-12, atol=1e-14)
+        # The unloaded rod lies in its bed, whatever its curvature.
+        assert np.abs(bound.residual(np.zeros(bound.size), inputs).full()).max() < 1e-13
+
+        stiffer = build(with_kind(bed, WIRE, "wire.material.youngs_modulus"))
+        assert stiffer.residual(x, inputs, stiffer.parameters.pack()).shape == (stiffer.size, 1)
