@@ -162,8 +162,7 @@ def _numbers_in(name: str, holder: Holder, segments: Sequence[str]) -> NamedNumb
     mark = varying_mark(field)
     form = _form(value, along=mark is not None, by_component=mark is not None and varies_by_component(field))
     unit = unit_of(field)
-    rows, columns = _shape(form, value)
-    cells = _chosen(form, rows, columns, remaining)
+    cells = _chosen(form, _lengths(form, value), remaining)
     grid = _grid(form, value, cells)
     default = np.array([grid[cell] for cell in cells], dtype=float)
     chosen_rows = len({row for row, _ in cells})
@@ -193,29 +192,31 @@ def _form(value: Any, *, along: bool, by_component: bool) -> Form:
     raise RefusedParameter("is not a number", "parameters are numbers of the scene")
 
 
-def _shape(form: Form, value: Any) -> tuple[int, int]:
-    """Components of a key, and their places along the rod."""
+def _lengths(form: Form, value: Any) -> list[int]:
+    """Numbers of each component of a key."""
     if form is Form.NUMBER:
-        return 1, 1
+        return [1]
     if form is Form.ENDS:
-        return 1, len(value)
-    if form is Form.VECTOR:
-        return len(value), 1
-    return len(value), max(len(row) if isinstance(row, tuple) else 1 for row in value)
+        return [len(value)]
+    return [len(component) if isinstance(component, tuple) else 1 for component in value]
 
 
-def _chosen(form: Form, rows: int, columns: int, parts: Sequence[str]) -> tuple[Cell, ...]:
-    """The cells that the parts of a name behind its key choose; all without parts.
+def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[Cell, ...]:
+    """The cells that the parts of a name behind its key choose; without parts all, as many in every component.
 
     Raises:
         RefusedParameter: there is no such part.
     """
     remaining = list(parts)
+    rows = len(lengths)
+    columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
-    chosen_columns: Iterable[int] = range(columns)
     if remaining and rows > 1:
         words = AXES.get(rows, AXES[3][:rows])
-        chosen_rows = [_part(remaining.pop(0), words, rows, "component")]
+        row = _part(remaining.pop(0), words, rows, "component")
+        chosen_rows = [row]
+        columns = lengths[row]
+    chosen_columns: Iterable[int] = range(columns)
     if remaining and columns > 1:
         ends = ENDS if form is Form.ENDS else ()
         what = "value" if form is Form.ENDS else "coefficient"

@@ -10,7 +10,18 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import ExportError, Model, Scene, SceneError, build, export, scene_from_dict, solve
+from cosserat_casadi import (
+    ExportError,
+    Model,
+    Scene,
+    SceneError,
+    build,
+    export,
+    follow_path,
+    modes_of,
+    scene_from_dict,
+    solve,
+)
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.loads import LoadRecord
@@ -89,6 +100,11 @@ PLATFORM: dict[str, Any] = {
     "inputs": ["pull.force"],
 }
 
+ROPES = [
+    {"name": "rope", "kind": "tendon", "rod": "wire", "length": 0.8, "offset": [8e-3, 0.0]},
+    {"name": "line", "kind": "tendon", "rod": "wire", "length": 0.82, "slack": True, "offset": [0.0, 8e-3]},
+]
+
 HINGES = [
     {"body": "plate", "rod": "left", "kind": "revolute", "position": [-0.1, 0, 0], "axis": [0, 1, 0.2]},
     {"body": "plate", "rod": "right", "kind": "prismatic", "position": [0.1, 0, 0], "axis": [1, 0, 0]},
@@ -165,6 +181,14 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "place of a branch": (
         {"schema": 1, **BRANCH},
         {"twig.base.position": [0.01, 0.02, 0], "twig.base.quaternion": [0.6, 0, 0.8, 0], "tip.position.y": 0.02},
+    ),
+    "cables of given length": (
+        tables(ELASTIC, actuators=ROPES),
+        {"rope.length": 0.79, "rope.offset.x": 7e-3, "line.offset.y": 9e-3, "wire.stiffness.extension": 80.0},
+    ),
+    "lengths in an assembly": (
+        {"schema": 1, **PLATFORM},
+        {"left.length": 0.85, "right.length": 0.78, "right.intrinsic.curvature.y[0]": 1.0},
     ),
     "bodies": (
         {"schema": 1, **PLATFORM},
@@ -319,6 +343,8 @@ EQUILIBRIA = (
     "offsets",
     "helix",
     "chamber",
+    "cables of given length",
+    "lengths in an assembly",
     "places of joints",
     "places of hinges and slides",
     "place of a branch",
@@ -440,3 +466,33 @@ def test_what_is_bound_to_the_unloaded_rod_refuses_parameters_that_move_it() -> 
 
         stiffer = build(with_kind(bed, WIRE, "wire.material.youngs_modulus"))
         assert stiffer.residual(x, inputs, stiffer.parameters.pack()).shape == (stiffer.size, 1)
+
+
+def test_the_literal_system_takes_parameters() -> None:
+    values = {"wire.length": 0.9, "wire.intrinsic.curvature.x": 0.5, "wire.material.youngs_modulus": 1.8e9}
+    scene = scene_from_dict({**tables(WIRE, *values), "accuracy": {"rotation": "permuted"}})
+    model = build(scene, discretise(scene, 3, 8))
+    bound = model.at(values)
+    x, _, _, inputs, _ = point(model)
+    p = model.parameters.pack(values)
+    wanted = bound.residual(x, inputs).full()
+    assert_allclose(model.residual(x, inputs, p).full(), wanted, rtol=1e-12, atol=1e-13 * np.abs(wanted).max())
+
+
+def test_algorithms_take_the_values_of_the_scene_or_those_that_are_bound() -> None:
+    scene = scene_from_dict({**tables(WIRE, "wire.material.youngs_modulus"), "inputs": ["push.force"]})
+    model = build(scene, discretise(scene, 3, 8))
+    baked = build(scene.baked(), model.discretisation)
+    soft = model.at({"wire.material.youngs_modulus": 5e8})
+    softer = solve(model, parameters=[5e8])
+    assert softer.model is soft
+    assert_allclose(solve(soft).x, softer.x, rtol=0, atol=0)
+    assert_allclose(solve(model).x, solve(baked).x, rtol=0, atol=0)
+    assert modes_of(softer).modes[0].frequency < modes_of(solve(model)).modes[0].frequency
+    path = follow_path(soft, "push.force", [0.0, 0.0, -0.4])
+    assert path.model is soft
+    assert path.factor[-1] == 1.0
+    assert softer.stable == solve(soft).stable
+    # From a solution of the model with other parameters: unknowns mean the same.
+    again = solve(model, start=softer)
+    assert_allclose(again.x, solve(model).x, rtol=0, atol=1e-8)
