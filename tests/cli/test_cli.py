@@ -115,7 +115,7 @@ def test_check_lists_parameters_and_solve_takes_their_values(wire: Path) -> None
     refused = cosserat("export", "wire.toml", "--set", f"parameters={names}", "--output", "c", cwd=wire)
     assert refused.returncode == 2
     assert "functions in C take" in refused.stderr
-    wrong = cosserat("check", "wire.toml", "--set", 'parameters=["wire.material.modulus"]', cwd=wire)
+    wrong = cosserat("check", "wire.toml", "--set", 'parameters=["wire.material.youngs_modulu"]', cwd=wire)
     assert wrong.returncode == 2
     assert "did you mean 'youngs_modulus'?" in " ".join(wrong.stderr.split())
 
