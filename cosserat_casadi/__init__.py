@@ -19,8 +19,8 @@ from cosserat_casadi.codegen.compiled_motion import (
     StepState,
 )
 from cosserat_casadi.codegen.export import export
-from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
+from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
 from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
@@ -50,8 +50,8 @@ __version__ = version("cosserat-casadi")
 
 __all__ = [
     "Compiled",
-    "CompiledStep",
     "CompiledMotionStage",
+    "CompiledStep",
     "CosseratError",
     "Discretisation",
     "EquilibriumPath",

@@ -40,6 +40,7 @@ from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, solve, stabilised
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
@@ -103,6 +104,8 @@ def solve_scene(
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))
         check_potential(coarsest, coarsest.pack(values))
+    # Parameters have the scene's values: what is solved is one scene.
+    scene = scene.baked()
     solver = _SceneSolver(scene, values, stable, progress, report)
     solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
     # The last correction alone may need no step: a user asks what the search has cost.
@@ -350,8 +353,8 @@ def _corrected(model: Model, start: FloatArray, inputs: FloatArray) -> Solution 
 
 def _unloaded_turn(rod: scenes.Rod) -> float:
     """Largest curvature of an unloaded rod times its length, rad."""
-    intrinsic = rod_properties(rod).intrinsic_strain(SAMPLES)
-    curvature = np.linalg.norm(intrinsic[:, :3], axis=1)
+    intrinsic = known(rod_properties(rod).intrinsic_curvature(SAMPLES))
+    curvature = np.linalg.norm(intrinsic, axis=1)
     return float(curvature.max()) * rod.length
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import element_ends
 from cosserat_casadi.model.registry import EFFECTS
@@ -46,7 +47,7 @@ def signal_modes(scene: scenes.Scene) -> int:
             if EFFECTS[actuator.kind].acts_on(actuator, record.name):
                 degree = _actuator_degree(actuator, rod, breaks)
                 degrees.append(degree)
-        degrees += [_series_degree(coefficients) for coefficients in rod.intrinsic]
+        degrees += [_series_degree(known(as_vector(coefficients))) for coefficients in rod.intrinsic]
     for load in scene.loads:
         if isinstance(load, scenes.DistributedWrench):
             components = (*load.force, *load.moment)
@@ -95,7 +96,7 @@ def _projection(
     quantity = EFFECTS[actuator.kind].quantity(actuator, discrete_rod.grid)
     gradient = ca.DM(ca.densify(quantity.on(unloaded).gradient)).full()[:, 0]
     # In coordinates of unit stiffness all strains count alike, whatever the slenderness.
-    units = np.sqrt(np.diag(discrete_rod.stiffness))
+    units = np.sqrt(np.diag(known(discrete_rod.stiffness)))
     sizes = np.zeros(modes)
     for component, columns in discrete_rod.columns.items():
         degrees = discrete_rod.degrees(component)

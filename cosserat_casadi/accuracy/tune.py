@@ -63,7 +63,7 @@ def tune(
     """
     if tolerance is None:
         tolerance = scene.accuracy.tolerance
-    free = unfixed(scene, tolerance)
+    free = unfixed(scene.baked(), tolerance)
     solved_cases = 0
     # Each case once by itself and once on the union, which may have to be refined.
     expected = 2 * len(cases)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import casadi as ca
 import numpy as np
 from numpy.polynomial import polynomial
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_vector, is_symbolic, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.cable import Routing
 
@@ -20,7 +22,7 @@ def routing(actuator: Any, grid: Grid) -> Routing:
     return Routing(nodes, offset, slope)
 
 
-def offset_at(actuator: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+def offset_at(actuator: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
     """Offset D and its derivative dD/dX at any abscissae, shape (2, k) each, m."""
     helix = getattr(actuator, "helix", None)
     if helix is not None:
@@ -34,25 +36,33 @@ def span_ends(actuator: Any) -> tuple[float, ...]:
     return (float(start), float(end))
 
 
-def _polynomial(offset: Any, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _polynomial(offset: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
     """Polynomials of X and their derivatives, shape (2, k) each, m."""
-    values = []
-    slopes = []
+    values: list[Numbers] = []
+    slopes: list[Numbers] = []
     for component in offset:
+        if any_symbolic([component]):
+            powers = as_vector(component if isinstance(component, tuple) else (component,))
+            degree = powers.shape[0] - 1
+            values.append(ca.DM(polynomial.polyvander(X, degree)) @ powers)
+            rates = polynomial.polyvander(X, degree)[:, :-1] * np.arange(1, degree + 1)
+            slopes.append(ca.sparsify(ca.DM(rates)) @ powers[1:] if degree else ca.MX(len(X), 1))
+            continue
         coefficients = np.atleast_1d(np.asarray(component, dtype=float))
         # A constant polynomial gives one number; all abscissae are wanted.
         values.append(polynomial.polyval(X, coefficients) + 0.0 * X)
         slopes.append(polynomial.polyval(X, polynomial.polyder(coefficients)) + 0.0 * X)
-    return np.array(values), np.array(slopes)
+    return stacked_rows(values), stacked_rows(slopes)
 
 
-def _helix(helix: scenes.Helix, X: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _helix(helix: scenes.Helix, X: FloatArray) -> tuple[Numbers, Numbers]:
     """A helix of constant pitch and its derivative, shape (2, k) each, m."""
     angular_rate = 2 * np.pi * helix.turns
     angle = angular_rate * X + helix.phase
-    sine = np.sin(angle)
-    cosine = np.cos(angle)
-    outward = np.array([cosine, sine])
-    around = np.array([-sine, cosine])
+    trigonometry: Any = ca if is_symbolic(angle) else np
+    sine = trigonometry.sin(angle)
+    cosine = trigonometry.cos(angle)
+    outward = stacked_rows([cosine, sine])
+    around = stacked_rows([-sine, cosine])
     rate = angular_rate * helix.radius
     return helix.radius * outward, rate * around

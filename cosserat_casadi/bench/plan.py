@@ -66,6 +66,8 @@ def make_plan(
         SceneError: with every fault of the options, or of the table found in the folder.
         CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
     """
+    # Every method solves the scene's own numbers.
+    scene = scene.baked()
     names = _names(methods, quick)
     problems = method_problems(names, points)
     if output is not None:

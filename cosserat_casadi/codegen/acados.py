@@ -27,6 +27,7 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
@@ -222,6 +223,7 @@ def _dae_in_motion(model: Model) -> _Dae:
 
 def _check(model: Model, name: str, moving: bool) -> None:
     library_names(name)
+    refuse_parameters(model.scene)
     check_scalar(model)
     if not model.inputs.size:
         raise ExportError(Problem("inputs", "none is free: there is nothing to control", "name some in the scene"))

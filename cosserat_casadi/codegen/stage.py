@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_comp
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
@@ -48,6 +49,7 @@ def compiled_stage(
         ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails.
     """
     library_names(name)
+    refuse_parameters(model.scene)
     check_scalar(model)
     found = find_compiler(compiler)
     texts: dict[str, str] = {}

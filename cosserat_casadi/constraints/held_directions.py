@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cosserat_casadi.constraints.section_constraint import HeldDirections
+from cosserat_casadi.maths.numbers import is_zero
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
@@ -83,7 +84,7 @@ def _across(axis: Sequence[float], place: NumericPose) -> FloatArray:
 def stays_in_plane(rod: RodProperties) -> bool:
     """Whether nothing takes a rod out of the local x–z plane of its base."""
     # Component 4 of the strain is the shear along y, out of the plane.
-    shears_out = any(rod.intrinsic[4]) or 4 in rod.admitted
+    shears_out = not is_zero(rod.intrinsic[4]) or 4 in rod.admitted
     if shears_out:
         return False
     return rod.turning_axes in ((), (1,))

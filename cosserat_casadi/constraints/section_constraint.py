@@ -87,14 +87,14 @@ class SectionConstraint:
         unit: EI/ℓ of the rod, J.
         at: abscissa of the section, a break of the rod's grid.
         held: the directions that are held.
-        place: pose of the section in the other frame that closes the constraint.
+        place: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
     """
 
     rod: RodProperties
     unit: float
     at: float
     held: HeldDirections
-    place: NumericPose
+    place: NumericPose | Pose
 
     @property
     def size(self) -> int:
@@ -108,16 +108,19 @@ class SectionConstraint:
 
     def residual(self, poses: Poses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
-        residual: Matrix = self._residual_kernel(*poses.stacked)[0]
+        residual: Matrix = self._residual_kernel(*poses.stacked, *self._free_place)[0]
         return residual
 
     def residual_variation(self, poses: Poses) -> Variations:
         """Derivative of the residual with the poses, size×6 each."""
-        _, *by_poses = self._residual_kernel(*poses.stacked)
+        _, *by_poses = self._residual_kernel(*poses.stacked, *self._free_place)
         return Variations(*by_poses)
 
     def wrench_basis(self, poses: Poses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
+        return self._wrench_basis(poses, self._place)
+
+    def _wrench_basis(self, poses: Poses, place: Pose) -> Matrix:
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
@@ -128,7 +131,7 @@ class SectionConstraint:
         in_given_axes = ca.sparsify(ca.DM(basis))
         if not self.held.turn_with_place:
             return in_given_axes
-        rotation = self._target(poses).rotation
+        rotation = self._target(poses, place).rotation
         return ca.diagcat(rotation, rotation) @ in_given_axes
 
     def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
@@ -136,27 +139,45 @@ class SectionConstraint:
         if not self.held.turn_with_place:
             zero = ca.DM(6, 6)
             return Variations(zero, zero, zero)
-        _, *by_poses = self._wrench_kernel(*poses.stacked, multipliers)
+        _, *by_poses = self._wrench_kernel(*poses.stacked, *self._free_place, multipliers)
         return Variations(*by_poses)
 
     def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
-        reaction: Matrix = self._reaction_kernel(*poses.stacked, multipliers)[0]
+        reaction: Matrix = self._reaction_kernel(*poses.stacked, *self._free_place, multipliers)[0]
         return reaction
 
     def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
-        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, multipliers)
+        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, *self._free_place, multipliers)
         return by_multipliers, Variations(*by_poses)
 
-    def _target(self, poses: Poses) -> Pose:
-        """The pose that the section is held to, in the rod's base."""
-        return poses.base.seen(poses.frame.then(self.place.pose))
+    @property
+    def _place(self) -> Pose:
+        """The place as expressions."""
+        return self.place if isinstance(self.place, Pose) else self.place.pose
 
-    def _residual(self, poses: Poses) -> Matrix:
+    @property
+    def _free_place(self) -> list[Matrix]:
+        """The place as arguments of the kernels; none where it is known, which is then a constant of them."""
+        return [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
+
+    def _place_symbols(self) -> tuple[Pose, list[ca.SX]]:
+        """The place that the kernels are written in, and its symbols."""
+        if not isinstance(self.place, Pose):
+            return self.place.pose, []
+        symbols = [ca.SX.sym("place_position", 3), ca.SX.sym("place_quaternion", 4)]
+        return Pose(*symbols), symbols
+
+    @staticmethod
+    def _target(poses: Poses, place: Pose) -> Pose:
+        """The pose that the section is held to, in the rod's base."""
+        return poses.base.seen(poses.frame.then(place))
+
+    def _residual(self, poses: Poses, place: Pose) -> Matrix:
         """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
         section = poses.section
-        target = self._target(poses)
+        target = self._target(poses, place)
         back = quaternion_conjugate(target.quaternion)
         if self.held.turn_with_place:
             displacement = target.rotation.T @ (section.position - target.position)
@@ -169,19 +190,19 @@ class SectionConstraint:
         about = 2 * ca.DM(self.held.rotations).T @ turn[1:]
         return ca.vertcat(along, about)
 
-    def _wrench(self, poses: Poses, multipliers: Matrix) -> Matrix:
-        return self.wrench_basis(poses) @ multipliers
+    def _wrench(self, poses: Poses, place: Pose, multipliers: Matrix) -> Matrix:
+        return self._wrench_basis(poses, place) @ multipliers
 
-    def _reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
+    def _reaction(self, poses: Poses, place: Pose, multipliers: Matrix) -> Matrix:
         """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
-        wrench = self._wrench(poses, multipliers)
+        wrench = self._wrench(poses, place, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
         if self.slides:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:
-            arm = poses.frame.rotation @ ca.DM(self.place.position)
+            arm = poses.frame.rotation @ place.position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 
@@ -189,28 +210,31 @@ class SectionConstraint:
     def _residual_kernel(self) -> ca.Function:
         """Poses ↦ residual and its variations."""
         poses, motions = _symbols()
-        moved = self._residual(_moved(poses, motions))
-        results = [self._residual(poses), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint", poses.stacked, ca.cse(results))
+        place, place_symbols = self._place_symbols()
+        moved = self._residual(_moved(poses, motions), place)
+        results = [self._residual(poses, place), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint", [*poses.stacked, *place_symbols], ca.cse(results))
 
     @cached_property
     def _wrench_kernel(self) -> ca.Function:
         """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
         poses, motions = _symbols()
+        place, place_symbols = self._place_symbols()
         multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._wrench(_moved(poses, motions), multipliers)
-        results = [self._wrench(poses, multipliers), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint_wrench", [*poses.stacked, multipliers], ca.cse(results))
+        moved = self._wrench(_moved(poses, motions), place, multipliers)
+        results = [self._wrench(poses, place, multipliers), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint_wrench", [*poses.stacked, *place_symbols, multipliers], ca.cse(results))
 
     @cached_property
     def _reaction_kernel(self) -> ca.Function:
         """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
         poses, motions = _symbols()
+        place, place_symbols = self._place_symbols()
         multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._reaction(_moved(poses, motions), multipliers)
+        moved = self._reaction(_moved(poses, motions), place, multipliers)
         derivatives = _at_rest(moved, [multipliers, *motions], motions)
-        results = [self._reaction(poses, multipliers), *derivatives]
-        return ca.Function("constraint_reaction", [*poses.stacked, multipliers], ca.cse(results))
+        results = [self._reaction(poses, place, multipliers), *derivatives]
+        return ca.Function("constraint_reaction", [*poses.stacked, *place_symbols, multipliers], ca.cse(results))
 
 
 def _symbols() -> tuple[Poses, list[ca.SX]]:

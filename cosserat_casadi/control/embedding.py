@@ -46,6 +46,7 @@ def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None
         near: an equilibrium to start from; the unloaded rods by default.
     """
     start = model.unloaded() if near is None else near.x
+    model = model.at()
     return Lifted(x, model.residual(x, inputs), start)
 
 
@@ -64,6 +65,7 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
         Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
+    model = model.at()
     options = {
         # A decimal below what the excess certifies, so that Newton's last step does not decide.
         "abstol": CERTIFIED / 10,

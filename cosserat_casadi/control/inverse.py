@@ -129,6 +129,7 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
+    model = model.at()
     check_targets(model.scene.targets)
     if start is None:
         start = first_solution(model)

@@ -85,6 +85,7 @@ def inverse_rows(
     """
     for targets in rows:
         check_targets(targets)
+    scene = scene.baked()
     accuracy = scene.accuracy
     levels = seeing_modes(scene)
     model = build(scene) if accuracy.fixed else verified_model(scene, levels[0], 0.0)

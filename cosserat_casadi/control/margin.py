@@ -48,6 +48,7 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
     """
     if not 0.0 < width < np.inf:
         raise ValueError(f"the width of a soft minimum is positive and finite, got {width}")
+    model = model.at()
     check_potential(model, model.pack())
     _refuse_slack(model)
     x = ca.MX.sym("x", model.size)

@@ -83,6 +83,7 @@ def solve(
     model: Model,
     values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
     *,
+    parameters: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None,
     start: Start = None,
     method: str = "continuation",
     stable: bool = False,
@@ -96,6 +97,8 @@ def solve(
         model: what to solve.
         values: inputs by name, those not named keeping the scene's values; or all of them stacked, shape
             (model.inputs.size,), as a solution holds them.
+        parameters: parameters by name, or all of them stacked, as :meth:`Model.at` takes them; the model of the
+            solution is that one. By default the scene's values.
         start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
             the inputs from those of the solution to the wanted ones, and so stays on its branch. From unknowns of
             shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
@@ -112,6 +115,7 @@ def solve(
         SolveError: no equilibrium was found and ``raise_on_failure`` is set.
         ValueError: unknown method, or a start of another model.
     """
+    model = model.at(parameters)
     inputs = _stacked(model, values)
     limits = settings or ContinuationSettings()
     task = _Task(model, inputs, start, limits, progress)
@@ -148,13 +152,8 @@ def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike |
     """
     if values is None or isinstance(values, Mapping):
         return model.pack(values)
-    stacked = np.asarray(values, dtype=float).ravel()
-    size = model.inputs.size
-    if stacked.size != size:
-        names = ", ".join(model.inputs.names) or "none"
-        raise SceneError(Problem("inputs", f"must be {size} numbers, got {stacked.size}", f"they are {names}"))
     # By name once more: each input has faults of its own.
-    return model.pack(model.inputs.unpack(stacked))
+    return model.pack(model.inputs.split(values))
 
 
 def check_potential(model: Model, inputs: FloatArray) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load, Section
+from cosserat_casadi.maths.numbers import Numbers, is_symbolic, is_zero
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -26,7 +27,7 @@ class GravityLoad(Load[scenes.Gravity]):
 
     def on_body(self, load: scenes.Gravity, body: scenes.Body) -> BodyPoint | None:
         """The body's mass, at its centre."""
-        if body.mass == 0.0 or not load.acts_on_body(body.name):
+        if is_zero(body.mass) or not load.acts_on_body(body.name):
             return None
         return BodyPoint(body.centre_of_mass, body.mass)
 
@@ -35,9 +36,10 @@ class GravityLoad(Load[scenes.Gravity]):
         # Mass comes in by the profile of a rod and the factor of a body.
         return values["acceleration"], ca.DM(3, 1)
 
-    def profiles(self, load: scenes.Gravity, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: scenes.Gravity, rod: RodProperties, X: FloatArray, columns: int) -> Numbers:
         """Mass per length, kg/m."""
         # A rod without mass is not weighed, and costs nothing.
         if rod.linear_density is None:
             return np.zeros((1, len(X)))
-        return np.asarray(rod.linear_density(X)[None, :])
+        density = rod.linear_density(X)
+        return density.T if is_symbolic(density) else np.asarray(density[None, :])

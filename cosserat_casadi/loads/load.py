@@ -21,6 +21,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, is_zero
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -95,8 +96,8 @@ class BodyPoint:
         factor: what force and moment are multiplied by.
     """
 
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    factor: float = 1.0
+    position: tuple[Scalar, Scalar, Scalar] = (0.0, 0.0, 0.0)
+    factor: Scalar = 1.0
 
 
 class Load(ABC, Generic[RecordType]):
@@ -168,7 +169,7 @@ class Load(ABC, Generic[RecordType]):
         """What is wrong with a load on an unloaded rod, at many sections of it; nothing by default."""
         yield from ()
 
-    def profiles(self, load: RecordType, rod: RodProperties, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: RecordType, rod: RodProperties, X: FloatArray, columns: int) -> Numbers:
         """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
 
         By default the columns are coefficients of Legendre polynomials in 2X − 1.
@@ -223,9 +224,11 @@ class Load(ABC, Generic[RecordType]):
         return arrows
 
 
-def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:
+def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers:
     """Three components, each a number or a list of Legendre coefficients, as one (3, k) array."""
-    rows = [np.atleast_1d(np.asarray(component, dtype=float)) for component in vector]
+    if any_symbolic(components):
+        return _symbolic_coefficients(components)
+    rows = [np.atleast_1d(np.asarray(component, dtype=float)) for component in components]
     longest = max(len(row) for row in rows)
     matrix = np.zeros((len(rows), longest))
     for i, row in enumerate(rows):
@@ -233,8 +236,18 @@ def coefficients(vector: tuple[float | tuple[float, ...], ...]) -> FloatArray:
     return matrix
 
 
-def constant(values: FloatArray) -> Matrix | None:
+def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Matrix:
+    """The same where some are expressions; what is zero is not stored."""
+    rows = [component if isinstance(component, tuple) else (component,) for component in components]
+    longest = max(len(row) for row in rows)
+    padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]
+    return ca.horzcat(*[as_vector([row[degree] for row in padded]) for degree in range(longest)])
+
+
+def constant(values: Numbers) -> Matrix | None:
     """A baked-in magnitude: None where it is zero, so that it adds no instruction."""
-    if not np.any(values):
+    if is_zero(values):
         return None
-    return ca.sparsify(ca.DM(values))
+    if is_symbolic(values):
+        return values
+    return ca.sparsify(as_matrix(values))

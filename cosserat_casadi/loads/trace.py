@@ -10,7 +10,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.loads.expressions import expressions_in, with_expressions
 from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_symbolic, known, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.section_kernel import RATES, SectionKernel
 
@@ -69,7 +71,7 @@ class TracedLoad:
             _unless_zero(moment) if wrench.nnz_out(1) else None,
         )
 
-    def data(self, site: Site) -> FloatArray:
+    def data(self, site: Site) -> Numbers:
         """What the kernel takes as data at the sections of a rod, shape (d, k)."""
         force_columns, moment_columns = self.columns
         rows = [
@@ -77,7 +79,11 @@ class TracedLoad:
             self.member.profiles(self.load, site.rod, site.X, moment_columns),
             self.member.data(self.load, site),
         ]
-        return np.vstack(rows)
+        if any_symbolic(rows):
+            # One profile may stand for all sections.
+            columns = [repeated(row.T, len(site.X)) if is_symbolic(row) else row.T for row in rows]
+            return ca.vertcat(*[as_matrix(own).T for own in columns])
+        return np.vstack([known(row) for row in rows])
 
 
 def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size: int = 0) -> TracedLoad:
@@ -86,7 +92,8 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
     Args:
         member: the kind of load.
         load: the load as the scene has it.
-        values: its inputs; only which of their entries are stored is read.
+        values: its inputs, and the numbers that are expressions of parameters; only which of their entries are
+            stored is read.
         data_size: how many numbers of a section it depends on.
     """
     section = Section(
@@ -96,8 +103,11 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
     )
     # Entries that are zero for good have no symbol, so that what they would make is structurally zero too.
     symbols = {name: ca.SX.sym(name, value.sparsity()) for name, value in values.items()}
-    energy = member.energy(load, section, symbols)
-    given_force, given_moment = member.wrench(load, section, symbols)
+    written = load
+    if expressions_in(load):
+        written = with_expressions(load, symbols)
+    energy = member.energy(written, section, symbols)
+    given_force, given_moment = member.wrench(written, section, symbols)
     force = ca.sparsify(ca.SX(given_force))
     moment = ca.sparsify(ca.SX(given_moment))
     wrench = _entries(force, moment)

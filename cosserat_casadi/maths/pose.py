@@ -8,6 +8,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
@@ -39,6 +40,12 @@ class Pose:
         back = quaternion_conjugate(self.quaternion)
         position = rotate(back, outer.position - self.position)
         return Pose(position, quaternion_product(back, outer.quaternion))
+
+    @property
+    def inverse(self) -> Pose:
+        """Pose of the outer frame in this one."""
+        back = quaternion_conjugate(self.quaternion)
+        return Pose(-rotate(back, self.position), back)
 
     def varied(self, variation: Matrix) -> Pose:
         """This pose after a small motion [δθ; δr] in the axes it is given in, 6×1, exact to first order."""
@@ -78,6 +85,13 @@ class NumericPose:
     def inverse(self) -> NumericPose:
         """Pose of the outer frame in this one."""
         return NumericPose(-self.rotation.T @ self.position, quaternion_conjugate(self.quaternion))
+
+
+def written_pose(position: Numbers, quaternion: Numbers) -> NumericPose | Pose:
+    """A pose of numbers, or of expressions where one of its parts is an expression."""
+    if any_symbolic([position, quaternion]):
+        return Pose(as_matrix(position), as_matrix(quaternion))
+    return NumericPose(known(position), known(quaternion))
 
 
 def numeric(pose: Pose) -> NumericPose:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -12,12 +12,13 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
-from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene
+from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import actuators_have_potential, loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.motion_functions import MotionFunctions
+from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
 from cosserat_casadi.rod.discretisation import Discretisation
@@ -39,8 +40,55 @@ class Model(functions.ModelFunctions, MotionFunctions):
 
     @property
     def scene(self) -> scenes.Scene:
-        """The scene this is a model of."""
+        """The scene this is a model of; its parameters have the values of its file, or those that are bound."""
+        if self.parameters.size:
+            return self.discrete.nominal.scene
         return self.discrete.scene
+
+    @property
+    def parameters(self) -> ParameterLayout:
+        """Names, order and default values of the parameters, the third argument of the functions; often none."""
+        return self.discrete.parameters
+
+    def at(self, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None = None) -> Model:
+        """The model with its parameters fixed: its functions take unknowns and inputs alone.
+
+        Unknowns mean what they mean here: they are counted in units of the scene's own numbers.
+
+        Args:
+            values: parameters by name, those not named keeping the scene's values; or all of them stacked, shape
+                (parameters.size,).
+
+        Raises:
+            SceneError: a name is unknown, or the scene refuses a value.
+        """
+        layout = self.parameters
+        if values is not None and not isinstance(values, Mapping):
+            values = layout.split(values)
+        if not layout.size:
+            layout.pack(values)
+            return self
+        nominal = self.discrete.nominal
+        p = layout.pack(values).tobytes()
+        known = self.__dict__.setdefault("_bound", {})
+        if p not in known:
+            # The last one is kept: a loop solves a model with one set of parameters again and again.
+            known.clear()
+            known[p] = Model(with_numbers(nominal, layout.set_in(nominal.scene, values)))
+        bound: Model = known[p]
+        return bound
+
+    def changed(self, change: Callable[[scenes.Scene], scenes.Scene]) -> Model:
+        """The model, without parameters, of a scene that differs in what is held, on the same modes and nodes.
+
+        Args:
+            change: the scene ↦ the other scene, of the same rods.
+        """
+        bound = self.at()
+        nominal = build(change(bound.discrete.nominal.scene).baked(), self.discretisation)
+        if bound.discrete.scaling is None:
+            return nominal
+        return Model(with_numbers(nominal.discrete, change(bound.scene)))
 
     @property
     def inputs(self) -> InputLayout:
@@ -76,14 +124,16 @@ class Model(functions.ModelFunctions, MotionFunctions):
 
     def length_ratio(self, rod: str, inputs: FloatArray) -> float:
         """Length of a rod for these inputs, relative to the scene's."""
-        ratio = ratio_of(self.discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
-        return 1.0 if ratio is None else float(ratio)
+        discrete = self.at().discrete
+        ratio = ratio_of(discrete, rod, Arguments(ca.DM(0, 1), ca.DM(inputs)))
+        return 1.0 if ratio is None else float(ca.evalf(ca.MX(ratio)))
 
     def has_potential(self, inputs: FloatArray) -> bool:
         """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning."""
-        if not loads_have_potential(self.discrete, inputs):
+        discrete = self.at().discrete
+        if not loads_have_potential(discrete, inputs):
             return False
-        return actuators_have_potential(self.discrete, inputs)
+        return actuators_have_potential(discrete, inputs)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""
@@ -113,6 +163,9 @@ def build(
     """
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
-    discrete = discrete_scene(scene, input_layout(scene), chosen)
-    check_loads(discrete)
-    return Model(discrete)
+    nominal = discrete_scene(scene, input_layout(scene), chosen)
+    check_loads(nominal)
+    parameters = parameter_layout(scene)
+    if not parameters.size:
+        return Model(nominal)
+    return Model(with_numbers(nominal, parameters.written(scene, parameters.symbol), parameters))

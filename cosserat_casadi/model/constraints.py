@@ -14,11 +14,12 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints import held_directions as held
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
-from cosserat_casadi.maths.pose import IDENTITY, NumericPose
+from cosserat_casadi.maths.numbers import as_vector
+from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FLAT, FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.rods import base_pose, unit_quaternion, written_base_pose
 
 SUPPORT_WEIGHT = 2.0
 """Step weight of the multipliers of a support: a rod that is pulled to a pose has many equilibria there, close by."""
@@ -66,6 +67,52 @@ class PlacedConstraint:
     def closes_assembly(self) -> bool:
         """Whether it holds rods to each other or a carried rod to the world, not a rod that starts in the world."""
         return self.compliance is ASSEMBLED
+
+
+def written_constraints(
+    placed: list[PlacedConstraint], nominal: scenes.Scene, scene: scenes.Scene
+) -> list[PlacedConstraint]:
+    """Constraints of a scene with other numbers, or expressions, in the places that the scene gives.
+
+    They hold the directions that those of the nominal scene hold, in its scaling.
+
+    Args:
+        placed: the constraints of the nominal scene.
+        nominal: that scene.
+        scene: the same with other numbers.
+    """
+    before = _given_places(nominal)
+    after = _given_places(scene)
+    constraints = []
+    for entry in placed:
+        place = after[entry.where]
+        start = before[entry.where]
+        assert isinstance(start, NumericPose)
+        # Of the two signs of a quaternion, the one that the nominal place has.
+        closing = entry.constraint.place
+        assert isinstance(closing, NumericPose)
+        sign = float(np.sign(closing.quaternion @ start.quaternion))
+        if isinstance(place, Pose):
+            place = Pose(place.position, sign * place.quaternion)
+        else:
+            place = NumericPose(place.position, sign * place.quaternion)
+        constraints.append(replace(entry, constraint=replace(entry.constraint, place=place)))
+    return constraints
+
+
+def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:
+    """Poses that close the constraints of a scene as it gives them, by the paths of their tables."""
+    places: dict[str, NumericPose | Pose] = {}
+    for i, support in enumerate(scene.supports):
+        quaternion = support.quaternion if isinstance(support, scenes.ClampedSupport) else (1.0, 0.0, 0.0, 0.0)
+        places[f"supports[{i}]"] = written_pose(as_vector(support.position), unit_quaternion(quaternion))
+    for i, joint in enumerate(scene.joints):
+        places[f"joints[{i}]"] = written_pose(as_vector(joint.position), unit_quaternion(joint.quaternion))
+    for i, rod in enumerate(scene.rods):
+        if rod.base.rod is not None:
+            # The scene gives the base in the section; the constraint wants the section in the frame of the base.
+            places[f"rods[{i}].base"] = written_pose(*written_base_pose(rod)).inverse
+    return places
 
 
 def placed_constraints(unloaded: UnloadedScene) -> list[PlacedConstraint]:

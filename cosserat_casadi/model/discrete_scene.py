@@ -7,7 +7,7 @@ tensions of the cables of given length, as in docs/theory.md, section 8.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -15,10 +15,12 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
-from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints
+from cosserat_casadi.maths.numbers import any_symbolic, known
+from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
@@ -63,7 +65,7 @@ def _softness(rod: DiscreteRod, routing: Routing) -> float:
     unloaded = shape(rod, ca.MX.zeros(rod.size))
     gradient = ca.evalf(ca.MX(routing.on(unloaded).gradient)).full()[:, 0]
     pull = gradient / rod.properties.length
-    softness = float(pull @ np.linalg.solve(rod.stiffness, pull))
+    softness = float(pull @ np.linalg.solve(known(rod.stiffness), pull))
     return softness if softness > NO_SOFTNESS else 1.0
 
 
@@ -72,28 +74,69 @@ class DiscreteScene:
     """A scene with its constant matrices.
 
     Attributes:
-        scene: the scene.
+        scene: the scene that the equations are of; its numbers may be expressions of parameters.
         layout: its inputs.
         rods: the constant matrices of each rod.
+        parameters: the parameters that its expressions are of.
+        scaling: the scene with the numbers that scale the equations; None where these are its own.
     """
 
     scene: scenes.Scene
     layout: InputLayout
     rods: dict[str, DiscreteRod]
+    parameters: ParameterLayout = NO_PARAMETERS
+    scaling: DiscreteScene | None = None
+
+    @property
+    def nominal(self) -> DiscreteScene:
+        """The scene with the numbers that scale the equations: those that its file gives."""
+        return self if self.scaling is None else self.scaling
 
     @cached_property
     def unloaded(self) -> UnloadedScene:
-        """Poses of rods and bodies where nothing acts."""
+        """Poses of rods and bodies where nothing acts and no parameter differs: deviations are counted from them."""
+        if self.scaling is not None:
+            return self.scaling.unloaded
         return UnloadedScene(self.scene, self.rods)
 
-    @property
+    @cached_property
+    def own_unloaded(self) -> UnloadedScene:
+        """Poses of rods where nothing acts, by the scene's own numbers."""
+        return UnloadedScene(self.scene, self.rods)
+
+    def moves_unloaded(self, rod: str) -> bool:
+        """Whether an expression of parameters places the unloaded rod, or one that carries it."""
+        record = self.records[rod]
+        if any_symbolic([record.length, record.intrinsic.curvature, record.intrinsic.tangent]):
+            return True
+        if any_symbolic([record.base.position, record.base.quaternion]):
+            return True
+        return record.base.rod is not None and self.moves_unloaded(record.base.rod)
+
+    @cached_property
+    def records(self) -> dict[str, scenes.Rod]:
+        """Rods of the scene by name."""
+        return {rod.name: rod for rod in self.scene.rods}
+
+    @cached_property
+    def bodies(self) -> dict[str, scenes.Body]:
+        """Bodies of the scene by name."""
+        return {body.name: body for body in self.scene.bodies}
+
+    @cached_property
     def frames(self) -> dict[FrameName, FloatingFrame]:
-        """Floating frames by name."""
-        return self.unloaded.frames
+        """Floating frames by name, with the bodies of this scene."""
+        frames = dict(self.unloaded.frames)
+        for name, frame in frames.items():
+            if frame.body is not None:
+                frames[name] = replace(frame, body=self.bodies[name.name])
+        return frames
 
     @cached_property
     def constraints(self) -> list[PlacedConstraint]:
         """Supports, bases of carried rods and joints, in the order of their multipliers."""
+        if self.scaling is not None:
+            return written_constraints(self.scaling.constraints, self.scaling.scene, self.scene)
         return placed_constraints(self.unloaded)
 
     @cached_property
@@ -105,8 +148,15 @@ class DiscreteScene:
             if member.prescribes_conjugate(actuator):
                 rod = self.rods[actuator.rod]
                 routing = member.quantity(actuator, rod.grid)
-                cables.append(CableOfLength(actuator, routing, _softness(rod, routing)))
+                cables.append(CableOfLength(actuator, routing, self._softness(actuator)))
         return cables
+
+    def _softness(self, actuator: scenes.Actuator) -> float:
+        """Softness of a rod to a cable, by the numbers that scale the equations."""
+        nominal = self.nominal
+        rod = nominal.rods[actuator.rod]
+        (tendon,) = [other for other in nominal.scene.actuators if other.name == actuator.name]
+        return _softness(rod, EFFECTS[tendon.kind].quantity(tendon, rod.grid))
 
     def constraint(self, where: str) -> SectionConstraint:
         """The constraint of a table of the scene, by its path.
@@ -217,3 +267,21 @@ def discrete_scene(
         properties = rod_properties(rod)
         rods[rod.name] = DiscreteRod(properties, discretisation[rod.name])
     return DiscreteScene(scene, layout, rods)
+
+
+def with_numbers(
+    nominal: DiscreteScene, scene: scenes.Scene, parameters: ParameterLayout = NO_PARAMETERS
+) -> DiscreteScene:
+    """A scene with other numbers, or expressions, under the scaling and the grids of another.
+
+    Args:
+        nominal: the scene that scales the equations.
+        scene: the same with other numbers.
+        parameters: what its expressions are of.
+    """
+    rods = {}
+    for rod in scene.rods:
+        scaling = nominal.rods[rod.name]
+        properties = rod_properties(rod, scaling.properties)
+        rods[rod.name] = DiscreteRod(properties, scaling.discretisation)
+    return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)

@@ -127,7 +127,8 @@ class UnloadedScene:
         """Shape of an unloaded rod in its base, kept: several sections of a rod are asked for."""
         if rod not in self._shapes:
             discrete_rod = self.rods[rod]
-            self._shapes[rod] = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
+            unknowns = ca.MX.zeros(discrete_rod.size)
+            self._shapes[rod] = shape(discrete_rod, unknowns, discrete_rod.properties.ratio)
         return self._shapes[rod]
 
     def plane(self, rod: str) -> NumericPose | None:

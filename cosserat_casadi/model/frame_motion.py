@@ -11,8 +11,10 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector
 from cosserat_casadi.maths.rotation import hat
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.floating_frames import FloatingFrame
 from cosserat_casadi.model.frame_pose import turn_matrix
 from cosserat_casadi.rod.motion import FrameMotion
@@ -147,6 +149,17 @@ class FloatingFrameMotion:
         return self.quaternion.quaternion, self.quaternion.rate, self.quaternion.acceleration
 
 
+def body_inertia(body: scenes.Body) -> Numbers:
+    """Inertia of a body about its centre of mass, body axes, shape (3, 3), kg m²."""
+    if not any_symbolic(body.inertia):
+        return body.inertia_matrix
+    rows = [as_matrix(as_vector(row)).T for row in body.inertia if isinstance(row, tuple)]
+    if rows:
+        return ca.vertcat(*rows)
+    moments = [moment for moment in body.inertia if not isinstance(moment, tuple)]
+    return ca.diag(as_matrix(as_vector(moments)))
+
+
 @dataclass(frozen=True)
 class BodyInertia:
     """Inertia of a rigid body in motion, world axes.
@@ -161,21 +174,21 @@ class BodyInertia:
         motion: of the body's origin.
     """
 
-    mass: float
-    centre_of_mass: FloatArray
-    inertia: FloatArray
+    mass: Scalar
+    centre_of_mass: Numbers
+    inertia: Numbers
     rotation: Matrix
     motion: FrameMotion
 
     @cached_property
     def arm(self) -> Matrix:
         """Centre of mass from the origin, 3×1, m."""
-        return self.rotation @ ca.DM(self.centre_of_mass)
+        return self.rotation @ as_matrix(self.centre_of_mass)
 
     @cached_property
     def world_inertia(self) -> Matrix:
         """I, 3×3, kg m²."""
-        return self.rotation @ ca.DM(self.inertia) @ self.rotation.T
+        return self.rotation @ as_matrix(self.inertia) @ self.rotation.T
 
     @cached_property
     def velocity(self) -> Matrix:
@@ -211,7 +224,7 @@ class BodyInertia:
         """
         omega = self.motion.angular_velocity
         turning = self._turning
-        spread = ca.trace(ca.DM(self.inertia)) / 2 * ca.DM.eye(3) - self.world_inertia
+        spread = ca.trace(as_matrix(self.inertia)) / 2 * ca.DM.eye(3) - self.world_inertia
         p2 = self.world_inertia
         p1 = -2 * (hat(omega) @ spread)
         p0 = spread @ turning.T - turning @ spread

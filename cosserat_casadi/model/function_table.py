@@ -35,6 +35,10 @@ SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
 """Arguments that are one number whatever the scene: functions in C take them by value."""
 
 
+PARAMETERS = "p"
+"""The argument that holds the parameters of a scene."""
+
+
 class Owner(Enum):
     """What there is one function for each of."""
 
@@ -123,7 +127,7 @@ class FunctionSpec:
     Attributes:
         name: member of the model.
         owner: what there is one for each of.
-        arguments: names of the arguments.
+        arguments: names of the arguments, without the parameters that a scene names.
         outputs: what it gives, or a rule that says so for one owner.
         write: gives the expressions; None where the scene has no such function.
         kernel: name of its kernel in C; empty where it stays in Python.
@@ -143,6 +147,13 @@ class FunctionSpec:
     header: str = ""
     differentiable: bool = False
     doc: str = ""
+
+    def arguments_of(self, discrete: DiscreteScene) -> list[str]:
+        """Names of the arguments: in a scene with parameters p follows the inputs."""
+        arguments = list(self.arguments)
+        if discrete.parameters.size:
+            arguments.insert(arguments.index("inputs") + 1, PARAMETERS)
+        return arguments
 
     @property
     def name_in_c(self) -> str:
@@ -186,14 +197,23 @@ class FunctionSpec:
             owner: name of the rod, the actuator or the body.
         """
         discrete: DiscreteScene = model.discrete
-        symbols = {name: ca.MX.sym(name, argument_size(discrete, name, owner)) for name in self.arguments}
+        arguments = self.arguments_of(discrete)
+        symbols = {name: _symbol(discrete, name, owner) for name in arguments}
         results = self.write(model, Expressions(discrete, owner, symbols))
         if results is None:
             return None
         names = [output.name for output in self.outputs_of(discrete, owner)]
         # CasADi takes no two underscores in a row.
         name = re.sub("_+", "_", f"{self.name}_{owner}") if owner else self.name
-        return ca.Function(name, list(symbols.values()), list(results), list(self.arguments), names)
+        return ca.Function(name, list(symbols.values()), list(results), arguments, names)
+
+
+def _symbol(discrete: DiscreteScene, name: str, owner: str) -> ca.MX:
+    """The symbol of an argument."""
+    # Constants of the scene are expressions of one p already.
+    if name == PARAMETERS:
+        return discrete.parameters.symbol
+    return ca.MX.sym(name, argument_size(discrete, name, owner))
 
 
 def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
@@ -205,6 +225,7 @@ def argument_size(discrete: DiscreteScene, name: str, owner: str) -> int:
     sizes = {
         "x": discrete.size,
         "inputs": discrete.layout.size,
+        PARAMETERS: discrete.parameters.size,
         "v": discrete.size,
         "a": discrete.size,
         "inputs_rate": discrete.layout.size,

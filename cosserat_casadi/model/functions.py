@@ -78,6 +78,14 @@ class ModelFunctions:
         residual = Equations(written.system).residual
         return [ca.jacobian(residual, written["inputs"])]
 
+    @scene_function(Output("parameter_jacobian"))
+    def parameter_jacobian(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs, p) ↦ derivative of the residual with respect to the parameters; None without parameters."""
+        if not written.discrete.parameters.size:
+            return None
+        residual = Equations(written.system).residual
+        return [ca.jacobian(residual, written["p"])]
+
     @scene_function(Output("residual"), arguments=PATH, kernel="residual")
     def path_residual(self, written: Expressions) -> list[Matrix]:
         """(x, inputs, load_factor) ↦ residual of the scene at a load factor: 0 is the unloaded scene, 1 the scene."""
@@ -103,6 +111,8 @@ class ModelFunctions:
     @scene_function(Output("tangent"), arguments=("inputs",), kernel="tangent")
     def path_tangent(self, written: Expressions) -> list[Matrix]:
         """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
+        if written.discrete.parameters.size:
+            return [_parametric_response(written)]
         return [_unloaded_response(self, written["inputs"])]
 
     @scene_function(Output("resolution_index"), kernel="resolution_index")
@@ -291,6 +301,21 @@ def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
     constant = ca.DM(_without_noise(at_origin[:, 0]))
     by_inputs = _without_noise(response[:, 1:] - at_origin)
     return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
+
+
+def _parametric_response(written: Expressions) -> Matrix:
+    """The same where numbers of the scene are parameters: a linear system for each p."""
+    discrete = written.discrete
+    load_factor = ca.MX.sym("load_factor")
+    unloaded = ca.DM.zeros(discrete.size, 1)
+    equations = Equations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
+    if not discrete.size:
+        return ca.MX(0, 1)
+    rate = ca.jacobian(equations.residual, load_factor)
+    at_start = ca.substitute([equations.jacobian, rate], [load_factor], [ca.MX(0.0)])
+    jacobian, right_side = at_start
+    response: Matrix = -ca.solve(jacobian, right_side, "qr")
+    return response
 
 
 def _without_noise(values: FloatArray) -> FloatArray:

@@ -6,19 +6,20 @@ Names, units, bounds and shapes of an input are declared once, by the record of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.load import coefficients
+from cosserat_casadi.maths.numbers import Numbers, is_symbolic, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.records import Entry
 
@@ -91,44 +92,11 @@ class Input:
 
 
 @dataclass(frozen=True)
-class InputLayout:
-    """The inputs of a model, stacked into one vector.
+class InputLayout(StackedLayout[Input]):
+    """The inputs of a model, stacked into one vector."""
 
-    Attributes:
-        entries: the inputs in the order of the vector.
-    """
-
-    entries: tuple[Input, ...]
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """``load.field`` or ``actuator.field`` in the order of the vector."""
-        return tuple(entry.name for entry in self.entries)
-
-    @cached_property
-    def defaults(self) -> tuple[FloatArray, ...]:
-        """The scene's value of each, shape (components, k)."""
-        return tuple(entry.default for entry in self.entries)
-
-    @cached_property
-    def size(self) -> int:
-        """Entries of the stacked vector."""
-        return sum(entry.size for entry in self.entries)
-
-    @cached_property
-    def slices(self) -> dict[str, slice]:
-        """Slice of each input in the stacked vector, column after column."""
-        slices = {}
-        start = 0
-        for entry in self.entries:
-            stop = start + entry.size
-            slices[entry.name] = slice(start, stop)
-            start = stop
-        return slices
-
-    def __iter__(self) -> Iterator[tuple[Input, slice]]:
-        """The inputs with their slices of the stacked vector."""
-        return zip(self.entries, self.slices.values(), strict=True)
+    what = "an input"
+    several = "inputs"
 
     def of_load(self, name: str, field: str) -> slice | None:
         """Slice of a field of a load or an actuator in the stacked vector; None where the scene fixes it."""
@@ -146,38 +114,6 @@ class InputLayout:
                 return span
         return None
 
-    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
-        """The stacked vector, from the scene's values and those given here.
-
-        Args:
-            values: new values by name; a number, (3,) for a vector, (3, k) for Legendre coefficients.
-
-        Returns:
-            shape (size,), SI units.
-
-        Raises:
-            SceneError: a name is unknown, or a value has another shape or is not finite.
-        """
-        given = dict(values or {})
-        problems = list(self._unknown_names(given))
-        # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
-        parts = [np.zeros(0)]
-        for entry in self.entries:
-            value = np.asarray(given.get(entry.name, entry.default), dtype=float)
-            problems.extend(entry.faults(value))
-            # Legendre coefficients are stacked degree after degree: column-major order.
-            parts.append(value.ravel(order="F"))
-        if problems:
-            raise SceneError(*problems)
-        return np.concatenate(parts)
-
-    def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
-        """A problem for every name that is not an input."""
-        known = ", ".join(self.names) or "none"
-        for name in given:
-            if name not in self.names:
-                yield Problem(name, "is not an input of this model", f"its inputs are {known}")
-
     @cached_property
     def geometry(self) -> list[int]:
         """Indices of what the equations are not linear in and must not be zero: lengths and poses of rods."""
@@ -187,12 +123,8 @@ class InputLayout:
                 indices.extend(range(span.start, span.stop))
         return indices
 
-    def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
-        """Values by name from the stacked vector, each shaped as its default."""
-        return {entry.name: stacked[span].reshape(entry.shape, order="F") for entry, span in self}
 
-
-def scene_value(record: Entry, field: str) -> FloatArray:
+def scene_value(record: Entry, field: str) -> Numbers:
     """An input of a load or an actuator as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
     value: Any = record
     # The name of a field in an inner table has dots.
@@ -205,6 +137,8 @@ def scene_value(record: Entry, field: str) -> FloatArray:
         value = dict(record.inputs[field].words)[value]
     if isinstance(value, int | float):
         return np.array([[float(value)]])
+    if is_symbolic(value):
+        return value
     return coefficients(value)
 
 
@@ -219,7 +153,7 @@ def _input(free: scenes.FreeInput) -> Input:
         default = _rod_value(record, free.field)
         of_rod = True
     else:
-        default = scene_value(record, free.field)
+        default = known(scene_value(record, free.field))
         of_rod = False
     return Input(free.owner, free.field, free.declared, default, _axes(free), of_rod)
 
@@ -253,7 +187,7 @@ def load_values(scene: scenes.Scene, layout: InputLayout, inputs: FloatArray) ->
     """Values of every load and actuator for given inputs, by name and field: the scene's where they are fixed."""
     values: dict[str, dict[str, FloatArray]] = {}
     for record in scene.causes:
-        values[record.name] = {field: scene_value(record, field) for field in record.inputs}
+        values[record.name] = {field: known(scene_value(record, field)) for field in record.inputs}
     for entry, span in layout:
         if not entry.of_rod:
             values[entry.owner][entry.field] = inputs[span].reshape(entry.shape, order="F")

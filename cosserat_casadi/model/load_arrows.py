@@ -13,6 +13,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.loads.load import Poses, Site
 from cosserat_casadi.loads.trace import TracedLoad, stored, traced
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.inputs import load_values
@@ -65,7 +66,7 @@ class LoadArrows:
             data_size = len(member.data(load, site))
             kernel = traced(member, load, values, data_size)
             poses = self.rod_poses(rod, X)
-            force, moment = _wrench(kernel, values, poses, kernel.data(site))
+            force, moment = _wrench(kernel, values, poses, known(kernel.data(site)))
             # The legend names a load once: the arrows of its first rod carry the label.
             label = "" if arrows else load.name
             positions, _ = poses

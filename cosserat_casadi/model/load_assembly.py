@@ -10,8 +10,12 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.expressions import expressions_in
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
+from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, as_vector, is_symbolic, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -104,11 +108,11 @@ class RodLoads:
         if coefficients is None:
             return None
         grid = self.discrete.rods[self.rod].grid
-        profiles = np.zeros((coefficients.shape[1], grid.size))
         # Zero outside the span.
         nodes = grid.nodes_in(*kernel.member.span(kernel.load))
-        profiles[:, nodes] = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
-        if not np.any(profiles):
+        within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
+        profiles = _at_nodes(within, nodes, grid.size)
+        if is_zero(profiles):
             return None
         scaled = per_reference_length(coefficients, self.ratio)
         if force is None:
@@ -163,16 +167,22 @@ def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
 
 
 def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> Poses:
-    """World poses of sections in the unloaded scene, at the lengths and bases that the scene gives.
+    """World poses of sections in the unloaded scene, at the numbers that the scene gives.
 
     Args:
         discrete: the scene.
         rod: name of the rod.
         interpolation: matrix from values at the M nodes to those at the k sections, shape (k, M).
+
+    Raises:
+        SceneError: parameters move the unloaded rod.
     """
+    if discrete.moves_unloaded(rod):
+        problem = "is bound to where the unloaded rod was, which parameters move"
+        raise SceneError(Problem(f"a load on {rod!r}", problem, "name no length, base or intrinsic strain of this rod"))
     discrete_rod = discrete.rods[rod]
-    base = discrete.unloaded.base(rod)
-    unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size))
+    base = discrete.own_unloaded.base(rod)
+    unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size), discrete_rod.properties.ratio)
     nodal_position = _numbers(unloaded.position)
     directors = [_numbers(director) @ interpolation.T for director in unloaded.directors]
     # Column a of the rotation matrix is director a.
@@ -187,6 +197,16 @@ def _numbers(field: Matrix) -> FloatArray:
     return values
 
 
+def _at_nodes(within: Numbers, nodes: Indices, count: int) -> Numbers:
+    """Profiles at some nodes among those of all, shape (columns, count), zero at the others."""
+    if is_symbolic(within):
+        places = ca.DM(ca.Sparsity.triplet(len(nodes), count, list(range(len(nodes))), nodes.tolist()), 1.0)
+        return within @ places
+    profiles = np.zeros((within.shape[0], count))
+    profiles[:, nodes] = within
+    return profiles
+
+
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
@@ -194,6 +214,8 @@ def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     for entry, span in layout:
         if entry.declared.nonlinear:
             indices.extend(range(span.start, span.stop))
+    # What depends on a pose does so whatever its numbers are.
+    discrete = discrete.nominal
     for load in discrete.scene.loads:
         free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
         if not free:
@@ -221,8 +243,11 @@ def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Ma
 
 
 def input_values(layout: InputLayout, record: scenes.Load | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
-    """Inputs of a load or an actuator; zero for good is a matrix that stores nothing."""
-    values = {}
+    """Inputs of a load or an actuator, and its numbers that are expressions of parameters.
+
+    What is zero for good is a matrix that stores nothing.
+    """
+    values = expressions_in(record)
     for field in record.inputs:
         value = input_value(layout, record, field, inputs)
         if value is None:
@@ -260,7 +285,7 @@ class BodyLoad:
         stiffness: 6×6 derivative of [force; moment] with the [δr; δθ] of the point; None for a dead load or a follower.
     """
 
-    position: tuple[float, float, float]
+    position: tuple[Scalar, Scalar, Scalar]
     arm: Matrix
     force: Matrix
     moment: Matrix
@@ -385,7 +410,7 @@ class BodyLoads:
         )
 
     def _arm(self, point: BodyPoint) -> Matrix:
-        return self.rotation @ ca.DM(point.position)
+        return self.rotation @ as_matrix(as_vector(point.position))
 
 
 # Potential

@@ -55,8 +55,9 @@ def price_of_motion(model: Model) -> MotionPrice:
 
 def price_of_load(scene: scenes.Scene, load: str) -> int:
     """Operations that a load or actuator adds to the residual: the scene with it less the scene without."""
-    loaded = build(scene)
-    bare = build(without_load(scene, load))
+    baked = scene.baked()
+    loaded = build(baked)
+    bare = build(without_load(baked, load))
     return loaded.operations(loaded.residual) - bare.operations(bare.residual)
 
 

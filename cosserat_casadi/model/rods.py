@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_vector,
+    is_symbolic,
+    known,
+    repeated,
+    side_by_side,
+)
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
 from cosserat_casadi.rod.properties import STRAINS, RodProperties
 
-Field = Callable[[FloatArray], FloatArray]
+Field = Callable[[FloatArray], Numbers]
 
 SMALLEST_FORCE = 1e-150
 """Least EI/ℓ² that can be computed with, N: its square is still a number."""
@@ -22,8 +34,12 @@ LARGEST_FORCE = 1e150
 """Largest EI/ℓ² that can be computed with, N."""
 
 
-def rod_properties(rod: scenes.Rod) -> RodProperties:
+def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> RodProperties:
     """Stiffness, damping, inertia and unloaded strain of a rod of the scene.
+
+    Args:
+        rod: the rod, whose numbers may be expressions of parameters.
+        nominal: the rod with the scene's own numbers, which scales the equations; None where ``rod`` is that.
 
     Raises:
         SceneError: the rod is so long or short, so stiff or soft, that its equations cannot be computed with.
@@ -31,7 +47,7 @@ def rod_properties(rod: scenes.Rod) -> RodProperties:
     hooke = _hooke(rod)
     properties = RodProperties(
         name=rod.name,
-        length=rod.length,
+        length=rod.length if nominal is None else nominal.length,
         admitted=rod.admitted,
         basis=rod.basis,
         hooke=hooke,
@@ -41,8 +57,12 @@ def rod_properties(rod: scenes.Rod) -> RodProperties:
         damping=_damping(rod, hooke),
         area=_area(rod),
         diameter=_diameter(rod),
+        plane_sections=rod.rotary_inertia is None,
+        ratio=None if nominal is None else _ratio(rod.length, nominal.length),
+        nominal=nominal,
     )
-    _refuse_out_of_range(properties)
+    if nominal is None:
+        _refuse_out_of_range(properties)
     return properties
 
 
@@ -60,6 +80,13 @@ def _refuse_out_of_range(properties: RodProperties) -> None:
     raise SceneError(Problem(properties.name, problem, "give lengths in m, moduli in Pa, stiffnesses in N m² and N"))
 
 
+def _ratio(length: Scalar, nominal: float) -> Matrix | None:
+    """Length of a rod relative to the one that scales its equations; None where it is that one."""
+    if not is_symbolic(length) and length == nominal:
+        return None
+    return ca.MX(length) / nominal
+
+
 def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
     """World position (3,) and quaternion (4,) of the rod's base."""
     position = np.asarray(rod.base.position, dtype=float)
@@ -68,17 +95,60 @@ def base_pose(rod: scenes.Rod) -> tuple[FloatArray, FloatArray]:
     return position, np.asarray(rod.base.quaternion, dtype=float)
 
 
-def _coefficients(component: float | Sequence[float]) -> tuple[float, ...]:
+def written_base_pose(rod: scenes.Rod) -> tuple[Numbers, Numbers]:
+    """World position (3,) and quaternion (4,) of the rod's base, whose numbers may be expressions of parameters."""
+    position = as_vector(rod.base.position)
+    if rod.base.tangent is not None:
+        return position, quaternion_from_tangent(rod.base.tangent)
+    return position, unit_quaternion(rod.base.quaternion)
+
+
+def unit_quaternion(entries: Sequence[Scalar]) -> Numbers:
+    """A quaternion of the scene, shape (4,): of expressions, as of an input, the norm does not matter."""
+    quaternion = as_vector(entries)
+    if is_symbolic(quaternion):
+        unit: Matrix = quaternion / ca.sqrt(ca.sumsqr(quaternion))
+        return unit
+    return quaternion
+
+
+def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
+    if isinstance(component, tuple) and any_symbolic(component):
+        return component
+    if is_symbolic(component):
+        return (component,)
     values = np.atleast_1d(np.asarray(component, dtype=float))
     return tuple(float(v) for v in values)
 
 
-def _linear(value: float | Sequence[float]) -> Field:
+def _linear(value: Scalar | Sequence[Scalar]) -> Field:
     """A size along the rod: constant, or linear from base to tip."""
     if isinstance(value, int | float):
         return lambda X: value + 0.0 * X
+    if is_symbolic(value):
+        # One stands for all abscissae.
+        expression: Numbers = value
+        return lambda X: expression
+    assert isinstance(value, tuple)
     base, tip = value
     return lambda X: base + (tip - base) * X
+
+
+def _shared(field: Field, *sizes: Any) -> Field:
+    """A field of sections that are all alike, if no size varies: where it is an expression, one stands for all."""
+    if any(isinstance(size, tuple) for size in sizes):
+        return field
+
+    def at(X: FloatArray) -> Numbers:
+        anywhere = field(X[:1])
+        return anywhere if is_symbolic(anywhere) else field(X)
+
+    return at
+
+
+def _sizes(shape: scenes.Section) -> list[Any]:
+    """The sizes of a section, each constant or of base and tip."""
+    return [getattr(shape, name) for name in type(shape).model_fields if name not in ("shape", "shear_correction")]
 
 
 def _hooke(rod: scenes.Rod) -> Field:
@@ -91,10 +161,11 @@ def _hooke(rod: scenes.Rod) -> Field:
     shear_modulus = _shear_modulus(rod.material)
     correction = rod.section.shear_correction
     shape = _section_shape(rod.section)
-    return lambda X: section.hooke(shape(X), youngs_modulus, shear_modulus, correction)
+    hooke: Field = lambda X: section.hooke(shape(X), youngs_modulus, shear_modulus, correction)  # noqa: E731
+    return _shared(hooke, *_sizes(rod.section))
 
 
-def _shear_modulus(material: scenes.Material) -> float:
+def _shear_modulus(material: scenes.Material) -> Scalar:
     """G of an isotropic material, E / (2 (1 + ν)) where Poisson's ratio is given."""
     if material.shear_modulus is not None:
         return material.shear_modulus
@@ -111,7 +182,7 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
     """
     fields = [getattr(given, name) for name in STRAINS]
     linear = [_linear(left_out if field is None else field) for field in fields]
-    return lambda X: np.stack([np.broadcast_to(f(X), X.shape) for f in linear], axis=-1)
+    return _shared(lambda X: side_by_side([_along(f, X) for f in linear]), *fields)
 
 
 def _section_shape(
@@ -119,41 +190,47 @@ def _section_shape(
 ) -> Callable[[FloatArray], section.SectionShape]:
     if isinstance(shape, scenes.Circle):
         radius = _linear(shape.radius)
-        return lambda X: section.circle(_array(radius, X))
+        return lambda X: section.circle(_along(radius, X))
     if isinstance(shape, scenes.Annulus):
         outer = _linear(shape.outer_radius)
         inner = _linear(shape.inner_radius)
-        return lambda X: section.annulus(_array(outer, X), _array(inner, X))
+        return lambda X: section.annulus(_along(outer, X), _along(inner, X))
     width = _linear(shape.width)
     height = _linear(shape.height)
-    return lambda X: section.rectangle(_array(width, X), _array(height, X))
+    return lambda X: section.rectangle(_along(width, X), _along(height, X))
 
 
-def _array(field: Field, X: FloatArray) -> FloatArray:
-    return np.broadcast_to(field(X), X.shape)
+def _along(field: Field, X: FloatArray) -> Numbers:
+    """Values of a field at every abscissa."""
+    values = field(X)
+    if is_symbolic(values):
+        return repeated(values, len(X))
+    return np.broadcast_to(known(values), X.shape)
 
 
 def _linear_density(rod: scenes.Rod) -> Field | None:
     if rod.linear_density is not None:
         given = _linear(rod.linear_density)
-        return lambda X: _array(given, X)
+        return _shared(lambda X: _along(given, X), rod.linear_density)
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density
     shape = _section_shape(rod.section)
-    return lambda X: density * shape(X).area
+    return _shared(lambda X: density * shape(X).area, *_sizes(rod.section))
 
 
 def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     """Moments of inertia per length (k, 3): as given, or ρ I_xx, ρ I_yy and ρ (I_xx + I_yy) of the section."""
     if rod.rotary_inertia is not None:
-        given = np.asarray(rod.rotary_inertia, dtype=float)
-        return lambda X: np.tile(given, (len(X), 1))
+        given = as_vector(rod.rotary_inertia)
+        if is_symbolic(given):
+            return lambda X: given.T
+        return lambda X: np.tile(known(given), (len(X), 1))
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density
     shape = _section_shape(rod.section)
-    return lambda X: density * shape(X).second_moments
+    return _shared(lambda X: density * shape(X).second_moments, *_sizes(rod.section))
 
 
 def _area(rod: scenes.Rod) -> Field | None:
@@ -172,7 +249,7 @@ def _diameter(rod: scenes.Rod) -> Field | None:
         radius = _linear(rod.section.outer_radius)
     else:
         return None
-    return lambda X: 2 * _array(radius, X)
+    return lambda X: 2 * _along(radius, X)
 
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
@@ -181,5 +258,8 @@ def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:
         return None
     time = rod.damping.retardation_time
     if time is not None:
-        return lambda X: time * hooke(X)
+        sizes = [] if rod.section is None else _sizes(rod.section)
+        if rod.stiffness is not None:
+            sizes = [getattr(rod.stiffness, name) for name in STRAINS]
+        return _shared(lambda X: time * hooke(X), *sizes)
     return _direct(rod.damping, 0.0)

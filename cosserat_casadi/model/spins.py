@@ -14,6 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.floating_frames import FLAT, FrameName
 from cosserat_casadi.model.load_assembly import BodyLoads
@@ -55,7 +56,7 @@ def _forces(system: System, body: scenes.Body) -> FloatArray:
     """Points of a body that forces of fixed direction act on, in its axes, k×3, m."""
     frame = system.frame(FrameName("body", body.name))
     loads = BodyLoads(system.discrete, body, frame.position, frame.rotation, system.arguments.inputs).all()
-    points = [load.position for load in loads if load.aligns]
+    points = [known(as_vector(load.position)) for load in loads if load.aligns]
     return np.reshape(points, (-1, 3))
 
 

@@ -15,18 +15,19 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength, Elasticity
 from cosserat_casadi.constraints.section_constraint import Poses
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion
+from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, input_values, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.model.rods import written_base_pose
 from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
 from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.igm import InverseGeometricModel
@@ -172,10 +173,10 @@ class System:
 
     def _turning_mass(self, name: FrameName) -> float:
         """Moment of inertia of the size that the body, or the rod, of a floating frame has, kg m²."""
-        frame = self.discrete.frames[name]
+        frame = self.discrete.nominal.frames[name]
         if frame.body is not None:
             return frame.body.mass * frame.length**2 + float(np.trace(frame.body.inertia_matrix))
-        rod = self.discrete.rods[name.name]
+        rod = self.discrete.nominal.rods[name.name]
         masses = section_masses(rod)
         if masses is None:
             return 0.0
@@ -187,12 +188,15 @@ class System:
         inertias = {}
         for name, frame_motion in self.frame_motions.items():
             body = frame_motion.frame.body
-            if body is None or (body.mass == 0.0 and not body.inertia_matrix.any()):
+            if body is None:
+                continue
+            inertia = body_inertia(body)
+            if is_zero(body.mass) and is_zero(inertia):
                 continue
             inertias[name] = BodyInertia(
                 mass=body.mass,
-                centre_of_mass=np.asarray(body.centre_of_mass, dtype=float),
-                inertia=body.inertia_matrix,
+                centre_of_mass=as_vector(body.centre_of_mass),
+                inertia=inertia,
                 rotation=self.frame(name).rotation,
                 motion=frame_motion.motion,
             )
@@ -287,10 +291,9 @@ class System:
 
     def _still_base(self, rod: str) -> Pose:
         """Pose of a base that rests in the world: the scene's, or what the inputs say."""
-        record = self.discrete.unloaded.records[rod]
-        given_position, given_quaternion = base_pose(record)
-        position: Matrix = ca.DM(given_position)
-        quaternion: Matrix = ca.DM(given_quaternion)
+        given_position, given_quaternion = written_base_pose(self.discrete.records[rod])
+        position: Matrix = as_matrix(given_position)
+        quaternion: Matrix = as_matrix(given_quaternion)
         free_position = self._rod_input(rod, "base.position")
         free_quaternion = self._rod_input(rod, "base.quaternion")
         if free_position is not None:
@@ -332,11 +335,17 @@ class System:
         velocity = motion.v[strains]
         acceleration = motion.a[strains]
         if length is None:
-            return StrainRates(velocity, acceleration)
+            return StrainRates(velocity, acceleration, *self._fixed_ratio(rod))
         reference = self.discrete.rods[rod].properties.length
         ratio_rate = motion.inputs_rate[length] / reference
         ratio_acceleration = motion.inputs_acceleration[length] / reference
         return StrainRates(velocity, acceleration, ratio_rate, ratio_acceleration)
+
+    def _fixed_ratio(self, rod: str) -> tuple[Ratio, Ratio]:
+        """Rates of a length that is no input: none, or zeros for one that a parameter sets."""
+        if self.discrete.rods[rod].properties.ratio is None:
+            return None, None
+        return ca.DM(1, 1), ca.DM(1, 1)
 
     def _rod_input(self, rod: str, field: str) -> Matrix | None:
         """An input of a rod's own geometry; None where the scene fixes it."""
@@ -477,10 +486,10 @@ class System:
 
 
 def ratio_of(discrete: DiscreteScene, rod: str, arguments: Arguments) -> Ratio:
-    """Length of a rod relative to the scene's where it is an input, else None."""
+    """Length of a rod relative to the scene's where it is an input or a parameter, else None."""
     entries = discrete.layout.of_rod(rod, "length")
     if entries is None:
-        return None
+        return discrete.rods[rod].properties.ratio
     length = arguments.inputs[entries]
     return length / discrete.rods[rod].properties.length
 

@@ -166,7 +166,7 @@ def simulate_scene(scene: Scene, *, start: Solution | None = None, progress: Tel
     Raises:
         SceneError: the scene cannot be simulated.
     """
-    moving_scene = scene.with_motion_inputs()
+    moving_scene = scene.baked().with_motion_inputs()
     coarsest = build(moving_scene, discretise(moving_scene, 1, 2), moving=True)
     simulation = scene.simulation
     check_simulation(coarsest, simulation)

@@ -257,6 +257,7 @@ def simulate(
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
+    model = model.at()
     asked = simulation or model.scene.simulation
     check_simulation(model, asked)
     assert asked is not None, "checked"

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.metrics import prolong
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.build import Model
 
 UNLOADED = "At rest in the unloaded shape."
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
@@ -67,7 +68,7 @@ def given_start(model: Model, solution: Solution) -> Start:
 
 def _held(model: Model) -> Model:
     """The model of statics on the same discretisation: free bases are clamped, and are not unknowns."""
-    return build(model.scene.held(), model.discretisation)
+    return model.changed(scenes.Scene.held)
 
 
 def _started(model: Model, solution: Solution, sentence: str) -> Start:

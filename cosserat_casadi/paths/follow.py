@@ -364,6 +364,7 @@ def follow_path(
     Raises:
         SceneError: the input is unknown, or a value is refused.
     """
+    model = model.at()
     followed = _followed(model, name, value, values)
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero)

@@ -81,6 +81,7 @@ def follow_scene_path(
             progress=progress,
         )
 
+    scene = scene.baked()
     accuracy = scene.accuracy
     fixed = accuracy.modes is not None or accuracy.nodes is not None
     if fixed:

@@ -9,6 +9,7 @@ import numpy as np
 from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
@@ -136,7 +137,7 @@ def actuator_routing(solution: Solution, actuator: Any) -> FloatArray:
     start, end = actuator.span
     X = start + (end - start) * SAMPLES
     pose = solution.pose(X, actuator.rod)
-    offset = offset_at(actuator, X)[0]
+    offset = known(offset_at(actuator, X)[0])
     # A routing is given by two offsets, along the axes x and y of its sections.
     across = pose.rotation[:, :, :2]
     return np.asarray(pose.position + np.einsum("kij,jk->ki", across, offset))

@@ -40,7 +40,7 @@ def read_start(path: str | Path, scene: Scene) -> Solution:
     if data.get("converged") is not True:
         raise _refusal(path, "holds no equilibrium", "solve the scene first")
     # Free bases are clamped in statics.
-    held = scene.held()
+    held = scene.held().baked()
     try:
         model = build(held, _discretisation(data, held))
         guess = _strain_coordinates(model, data)

@@ -15,6 +15,7 @@ from typing import Protocol
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, known, product, row_times, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -102,11 +103,11 @@ class StrainSum:
 
     Attributes:
         components: the strains c that it depends on.
-        densities: g, shape (len(components), M).
+        densities: g, shape (len(components), M), numbers or expressions.
     """
 
     components: Sequence[int]
-    densities: FloatArray
+    densities: Numbers
 
     def on(self, shape: Shape) -> StrainSumOnRod:
         """The quantity on a rod of this shape."""
@@ -133,7 +134,7 @@ class StrainSumOnRod(Lossless):
         total = ca.DM(0.0)
         for row, weights in zip(strains, self._weighted, strict=True):
             if row is not None:
-                total = total + row @ ca.DM(weights)
+                total = total + row @ as_matrix(weights)
         return total
 
     @cached_property
@@ -141,13 +142,15 @@ class StrainSumOnRod(Lossless):
         """∂L/∂q, n×1."""
         rod = self.shape.rod
         weights = dict(zip(self.quantity.components, self._weighted, strict=True))
-        rows = []
+        rows: list[tuple[FloatArray, Numbers]] = []
         for c in rod.admitted:
             phi = rod.at_nodes[c]
             # A strain that the quantity does not depend on has no weight.
             own = weights.get(c, np.zeros(rod.grid.size))
-            rows.append(phi.T @ own)
-        gradient = np.concatenate(rows)
+            rows.append((phi.T, own))
+        if any_symbolic(own for _, own in rows):
+            return ca.vertcat(*[product(to_rows, own) for to_rows, own in rows])
+        gradient = np.concatenate([to_rows @ known(own) for to_rows, own in rows])
         return ca.sparsify(ca.DM(gradient))
 
     def curvature(self, a: int, b: int) -> None:
@@ -155,7 +158,7 @@ class StrainSumOnRod(Lossless):
         return
 
     @property
-    def _weighted(self) -> FloatArray:
-        """ℓ w g, shape (len(components), M)."""
+    def _weighted(self) -> list[Numbers]:
+        """ℓ w g of each component, shape (M,)."""
         lengths = self.shape.rod.node_lengths
-        return np.asarray(lengths * self.quantity.densities)
+        return [row_times(lengths, row) for row in rows_of(self.quantity.densities)]

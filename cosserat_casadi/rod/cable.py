@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, is_zero, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Lossless
@@ -31,13 +32,13 @@ class Routing:
 
     Attributes:
         nodes: indices of the nodes, shape (k,).
-        offset: D_x and D_y in the section, shape (2, k), m.
+        offset: D_x and D_y in the section, shape (2, k), m, numbers or expressions.
         slope: dD/dX, shape (2, k), m.
     """
 
     nodes: Indices
-    offset: FloatArray
-    slope: FloatArray
+    offset: Numbers
+    slope: Numbers
 
     def __post_init__(self) -> None:
         count = len(self.nodes)
@@ -68,7 +69,7 @@ class RoutedCable(Lossless):
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
         length = self.shape.rod.length
-        slope_x, slope_y = (_constant(row / length) for row in self.routing.slope)
+        slope_x, slope_y = (_constant(row / length) for row in rows_of(self.routing.slope))
         return (
             added(gx, negative(product(kz, dy)), slope_x),
             added(gy, product(kz, dx), slope_y),
@@ -172,33 +173,32 @@ class RoutedCable(Lossless):
 
     @property
     def _offset(self) -> tuple[Row, Row]:
-        dx, dy = self.routing.offset
+        dx, dy = rows_of(self.routing.offset)
         return _constant(dx), _constant(dy)
 
     @property
     def tangent_rates(self) -> list[tuple[Row, Row, Row]]:
         """∂T/∂ξ_c of the six strains, three rows each."""
-        return [tuple(map(_constant, rate)) for rate in self._rates]  # type: ignore[misc]
-
-    def _metric(self, a: int, b: int) -> FloatArray:
-        """Scalar product of the rates of T with two strains, shape (k,)."""
-        product_of_rates = self._rates[a] * self._rates[b]
-        return np.asarray(product_of_rates.sum(axis=0))
-
-    @property
-    def _rates(self) -> list[FloatArray]:
-        """∂T/∂ξ_c of the six strains, shape (3, k) each."""
-        dx, dy = self.routing.offset
-        zero = np.zeros_like(dx)
-        unit = np.ones_like(dx)
+        dx, dy = self._offset
+        unit = ca.DM.ones(1, len(self.routing.nodes))
         return [
-            np.array([zero, zero, dy]),
-            np.array([zero, zero, -dx]),
-            np.array([-dy, dx, zero]),
-            np.array([unit, zero, zero]),
-            np.array([zero, unit, zero]),
-            np.array([zero, zero, unit]),
+            (None, None, dy),
+            (None, None, negative(dx)),
+            (negative(dy), dx, None),
+            (unit, None, None),
+            (None, unit, None),
+            (None, None, unit),
         ]
+
+    def _metric(self, a: int, b: int) -> Numbers:
+        """Scalar product of the rates of T with two strains, shape (k,)."""
+        pairs = zip(self.tangent_rates[a], self.tangent_rates[b], strict=True)
+        total = added(*[product(one, other) for one, other in pairs])
+        if total is None:
+            return np.zeros(len(self.routing.nodes))
+        if is_symbolic(total):
+            return total.T
+        return np.asarray(total.full()[0])
 
     @property
     def _node_lengths(self) -> FloatArray:
@@ -206,11 +206,11 @@ class RoutedCable(Lossless):
         return self.shape.rod.node_lengths[self.routing.nodes]
 
 
-def _constant(row: FloatArray) -> Row:
-    """A row of numbers; None where all are zero."""
-    if not np.any(row):
+def _constant(row: Numbers) -> Row:
+    """A row of numbers or expressions; None where all are zero."""
+    if is_zero(row):
         return None
-    return ca.DM(row).T
+    return as_matrix(row).T
 
 
 def added(*rows: Row) -> Row:

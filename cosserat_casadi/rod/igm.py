@@ -72,7 +72,7 @@ class InverseGeometricModel:
     @cached_property
     def residual(self) -> Matrix:
         """(K_εε q + Q_ad) / (EI/ℓ), n×1: zero in equilibrium, report (2.20)."""
-        elastic = self._elastic(self._stiffness @ self.shape.q)
+        elastic = self._elastic(self.rod.stiffness_matrix @ self.shape.q)
         passive = elastic + self.generalised_force
         if self.actuation_force is None:
             return passive
@@ -82,7 +82,7 @@ class InverseGeometricModel:
     def energy(self) -> Matrix:
         """Elastic energy ½ qᵀ K_εε q, 1×1, J."""
         q = self.shape.q
-        stored = ca.bilin(self._stiffness, q, q)
+        stored = ca.bilin(self.rod.stiffness_matrix, q, q)
         return self.rod.energy_unit / 2 * self._elastic(stored)
 
     @cached_property
@@ -109,11 +109,6 @@ class InverseGeometricModel:
         for effort, conjugate in self.efforts:
             total = total + effort * conjugate.value
         return total
-
-    @property
-    def _stiffness(self) -> ca.DM:
-        """K_εε / (EI/ℓ), n×n, without its zeros."""
-        return ca.sparsify(ca.DM(self.rod.stiffness))
 
     def _elastic(self, value: Matrix) -> Matrix:
         """A value in proportion to the stiffness: a longer rod is softer."""

@@ -15,20 +15,26 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, column, is_symbolic, known, repeated, row_times
 from cosserat_casadi.maths.rotation import cross
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion import RodMotion
+from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.wrenches import LineWrench
 
 
-def second_moments(rotary_inertia: FloatArray) -> FloatArray:
+def second_moments(rotary_inertia: Numbers) -> Numbers:
     """Second moments c_k along the section's axes from the inertia about them, shape (k, 3) each, kg m.
 
     c_1 = (J_2 + J_3 − J_1)/2, and so on round.
     """
-    half_sum = rotary_inertia.sum(axis=1, keepdims=True) / 2
-    return np.asarray(half_sum - rotary_inertia)
+    if is_symbolic(rotary_inertia):
+        half_sum = ca.sum2(rotary_inertia) / 2
+        return ca.repmat(half_sum, 1, 3) - rotary_inertia
+    about_axes = known(rotary_inertia)
+    half_sum = about_axes.sum(axis=1, keepdims=True) / 2
+    return np.asarray(half_sum - about_axes)
 
 
 @dataclass(frozen=True)
@@ -40,8 +46,8 @@ class SectionMasses:
         second_moments: c_k at the nodes for those directors k that have any, shape (M,) each, kg m.
     """
 
-    mass: FloatArray
-    second_moments: dict[int, FloatArray]
+    mass: Numbers
+    second_moments: dict[int, Numbers]
 
 
 def section_masses(rod: DiscreteRod) -> SectionMasses | None:
@@ -50,15 +56,24 @@ def section_masses(rod: DiscreteRod) -> SectionMasses | None:
     if properties.linear_density is None:
         return None
     X = rod.grid.nodes
-    mass = np.asarray(properties.linear_density(X), dtype=float)
+    mass = repeated(properties.linear_density(X), len(X))
+    if properties.rotary_inertia is None:
+        return SectionMasses(mass, {})
+    along_axes = second_moments(properties.rotary_inertia(X))
     moments = {}
-    if properties.rotary_inertia is not None:
-        along_axes = second_moments(properties.rotary_inertia(X))
-        for axis in range(3):
-            # Zero by cancellation in a plane section: J_x + J_y − J_z.
-            if np.any(np.abs(along_axes[:, axis]) > 1e-12 * np.abs(along_axes).max()):
-                moments[axis] = along_axes[:, axis]
+    for axis in _axes_with_moment(properties, along_axes):
+        moments[axis] = repeated(column(along_axes, axis), len(X))
     return SectionMasses(mass, moments)
+
+
+def _axes_with_moment(properties: RodProperties, along_axes: Numbers) -> list[int]:
+    """Axes along which sections have a second moment."""
+    if is_symbolic(along_axes):
+        # Of a plane section the moment along the tangent is zero, J_x + J_y − J_z.
+        return [0, 1] if properties.plane_sections else [0, 1, 2]
+    sizes = np.abs(known(along_axes))
+    # Zero by cancellation in a plane section.
+    return [axis for axis in range(3) if np.any(sizes[:, axis] > 1e-12 * sizes.max())]
 
 
 @dataclass(frozen=True)
@@ -116,11 +131,11 @@ class RodInertia:
             total = total + self._sum(spin, second_moment)
         return total
 
-    def _scaled(self, vectors: Matrix, factors: FloatArray) -> Matrix:
+    def _scaled(self, vectors: Matrix, factors: Numbers) -> Matrix:
         """Vectors of the nodes times the factors of the nodes and the ratio of the lengths, 3×M."""
-        return self.ratio * (vectors @ ca.diag(ca.DM(factors)))
+        return self.ratio * (vectors @ ca.diag(as_matrix(factors)))
 
-    def _sum(self, values: Matrix, factors: FloatArray) -> Matrix:
+    def _sum(self, values: Matrix, factors: Numbers) -> Matrix:
         """Sum over the rod of values at the nodes, m×M, times factors per length, m×1."""
         lengths = self.motion.rod.node_lengths
-        return self.ratio * (values @ ca.DM(lengths * factors))
+        return self.ratio * (values @ as_matrix(row_times(lengths, factors)))

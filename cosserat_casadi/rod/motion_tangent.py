@@ -28,6 +28,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator, sum_of_products
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
@@ -207,18 +208,28 @@ class MotionTangent:
         return ca.vertcat(rows, ca.DM(1, rows.shape[1]))
 
     @cached_property
-    def _gram(self) -> FloatArray:
+    def _gram(self) -> Numbers:
         """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift."""
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
-        weighted = (rod.node_lengths * self.inertia.masses.mass)[:, None] * integrate
+        mass = self.inertia.masses.mass
+        if is_symbolic(mass):
+            return self._symbolic_gram(integrate, mass) / self.unit
+        weighted = (rod.node_lengths * known(mass))[:, None] * integrate
         return np.asarray(integrate.T @ weighted) / self.unit
 
-    def _gram_of(self, rows: FloatArray, times: int = 1) -> ca.DM:
+    def _gram_of(self, rows: list[int] | None, columns: list[int] | None, times: int = 1) -> Matrix:
         """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
-        return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), rows)))
+        part = self._gram
+        if rows is not None:
+            part = part[rows, :]
+        if columns is not None:
+            part = part[:, columns]
+        if is_symbolic(part):
+            return ca.kron(ca.DM.eye(3 * times), part)
+        return ca.sparsify(ca.DM(np.kron(np.eye(3 * times), known(part))))
 
     # Variations at all nodes, in the order of the coordinates: loads that depend on rates act anywhere.
 
@@ -266,7 +277,7 @@ class MotionTangent:
     @cached_property
     def _wrenches(self) -> Matrix:
         """Wrenches on the sections that turn, of which Θᵀ makes forces, by the turning columns, 9m×turning columns."""
-        gram = self._gram_of(self._gram[np.ix_(self._nodes, self._nodes)], ORDERS)
+        gram = self._gram_of(self._nodes, self._nodes, ORDERS)
         forces = gram @ self._accelerations
         levers = ca.diagcat(*[self._levers] * ORDERS)
         if not self.inertia.masses.second_moments:
@@ -291,7 +302,7 @@ class MotionTangent:
         if others is None:
             return MotionMatrices(stiffness, damping, mass)
         of_turning = [self._others_on_turning @ moved for moved in ca.vertsplit(self._accelerations, rows)]
-        gram = self._gram_of(self._gram[self._nodes])
+        gram = self._gram_of(self._nodes, None)
         columns = [others.stiffness, others.damping, others.mass]
         by_others = [turned @ (self._levers @ (gram @ field)) for field in columns[:2]]
         by_others.append(of_turning[2].T)
@@ -310,14 +321,14 @@ class MotionTangent:
     def _others_on_turning(self) -> Matrix:
         """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
         assert self._stretch is not None, "asked for with other columns"
-        pulled = self._gram_of(self._gram[self._nodes]) @ self._stretch.mass
+        pulled = self._gram_of(self._nodes, None) @ self._stretch.mass
         return self.inertia.ratio * pulled.T
 
     @cached_property
     def _others_on_others(self) -> Matrix:
         """The same, at accelerations of all nodes."""
         assert self._stretch is not None, "asked for with other columns"
-        pulled = self._gram_of(self._gram) @ self._stretch.mass
+        pulled = self._gram_of(None, None) @ self._stretch.mass
         return self.inertia.ratio * pulled.T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
@@ -363,6 +374,12 @@ class MotionTangent:
         first, second = ca.vertsplit(cumulative_sum(added, count), 3 * count)
         return self.tangent.section_rotation, first, second
 
+    def _symbolic_gram(self, integrate: FloatArray, mass: Matrix) -> Matrix:
+        """Sᵀ μ S where the masses are expressions: linear in the mass of each node."""
+        weighted = self.tangent.rod.node_lengths[:, None, None] * integrate[:, :, None] * integrate[:, None, :]
+        columns = integrate.shape[1]
+        return ca.reshape(product(weighted.reshape(len(weighted), -1).T, mass), columns, columns)
+
     @cached_property
     def _rotary_operators(self) -> tuple[Matrix, Matrix, Matrix]:
         """P₂, P₁ and P₀ of the module's docstring on stacked fields, 3m×3m, times the lengths of the nodes."""
@@ -370,7 +387,7 @@ class MotionTangent:
         totals: list[Matrix] = [ca.DM(3 * len(nodes), 3 * len(nodes))] * 3
         lengths = self.tangent.rod.node_lengths / self.unit
         for axis, second_moment in self.inertia.masses.second_moments.items():
-            weights = (lengths * second_moment)[nodes]
+            weights = row_times(lengths, second_moment)[nodes]
             director = self.motion.shape.directors[axis][:, nodes]
             rate = self.motion.director_rate(axis)[:, nodes]
             acceleration = self.motion.director_acceleration(axis)[:, nodes]
@@ -397,14 +414,14 @@ def _operators(on_acceleration: Matrix, on_rate: Matrix, on_value: Matrix) -> Ma
     return ca.blockcat(rows)
 
 
-def _weighted(operator: Matrix, weights: FloatArray) -> Matrix:
+def _weighted(operator: Matrix, weights: Numbers) -> Matrix:
     """Rows of an operator on stacked 3-vectors, each times the weight of its point."""
-    return ca.diag(ca.DM(np.tile(weights, 3))) @ operator
+    return ca.diag(ca.repmat(as_matrix(weights), 3, 1)) @ operator
 
 
-def _outer(left: Matrix, right: Matrix, weights: FloatArray) -> Matrix:
+def _outer(left: Matrix, right: Matrix, weights: Numbers) -> Matrix:
     """Operator v ↦ weight · left (right·v) at every point, 3k×3k, from 3×k fields."""
-    columns = ca.DM(weights)
+    columns = as_matrix(weights)
     rows: list[Sequence[Matrix]] = []
     for left_row in ca.vertsplit(left):
         weighted = left_row.T * columns

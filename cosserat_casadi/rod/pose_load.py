@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, unstack
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Wrench
@@ -181,6 +182,6 @@ class LoadedSections:
         rotations = self.shape.rotations_at(self.nodes)
         alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]
         repeated = [ca.repmat(value, 1, count) for value in alike]
-        given = [self.position, rotations, *repeated, ca.DM(self.load.data), *self._rates]
+        given = [self.position, rotations, *repeated, as_matrix(self.load.data), *self._rates]
         results = function.map(count).call(given)
         return list(results)

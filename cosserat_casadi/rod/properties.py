@@ -1,13 +1,17 @@
-"""What a rod is made of, as numbers: the one record that the mechanics reads."""
+"""What a rod is made of, as numbers or expressions of parameters: the one record that the mechanics reads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
+
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_vector, is_zero, known, side_by_side
+from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]
 
@@ -19,9 +23,12 @@ STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension
 class RodProperties:
     """A rod in its unloaded state.
 
+    The fields along the rod are arrays, or expressions of parameters with one row for each abscissa; a field that is
+    the same all along the rod may give one row for all.
+
     Attributes:
         name: the rod's name.
-        length: undeformed length ℓ, m.
+        length: undeformed length ℓ that scales the equations, m.
         admitted: indices of the admitted strains, ascending: the columns of B in report (2.1).
         basis: "legendre" or "chebyshev", the polynomials of report (2.4).
         hooke: abscissae (k,) ↦ diagonal of the Hooke tensor (k, 6), N m² and N; rows of strains that are not
@@ -34,28 +41,56 @@ class RodProperties:
             None where the rod has none. Rows of strains that are not admitted are not read.
         area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
         diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
+        plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
+        ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
+        nominal: the rod with the numbers that scale the equations; None where these are its own.
     """
 
     name: str
     length: float
     admitted: tuple[int, ...]
     basis: str
-    hooke: Callable[[Array], Array]
-    intrinsic: tuple[tuple[float, ...], ...]
-    linear_density: Callable[[Array], Array] | None = None
-    rotary_inertia: Callable[[Array], Array] | None = None
-    damping: Callable[[Array], Array] | None = None
-    area: Callable[[Array], Array] | None = None
-    diameter: Callable[[Array], Array] | None = None
+    hooke: Callable[[Array], Numbers]
+    intrinsic: tuple[tuple[Scalar, ...], ...]
+    linear_density: Callable[[Array], Numbers] | None = None
+    rotary_inertia: Callable[[Array], Numbers] | None = None
+    damping: Callable[[Array], Numbers] | None = None
+    area: Callable[[Array], Numbers] | None = None
+    diameter: Callable[[Array], Numbers] | None = None
+    plane_sections: bool = False
+    ratio: Matrix | None = None
+    nominal: RodProperties | None = None
 
-    def intrinsic_strain(self, X: Array) -> Array:
+    def intrinsic_strain(self, X: Array) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""
-        columns = []
-        for coefficients in self.intrinsic:
+        return self._along(self.intrinsic, X)
+
+    def intrinsic_curvature(self, X: Array) -> Numbers:
+        """The three angular components of ξ⁰ at abscissae X, shape (len(X), 3), 1/m."""
+        return self._along(self.intrinsic[:3], X)
+
+    @staticmethod
+    def _along(components: tuple[tuple[Scalar, ...], ...], X: Array) -> Numbers:
+        """Legendre series at abscissae, one column a component."""
+        columns: list[Numbers] = []
+        for coefficients in components:
+            if any_symbolic(coefficients):
+                polynomials = legendre.legvander(2 * X - 1, len(coefficients) - 1)
+                columns.append(ca.DM(polynomials) @ as_vector(coefficients))
+                continue
             values = legendre.legval(2 * X - 1, np.asarray(coefficients))
             # A constant gives one number for all abscissae.
             columns.append(np.broadcast_to(values, X.shape))
-        return np.stack(columns, axis=-1)
+        return side_by_side(columns)
+
+    @property
+    def mean_hooke(self) -> Array:
+        """Mean of the Hooke tensor's diagonal along the rod that scales the equations, shape (6,)."""
+        if self.nominal is not None:
+            return self.nominal.mean_hooke
+        points, weights = legendre.leggauss(8)
+        X = (points + 1) / 2
+        return np.asarray((weights / 2) @ known(self.hooke(X)))
 
     @property
     def bending_stiffness(self) -> float:
@@ -63,9 +98,7 @@ class RodProperties:
 
         A rod that admits neither takes H ℓ² of its softest linear strain.
         """
-        points, weights = legendre.leggauss(8)
-        X = (points + 1) / 2
-        mean = (weights / 2) @ self.hooke(X)
+        mean = self.mean_hooke
         angular = [mean[i] for i in self.admitted if i < 3]
         if angular:
             return float(min(angular))
@@ -77,6 +110,6 @@ class RodProperties:
         """Local axes about which the rod can turn along its length, unloaded or not."""
         axes = {i for i in self.admitted if i < 3}
         for i, coefficients in enumerate(self.intrinsic[:3]):
-            if any(coefficients):
+            if not is_zero(coefficients):
                 axes.add(i)
         return tuple(sorted(axes))

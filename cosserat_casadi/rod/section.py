@@ -1,16 +1,18 @@
 """Areas and second moments of cross-sections, and the Hooke tensor they give: report (1.20), (1.21).
 
-The section lies in the local x–y plane; z is the tangent. Every argument may be an array over abscissae.
+The section lies in the local x–y plane; z is the tangent. Every argument may be an array over abscissae, or an
+expression of parameters.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[np.float64]
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, is_symbolic, known, side_by_side
+from cosserat_casadi.maths.typing import Matrix
 
 
 @dataclass(frozen=True)
@@ -24,27 +26,27 @@ class SectionShape:
         torsion_constant: J, m⁴, of Saint-Venant's problem; I_xx + I_yy only for circles and annuli.
     """
 
-    area: Array
-    second_moment_x: Array
-    second_moment_y: Array
-    torsion_constant: Array
+    area: Numbers
+    second_moment_x: Numbers
+    second_moment_y: Numbers
+    torsion_constant: Numbers
 
     @property
-    def second_moments(self) -> Array:
+    def second_moments(self) -> Numbers:
         """I_xx, I_yy and the polar moment I_xx + I_yy, shape (len, 3), m⁴: they resist rotation when times the density.
 
         The polar moment is not the torsion constant J, which warping makes smaller.
         """
         polar = self.second_moment_x + self.second_moment_y
-        return np.stack([self.second_moment_x, self.second_moment_y, polar], axis=-1)
+        return side_by_side([self.second_moment_x, self.second_moment_y, polar])
 
 
-def circle(radius: Array) -> SectionShape:
+def circle(radius: Numbers) -> SectionShape:
     """Solid circle of the given radius (m)."""
-    return annulus(radius, np.zeros_like(radius))
+    return annulus(radius, 0.0 * radius)
 
 
-def annulus(outer_radius: Array, inner_radius: Array) -> SectionShape:
+def annulus(outer_radius: Numbers, inner_radius: Numbers) -> SectionShape:
     """Circular tube between two radii (m)."""
     second_moment = np.pi / 4 * (outer_radius**4 - inner_radius**4)
     return SectionShape(
@@ -55,7 +57,7 @@ def annulus(outer_radius: Array, inner_radius: Array) -> SectionShape:
     )
 
 
-def rectangle(width: Array, height: Array) -> SectionShape:
+def rectangle(width: Numbers, height: Numbers) -> SectionShape:
     """Solid rectangle, ``width`` along local x and ``height`` along local y (m)."""
     return SectionShape(
         area=width * height,
@@ -65,26 +67,40 @@ def rectangle(width: Array, height: Array) -> SectionShape:
     )
 
 
-def _rectangle_torsion_constant(width: Array, height: Array) -> Array:
+def _rectangle_torsion_constant(width: Numbers, height: Numbers) -> Numbers:
     """Saint-Venant's series J = a b³ [1/3 − (64/π⁵)(b/a) Σ tanh(nπa/2b)/n⁵] over odd n, with a ≥ b.
 
     tanh is 1 to rounding from n = 13 on for every a ≥ b, so the rest of the series is a constant: 31 ζ(5)/32 is
     the sum of 1/n⁵, and only the deficits 1 − tanh are summed.
     """
-    a = np.maximum(width, height)
-    b = np.minimum(width, height)
-    n = np.arange(1, 27, 2)
+    a: Numbers
+    b: Numbers
+    if any_symbolic([width, height]):
+        a = ca.fmax(as_matrix(width), as_matrix(height))
+        b = ca.fmin(as_matrix(width), as_matrix(height))
+    else:
+        a = np.maximum(known(width), known(height))
+        b = np.minimum(known(width), known(height))
     # Σ 1/n⁵ over all odd n, 31/32 of ζ(5).
     all_odd = 31 / 32 * 1.0369277551433699
-    slenderness = (a / b)[..., None]
-    deficits = 1 - np.tanh(n * np.pi / 2 * slenderness)
-    deficit = (deficits / n**5).sum(axis=-1)
-    series = 64 / np.pi**5 * (b / a) * (all_odd - deficit)
-    result: Array = a * b**3 * (1 / 3 - series)
+    series = 64 / np.pi**5 * (b / a) * (all_odd - _tanh_deficit(a / b))
+    result: Numbers = a * b**3 * (1 / 3 - series)
     return result
 
 
-def hooke(shape: SectionShape, youngs_modulus: float, shear_modulus: float, shear_correction: float) -> Array:
+def _tanh_deficit(slenderness: Numbers) -> Numbers:
+    """Σ (1 − tanh(nπ/2 a/b))/n⁵ over odd n below 27, for every a/b."""
+    n = np.arange(1, 27, 2)
+    if is_symbolic(slenderness):
+        # One row a section, one column a term.
+        deficits = 1 - ca.tanh(slenderness @ ca.DM(n * np.pi / 2).T)
+        total: Matrix = deficits @ ca.DM(1 / n**5)
+        return total
+    terms = (1 - np.tanh(n * np.pi / 2 * known(slenderness)[..., None])) / n**5
+    return np.asarray(terms.sum(axis=-1))
+
+
+def hooke(shape: SectionShape, youngs_modulus: Scalar, shear_modulus: Scalar, shear_correction: Scalar) -> Numbers:
     """Diagonal of the Hooke tensor (EI_xx, EI_yy, GJ, kGA, kGA, EA), report (1.21).
 
     Args:
@@ -102,4 +118,4 @@ def hooke(shape: SectionShape, youngs_modulus: float, shear_modulus: float, shea
     shear = shear_correction * shear_modulus * shape.area
     extension = youngs_modulus * shape.area
     diagonal = [bending_x, bending_y, torsion, shear, shear, extension]
-    return np.stack(diagonal, axis=-1)
+    return side_by_side(diagonal)

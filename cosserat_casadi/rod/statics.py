@@ -16,6 +16,7 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, repeated
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -140,10 +141,16 @@ class Statics:
         """Force or moment per length at the nodes from the coefficients of a line wrench, 3×M, base frame."""
         values = coefficients
         if wrench.profiles is not None:
-            values = coefficients @ ca.DM(wrench.profiles)
+            values = coefficients @ self._at_every_node(wrench.profiles)
         if wrench.follower:
             return self.shape.to_base(values)
         return values
+
+    def _at_every_node(self, profiles: Numbers) -> Matrix:
+        """Values of profiles at the nodes, k×M."""
+        if is_symbolic(profiles):
+            return as_matrix(repeated(profiles.T, self.shape.rod.grid.size).T)
+        return as_matrix(profiles)
 
     @property
     def _from_tip(self) -> FloatArray:
@@ -172,7 +179,11 @@ class Statics:
         if wrench.follower or wrench.profiles is None:
             return self.line(wrench, force) @ ca.DM(to_covector)
         # Profiles are numbers: a dead force per length needs no product with S at run time.
-        return force @ ca.DM(wrench.profiles @ to_covector)
+        profiles = wrench.profiles
+        if not is_symbolic(profiles):
+            return force @ ca.DM(known(profiles) @ to_covector)
+        rows = [product(to_covector.T, profile.T).T for profile in ca.vertsplit(profiles)]
+        return force @ ca.vertcat(*rows)
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
         grid = self.shape.rod.grid

@@ -25,15 +25,24 @@ from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    column,
+    is_symbolic,
+    is_zero,
+    known,
+    product,
+    without_rounding,
+)
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import RodProperties
 
 Array = npt.NDArray[np.float64]
-
-ROUNDING = 1e-15
-"""Share of the largest entry of the stiffness below which an entry is zero by orthogonality."""
 
 _POLYNOMIALS: dict[str, Callable[[int, Array], Array]] = {
     "legendre": chebyshev.legendre_polynomials,
@@ -107,9 +116,7 @@ class DiscreteRod:
     @cached_property
     def scales(self) -> tuple[float, ...]:
         """Strain that one unit of a coordinate stands for, per admitted component (1/m or none)."""
-        points, weights = legendre.leggauss(8)
-        X = (points + 1) / 2
-        mean = (weights / 2) @ self.properties.hooke(X)
+        mean = self.properties.mean_hooke
         unit = self.properties.bending_stiffness / self.length**2
         # A constant strain of this size stores EI/(2ℓ) in the rod.
         strains = [np.sqrt(unit / mean[c]) for c in self.admitted]
@@ -202,39 +209,73 @@ class DiscreteRod:
         return folded(self.at_nodes[component], self.grid.mirrored_nodes, signs, parities)
 
     @cached_property
-    def stiffness(self) -> Array:
+    def stiffness(self) -> Numbers:
         """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit."""
         return self._section_matrix(self.properties.hooke)
 
     @cached_property
-    def viscosity(self) -> Array:
+    def viscosity(self) -> Numbers:
         """ℓ ∫ Φᵀ Υ Φ dX divided by EI/ℓ, Υ the coefficients of damping, shape (n, n), s; zero without damping."""
         if self.properties.damping is None:
             return np.zeros((self.size, self.size))
         return self._section_matrix(self.properties.damping)
 
-    def _section_matrix(self, diagonal: Callable[[Array], Array]) -> Array:
-        """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n).
-
-        Gauss points enough for the product of two polynomials with a section stiffness of degree four.
-        """
-        points, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
-        matrix = np.zeros((self.size, self.size))
-        for e in range(self.grid.elements):
-            start, end = self.grid.breaks[e : e + 2]
-            width = end - start
-            X = start + width * (points + 1) / 2
-            lengths = weights * width / 2 * self.length
-            weight = lengths / self.energy_unit
-            coefficients = diagonal(X) * weight[:, None]
+    def _section_matrix(self, diagonal: Callable[[Array], Numbers]) -> Numbers:
+        """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n)."""
+        points = [self._gauss_points(e) for e in range(self.grid.elements)]
+        coefficients = [diagonal(X) for X, _ in points]
+        if any_symbolic(coefficients):
+            return self._symbolic_section_matrix(diagonal)
+        result = np.zeros((self.size, self.size))
+        for e, (X, weight) in enumerate(points):
+            weighted = known(coefficients[e]) * weight[:, None]
             element = np.full(len(X), e)
             # Strains do not couple: the tensor is diagonal, and so are its blocks.
             for c, columns in self.columns.items():
                 phi = self.shape_functions(c, X, element)
-                matrix[columns, columns] += phi.T @ (coefficients[:, [c]] * phi)
-        largest = np.abs(matrix).max()
-        matrix[np.abs(matrix) < ROUNDING * largest] = 0.0
-        return matrix
+                result[columns, columns] += phi.T @ (weighted[:, [c]] * phi)
+        return without_rounding(result)
+
+    def _gauss_points(self, element: int) -> tuple[Array, Array]:
+        """Abscissae of an element, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
+
+        Enough for the product of two polynomials with a section stiffness of degree four.
+        """
+        points, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
+        start, end = self.grid.breaks[element : element + 2]
+        width = end - start
+        X = start + width * (points + 1) / 2
+        lengths = weights * width / 2 * self.length
+        return X, lengths / self.energy_unit
+
+    def _symbolic_section_matrix(self, diagonal: Callable[[Array], Numbers]) -> Matrix:
+        """The same where the coefficients are expressions: its entries are linear in them."""
+        points = [self._gauss_points(e) for e in range(self.grid.elements)]
+        element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
+        X = np.concatenate([X for X, _ in points])
+        weights = np.concatenate([weight for _, weight in points])
+        coefficients = as_matrix(diagonal(X))
+        blocks = []
+        for c in self.columns:
+            phi = self.shape_functions(c, X, element)
+            # One column a point: the product of two modes there, for every pair of modes.
+            pairs = (phi[:, :, None] * phi[:, None, :] * weights[:, None, None]).reshape(len(X), -1).T
+            own = column(coefficients, c)
+            size = phi.shape[1]
+            blocks.append(ca.reshape(product(pairs, own), size, size))
+        return ca.diagcat(*blocks)
+
+    @cached_property
+    def stiffness_matrix(self) -> Matrix:
+        """K_εε / (EI/ℓ), n×n, without its zeros."""
+        stiffness = self.stiffness
+        return stiffness if is_symbolic(stiffness) else ca.sparsify(as_matrix(stiffness))
+
+    @cached_property
+    def viscosity_matrix(self) -> Matrix:
+        """The matrix of the viscosity, n×n, s, without its zeros."""
+        viscosity = self.viscosity
+        return viscosity if is_symbolic(viscosity) else ca.sparsify(as_matrix(viscosity))
 
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
@@ -242,7 +283,7 @@ class DiscreteRod:
         intrinsic = self.properties.intrinsic_strain(X)
         rows = []
         for c in range(6):
-            row = ca.DM(intrinsic[:, c]).T
+            row = as_matrix(column(intrinsic, c)).T
             if c in self.columns:
                 phi = ca.DM(self.shape_functions(c, X, element))
                 strain = phi @ q[self.columns[c]]
@@ -257,8 +298,9 @@ class DiscreteRod:
         rows: list[Matrix | None] = []
         for c in components:
             row = None
-            if np.any(intrinsic[:, c]):
-                row = per_reference_length(ca.DM(intrinsic[:, c]).T, ratio)
+            own = column(intrinsic, c)
+            if not is_zero(own):
+                row = per_reference_length(as_matrix(own).T, ratio)
             if c in self.columns:
                 varying = (self.node_matrix(c) @ q[self.columns[c]]).T
                 row = varying if row is None else row + varying
@@ -284,11 +326,34 @@ class DiscreteRod:
         return orders
 
     @cached_property
+    def intrinsic_turn(self) -> Numbers:
+        """Taylor coefficients of the unloaded turn of every interval, shape (size, intervals), rad.
+
+        All turning axes of the first coefficient, then all of the next.
+        """
+        axes = list(self.properties.turning_axes)
+        curvatures = self.properties.intrinsic[:3]
+        if not any_symbolic(curvatures):
+            return np.concatenate([taylor[:, axes].T for taylor in self.intrinsic_taylor])
+        # The turn is linear in the Legendre coefficients.
+        highest = max(map(len, curvatures)) - 1
+        turns = self._taylor(lambda X, element: np.asarray(legendre.legvander(2 * X - 1, highest), dtype=float))
+        rows = []
+        for order, turn in enumerate(turns):
+            for axis in axes:
+                own = curvatures[axis]
+                degrees = np.arange(len(own))
+                # A polynomial has no Taylor coefficient beyond its degree: what is there is rounding.
+                by_coefficient = turn[:, : len(own)] * (degrees >= order)
+                rows.append(product(by_coefficient, as_vector(own)).T)
+        return ca.vertcat(*rows)
+
+    @cached_property
     def intrinsic_taylor(self) -> list[Array]:
-        """Taylor coefficients of the unloaded turn of every interval: one (intervals, 3) array for each l."""
+        """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
 
         def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
-            return self.properties.intrinsic_strain(X)[:, :3]
+            return known(self.properties.intrinsic_curvature(X))
 
         return self._taylor(curvature)
 

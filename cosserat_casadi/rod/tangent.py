@@ -182,7 +182,7 @@ class Tangent:
     @cached_property
     def jacobian(self) -> Matrix:
         """∂ residual / ∂q, n×n, without unit."""
-        elastic = ca.sparsify(ca.DM(self.rod.stiffness))
+        elastic = self.rod.stiffness_matrix
         if self.shape.ratio is not None:
             elastic = elastic / self.shape.ratio
         matrix = elastic + self._frozen_wrenches()

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.blocks import unstack
+from cosserat_casadi.maths.numbers import as_matrix, column
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -177,11 +177,9 @@ def _kernels(axes: tuple[int, ...], count: int) -> IntervalKernels:
 
 def interval_turns(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
     """Taylor coefficients of the turn of every interval, size×intervals, rad."""
-    axes = list(rod.properties.turning_axes)
-    coefficients = [taylor[:, axes].T for taylor in rod.intrinsic_taylor]
-    intrinsic = np.concatenate(coefficients)
-    varying = unstack(rod.turn_matrix @ q, len(intrinsic))
-    return per_reference_length(ca.DM(intrinsic), ratio) + varying
+    intrinsic = as_matrix(rod.intrinsic_turn)
+    varying = unstack(rod.turn_matrix @ q, intrinsic.shape[0])
+    return per_reference_length(intrinsic, ratio) + varying
 
 
 def largest_turn(rod: DiscreteRod, q: Matrix, ratio: Ratio = None) -> Matrix:
@@ -275,10 +273,10 @@ def _permuted_transport(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
 
 def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     """K at the nodes, per reference length, 3×M, 1/m."""
-    intrinsic = rod.properties.intrinsic_strain(rod.grid.nodes)
+    intrinsic = rod.properties.intrinsic_curvature(rod.grid.nodes)
     rows = []
     for axis in range(3):
-        row = per_reference_length(ca.DM(intrinsic[:, axis]).T, ratio)
+        row = per_reference_length(as_matrix(column(intrinsic, axis)).T, ratio)
         if axis in rod.columns:
             varying = ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]
             row = row + varying.T

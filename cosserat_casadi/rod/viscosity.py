@@ -69,8 +69,8 @@ class Viscosity:
         return -ca.dot(stress, self.shape.q) * self._shrinking
 
     @property
-    def _matrix(self) -> ca.DM:
-        return ca.sparsify(ca.DM(self.shape.rod.viscosity))
+    def _matrix(self) -> Matrix:
+        return self.shape.rod.viscosity_matrix
 
     @property
     def _shrinking(self) -> Matrix:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cosserat_casadi.maths.numbers import Numbers
 from cosserat_casadi.maths.shapes import check_shape
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
@@ -41,18 +42,18 @@ class LineWrench:
     Attributes:
         force: 3×k coefficients, N/m, or None.
         moment: 3×k coefficients, N, or None.
-        profiles: values of the k profiles at the nodes, shape (k, M), without unit; None where the coefficients are the
-            values at the M nodes.
+        profiles: values of the k profiles at the nodes, shape (k, M), without unit, or expressions, where one column
+            may stand for all nodes; None where the coefficients are the values at the M nodes.
         follower: whether the wrench turns with the sections.
     """
 
     force: Matrix | None
     moment: Matrix | None
-    profiles: FloatArray | None
+    profiles: Numbers | None
     follower: bool
 
     def __post_init__(self) -> None:
-        _check_vectors(self.force, self.moment, None if self.profiles is None else len(self.profiles))
+        _check_vectors(self.force, self.moment, None if self.profiles is None else self.profiles.shape[0])
 
 
 Wrench = PointWrench | LineWrench
@@ -81,7 +82,7 @@ class PoseWrench:
     base_position: Matrix
     base_rotation: Matrix
     parameters: Matrix
-    data: FloatArray
+    data: Numbers
     scale: Matrix | float
     motion: RodMotion | None = None
 

@@ -37,6 +37,7 @@ from cosserat_casadi.scene.loads import (
 )
 from cosserat_casadi.scene.magnet import Dipole, Magnet
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.scene.rods import (
     Annulus,
@@ -90,6 +91,7 @@ __all__ = [
     "LoadRecord",
     "Magnet",
     "Material",
+    "NamedNumbers",
     "PinnedSupport",
     "PointWrench",
     "PoseTarget",

@@ -106,11 +106,15 @@ def field_faults(field: str, record: type[Entry] | None, table: Table, scene: Sc
 def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
     """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
     owners = owners_of(scene)
+    return {name: _entry_count(name, owners) for name in free_names(scene)}
+
+
+def free_names(scene: SceneTables) -> list[str]:
+    """Names of what the tables leave free at run time: what they list, or else every magnitude."""
     entries = scene.get("inputs")
-    names = _magnitudes(scene)
     if isinstance(entries, list):
-        names = [name for name in entries if isinstance(name, str)]
-    return {name: _entry_count(name, owners) for name in names}
+        return [name for name in entries if isinstance(name, str)]
+    return _magnitudes(scene)
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:

@@ -95,6 +95,13 @@ class Record(BaseModel):
         """Faults of keys against each other, in a table whose values may be faulty too."""
         yield from ()
 
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """Why the numbers of a key cannot be a parameter, and what to do instead; None where they can."""
+        # Elements end at abscissae, and constant matrices are made for the elements.
+        if key in ("at", "span"):
+            return "is where elements end: they do not move", "build a scene for each value"
+        return None
+
     @model_validator(mode="wrap")
     @classmethod
     def _every_fault_at_once(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:

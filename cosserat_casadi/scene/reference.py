@@ -12,9 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from pydantic.fields import FieldInfo
-
 from cosserat_casadi.scene.families import Family, contents_of
+from cosserat_casadi.scene.fields import unit_and_meaning
 from cosserat_casadi.scene.records import Entry, Record, keys_of
 from cosserat_casadi.scene.scene import Scene
 
@@ -57,39 +56,6 @@ and spread loads are of Legendre polynomials. In an offset `[8e-3, 4e-3]` is the
 A table becomes the list of its key as it is read, in another notation up to ten coefficients; an input that varies has
 Legendre coefficients, however the scene writes it.
 """
-
-UNITS = (
-    "without unit",
-    "A m²",
-    "A/m",
-    "T/m",
-    "T",
-    "N m/m",
-    "N m² s",
-    "N m²",
-    "N m",
-    "N/m²",
-    "N/m",
-    "N s",
-    "N",
-    "kg/m³",
-    "kg/m",
-    "kg m²",
-    "kg m",
-    "kg",
-    "m/s²",
-    "m/s",
-    "m²",
-    "m",
-    "1/m",
-    "Pa",
-    "rad",
-    "Hz",
-    "s",
-)
-"""Units as descriptions of keys give them, longest first where one begins another."""
-
-_UNIT = re.compile(rf", ({'|'.join(map(re.escape, UNITS))})(?=[;,]|$)")
 
 
 def reference_text() -> str:
@@ -179,7 +145,7 @@ def _key_table(record: type[Record], path: str, keys: Sequence[str]) -> str:
     lines = ["| key | value | unit | default | meaning |", "|---|---|---|---|---|"]
     for key in keys:
         node = schema["properties"][key]
-        unit, meaning = _unit_and_meaning(node["description"])
+        unit, meaning = unit_and_meaning(node["description"])
         value = _value(node)
         # References are texts to JSON Schema, names of tables to the reader.
         if meaning.startswith("name"):
@@ -194,26 +160,9 @@ def _key_table(record: type[Record], path: str, keys: Sequence[str]) -> str:
     return _block(lines)
 
 
-def unit_of(field: FieldInfo) -> str:
-    """The unit that the description of a field gives, "1" without unit, "–" where it gives none."""
-    unit, _ = _unit_and_meaning(field.description or "")
-    return unit
-
-
 def _anchor(path: str, key: str) -> str:
     """The link to the section of an inner table: its heading without signs."""
     return f"{path}{key}".replace(".", "")
-
-
-def _unit_and_meaning(description: str) -> tuple[str, str]:
-    """The unit that a description gives, "–" where there is none, and the description without it."""
-    match = _UNIT.search(description)
-    if match is None:
-        return "–", description
-    meaning = description[: match.start()] + description[match.end() :]
-    if match[1] == "without unit":
-        return "1", meaning
-    return match[1], meaning
 
 
 def _default(node: Mapping[str, Any]) -> str:

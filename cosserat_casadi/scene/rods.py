@@ -247,6 +247,12 @@ base = { rod = "arm", at = 0.5, tangent = [1, 0, 0] }     # branches off sideway
         if given.get("free") is True and "rod" in given:
             yield Fault(("free",), "stands beside rod", "a base that a rod carries is not free: leave one of them out")
 
+    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
+        """An orientation is a parameter as a quaternion."""
+        if key == "tangent" or (key == "quaternion" and self.tangent is not None):
+            return "is given by a direction", "give the quaternion instead, and name that"
+        return super().parameter_refusal(key)
+
     def held(self) -> Base:
         """The base clamped where it starts."""
         if not self.free:

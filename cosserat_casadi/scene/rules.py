@@ -15,11 +15,12 @@ from cosserat_casadi.scene.assembly import bases_on_nothing, bodies_that_nobody_
 from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.input_rules import bounds_of_no_input, inputs_that_are_not
+from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not
 from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
-from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults
+from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.rods import Rod, admitted_strains
 from cosserat_casadi.scene.targets import TARGETS, Bound
 
@@ -206,6 +207,21 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
             return
 
 
+def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
+    """A parameter names no number of the scene, or one that cannot be a parameter."""
+    names = scene.get("parameters")
+    if not names:
+        return
+    by_list: dict[str, list[tuple[Holder, Any]]] = {key: [] for key in PARAMETER_LISTS}
+    for (key, index), record, table in _entries(scene):
+        if key in by_list:
+            holder = Holder(str(key), int(index), sound(record, table))
+            by_list[str(key)].append((holder, table.get("name")))
+    entries = [entry for key in PARAMETER_LISTS for entry in by_list[key]]
+    holders = holders_of([holder for holder, _ in entries], [name for _, name in entries])
+    yield from parameter_faults(names, holders, free_names(scene))
+
+
 RULES: tuple[Rule, ...] = (
     repeated_names,
     shared_names,
@@ -218,6 +234,7 @@ RULES: tuple[Rule, ...] = (
     own_rules,
     miscounted_modes,
     inputs_that_are_not,
+    parameters_that_are_not,
     bounds_of_no_input,
     motions_of_no_input,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -15,6 +15,7 @@ from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
 from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
@@ -72,6 +73,11 @@ inputs = ["push.force", "cable.tension"]
         None,
         description="'load.field' of what stays free at run time; every magnitude of loads and actuators when left out",
     )
+    parameters: Annotated[tuple[str, ...], AfterValidator(without_repetition)] = Field(
+        (),
+        description="numbers of the scene that become arguments of every function, by their keys, such as "
+        "'finger.material.youngs_modulus'",
+    )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
     rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field(description="the rods, at least one")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
@@ -109,6 +115,34 @@ inputs = ["push.force", "cable.tension"]
         """Names ``load.field`` of what stays free at run time, in the order of `free_inputs`."""
         inputs = self.free_inputs()
         return tuple(entry.name for entry in inputs)
+
+    def named_parameters(self) -> tuple[NamedNumbers, ...]:
+        """The numbers that the scene names as parameters, in the order of its list."""
+        entries = []
+        for key in PARAMETER_LISTS:
+            records = getattr(self, key)
+            entries += [Holder(key, index, record) for index, record in enumerate(records)]
+        holders = holders_of(entries, [getattr(holder.record, "name", None) for holder in entries])
+        named = [named_numbers(name, holders) for name in self.parameters]
+        return tuple(numbers for numbers in named if numbers is not None)
+
+    def with_numbers(self, numbers: NamedNumbers, values: Sequence[Any]) -> Scene:
+        """The scene with other numbers for those that one parameter names.
+
+        Args:
+            numbers: what to change.
+            values: one for each of its cells: numbers, which are not judged, or expressions.
+        """
+        holder = numbers.holder
+        records = list(getattr(self, holder.table))
+        records[holder.index] = numbers.written(records[holder.index], values)
+        return self.model_copy(update={holder.table: tuple(records)})
+
+    def baked(self) -> Scene:
+        """The scene without parameters: every number is a constant of its model."""
+        if not self.parameters:
+            return self
+        return self.model_copy(update={"parameters": ()})
 
     @property
     def motion_tolerance(self) -> float:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any
 
-from pydantic.fields import FieldInfo
-
+from cosserat_casadi.scene.fields import unit_of, varies_by_component, varying_mark
 from cosserat_casadi.scene.profiles import Profile, read_profile
 from cosserat_casadi.scene.records import Record
-from cosserat_casadi.scene.reference import unit_of
 from cosserat_casadi.scene.scene import Scene
 from cosserat_casadi.scene.values import Varying
 
@@ -50,10 +48,10 @@ def _of_record(record: Record, table: Mapping[str, Any], owner: str) -> Iterator
             continue
         written = table[key]
         where = f"{owner}.{key}" if owner else key
-        mark = _varying(field)
+        mark = varying_mark(field)
         if mark is None:
             yield from _of_contents(getattr(record, name), written, where)
-        elif _is_vector(field):
+        elif varies_by_component(field):
             for i, component in enumerate(written):
                 yield from _of_value(component, mark, unit_of(field), f"{where}[{i}]")
         else:
@@ -81,34 +79,3 @@ def _of_value(written: Any, mark: Varying, unit: str, where: str) -> Iterator[Va
     # One number is a constant, however it is written.
     if len(profile.numbers) > 1:
         yield VaryingValue(where, unit, profile, plain=isinstance(written, list))
-
-
-def _varying(field: FieldInfo) -> Varying | None:
-    """The mark of a field that may vary along X, or whose components may."""
-    marks = (entry for annotation in _annotations(field) for entry in _metadata(annotation))
-    return next((mark for mark in marks if isinstance(mark, Varying)), None)
-
-
-def _is_vector(field: FieldInfo) -> bool:
-    """Whether it is the components of a field that vary: the mark stands inside a list."""
-    for annotation in _annotations(field):
-        if any(isinstance(entry, Varying) for entry in _metadata(annotation)):
-            return False
-        if get_origin(annotation) is tuple:
-            return True
-    return False
-
-
-def _annotations(field: FieldInfo) -> Iterator[Any]:
-    """The annotation of a field and all that it is made of, from outside to inside."""
-    pending: list[Any] = [Annotated[(field.annotation, *field.metadata, None)]]
-    while pending:
-        annotation = pending.pop(0)
-        yield annotation
-        pending += get_args(annotation)
-
-
-def _metadata(annotation: Any) -> tuple[Any, ...]:
-    if get_origin(annotation) is Annotated:
-        return tuple(annotation.__metadata__)
-    return ()

@@ -111,6 +111,8 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
         SceneError: with every fault of scene, table and output.
         ExportError: there is no C compiler, or two things of the scene would have one name in C.
     """
+    # What differs from row to row is what the table says.
+    scene = scene.baked()
     problems = list(_repeated_columns(scene))
     plan = None
     if samples < 1:

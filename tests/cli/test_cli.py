@@ -105,6 +105,22 @@ def test_check_prices_the_scene(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
+def test_check_lists_parameters_and_solve_takes_their_values(wire: Path) -> None:
+    names = '["wire.material.youngs_modulus", "wire.section.radius"]'
+    done = cosserat("check", "wire.toml", "--set", f"parameters={names}", cwd=wire)
+    assert done.returncode == 0, done.stderr
+    row = next(line for line in done.stdout.splitlines() if "wire.material.youngs_modulus" in line)
+    assert "6e+10 Pa" in row
+    solved = cosserat("solve", "wire.toml", "--set", f"parameters={names}", cwd=wire)
+    assert solved.stdout == cosserat("solve", "wire.toml", cwd=wire).stdout
+    refused = cosserat("export", "wire.toml", "--set", f"parameters={names}", "--output", "c", cwd=wire)
+    assert refused.returncode == 2
+    assert "functions in C take" in refused.stderr
+    wrong = cosserat("check", "wire.toml", "--set", 'parameters=["wire.material.youngs_modulu"]', cwd=wire)
+    assert wrong.returncode == 2
+    assert "did you mean 'youngs_modulus'?" in " ".join(wrong.stderr.split())
+
+
 def test_check_says_how_lists_were_read(wire: Path) -> None:
     """The offset widens where the user may have meant that it converges: the note shows it."""
     cable = '[[actuators]]\nname = "cable"\nkind = "tendon"\nrod = "wire"\ntension = 1.0\noffset = [[8e-3, 4e-3], 0]\n'

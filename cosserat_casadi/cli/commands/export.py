@@ -17,6 +17,7 @@ from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene import read_scene
@@ -43,6 +44,7 @@ def export(
     # All that can be refused is refused before the solve, which may take a minute.
     check_export(output, name)
     exported_scene = read_scene(scene, tuple(settings or ()))
+    refuse_parameters(exported_scene)
     if dynamics:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))

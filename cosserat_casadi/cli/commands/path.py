@@ -17,6 +17,7 @@ from cosserat_casadi.cli.reports.path import print_path
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.loads.load import coefficients
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.paths.follow import EquilibriumPath
@@ -145,7 +146,7 @@ def _vector(text: str) -> FloatArray:
 
 def _array(value: object) -> FloatArray:
     if isinstance(value, list):
-        return coefficients(tuple(value))
+        return known(coefficients(tuple(value)))
     return np.array([value], dtype=float)
 
 

@@ -27,6 +27,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
     if scene.causes:
         console.print(_load_table(model))
     _print_varying(console, varying)
+    _print_parameters(console, model)
     if scene.supports:
         console.print("Supports: " + ", ".join(f"{s.kind} tip of {s.rod}" for s in scene.supports))
     closing = [placed.what for placed in model.discrete.constraints if placed.closes_assembly]
@@ -102,6 +103,22 @@ def _print_varying(console: Console, varying: Sequence[VaryingValue]) -> None:
         if value.plain:
             read_as = f"the list of {escape(value.key)} was read as {value.profile.notation.value}"
             print_plain(console, f"Note: {read_as}; {escape(value.profile.table)} says the same.")
+
+
+def _print_parameters(console: Console, model: Model) -> None:
+    """Print the numbers of the scene that are arguments of its functions, with their values."""
+    if not model.parameters.size:
+        return
+    table = Table()
+    table.add_column("parameter", overflow="fold")
+    table.add_column("value in the scene", overflow="fold")
+    for parameter in model.parameters.entries:
+        # One component a row, (3, k) with k coefficients: a reader expects single numbers without brackets.
+        value = parameter.default.squeeze()
+        number = f"{value:.6g}" if not value.ndim else str(value.tolist())
+        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+        table.add_row(escape(parameter.name), escape(f"{number}{unit}"))
+    console.print(table)
 
 
 def _with_unit(number: float, unit: str) -> str:

@@ -1,0 +1,90 @@
+"""What parameters cost: scalar operations that each adds. `--write` puts the table into docs/parameters.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from markdown import put, table
+
+from cosserat_casadi import Model, build, discretise, scene_from_dict
+
+PAGE = Path(__file__).parents[1] / "docs" / "parameters.md"
+BEGIN, END = "<!-- price: written by benchmarks/parameters.py -->", "<!-- end of price -->"
+MODES, NODES = 4, 10
+
+MATERIAL = {"youngs_modulus": 60e9, "poisson_ratio": 0.33, "density": 6450.0}
+ROD: dict[str, Any] = {
+    "name": "rod",
+    "length": 0.2,
+    "strain": "kirchhoff",
+    "material": MATERIAL,
+    "section": {"shape": "circle", "radius": 0.5e-3},
+    "intrinsic": {"curvature": [0, [1.5, 0.2], 0]},
+}
+TAPERED = {**ROD, "section": {"shape": "circle", "radius": [0.5e-3, 0.3e-3]}}
+LOADS = [
+    {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.1, 0.0, 0.05]},
+    {"name": "weight", "kind": "gravity", "acceleration": [0.0, 0.0, -9.81]},
+]
+CABLE = [{"name": "cable", "kind": "tendon", "rod": "rod", "tension": 1.0, "offset": [[4e-4, -1e-4], 0.0]}]
+COIL = [{"name": "coil", "kind": "tendon", "rod": "rod", "tension": 1.0, "helix": {"radius": 4e-4, "turns": 1.0}}]
+
+CASES: tuple[tuple[str, dict[str, Any], list[dict[str, Any]], tuple[str, ...]], ...] = (
+    ("Young's modulus, uniform rod", ROD, [], ("rod.material.youngs_modulus",)),
+    ("… and Poisson's ratio", ROD, [], ("rod.material.youngs_modulus", "rod.material.poisson_ratio")),
+    ("Young's modulus, tapered rod", TAPERED, [], ("rod.material.youngs_modulus",)),
+    ("density", ROD, [], ("rod.material.density",)),
+    ("radius, uniform rod", ROD, [], ("rod.section.radius",)),
+    ("both radii, tapered rod", TAPERED, [], ("rod.section.radius",)),
+    ("one coefficient of the unloaded curvature", ROD, [], ("rod.intrinsic.curvature.y[0]",)),
+    ("all six of them", ROD, [], ("rod.intrinsic.curvature",)),
+    ("length", ROD, [], ("rod.length",)),
+    ("position of the base", ROD, [], ("rod.base.position",)),
+    ("offset of a tendon, linear along the rod", ROD, CABLE, ("cable.offset.x",)),
+    ("radius and turns of a helical tendon", ROD, COIL, ("coil.helix.radius", "coil.helix.turns")),
+    ("acceleration of a weight that is no input", ROD, [], ("weight.acceleration",)),
+)
+
+
+def model_of(rod: dict[str, Any], actuators: list[dict[str, Any]], parameters: tuple[str, ...]) -> Model:
+    """The model with these parameters; the force at the tip alone is an input."""
+    tables = {"schema": 1, "rods": [rod], "loads": LOADS, "actuators": actuators, "inputs": ["push.force"]}
+    scene = scene_from_dict({**tables, "parameters": list(parameters)})
+    return build(scene, discretise(scene, MODES, NODES, "magnus6"))
+
+
+def operations(model: Model) -> tuple[int, int]:
+    """Of the residual, and of the residual with its Jacobian."""
+    return model.operations(model.residual), model.operations(model.jacobian)
+
+
+def price() -> str:
+    """The table."""
+    rows = []
+    for name, rod, actuators, parameters in CASES:
+        bare_residual, bare_jacobian = operations(model_of(rod, actuators, ()))
+        residual, jacobian = operations(model_of(rod, actuators, parameters))
+        count = model_of(rod, actuators, parameters).parameters.size
+        cells = (
+            f"+{residual - bare_residual:,} on {bare_residual:,}",
+            f"+{jacobian - bare_jacobian:,} on {bare_jacobian:,}",
+        )
+        rows.append((name, str(count), *cells))
+    headings = (f"Kirchhoff rod, {MODES} modes, {NODES} intervals", "numbers", "residual, operations", "with Jacobian")
+    return table(headings, rows)
+
+
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put the table into docs/parameters.md.")] = False,
+) -> None:
+    """Print what parameters cost."""
+    text = price()
+    print(text)
+    if write:
+        put(PAGE, BEGIN, END, text)
+
+
+if __name__ == "__main__":
+    typer.run(main)

@@ -1,0 +1,155 @@
+"""Numbers that are known, or expressions of parameters: NumPy arrays and CasADi's MX under one roof.
+
+What is known stays NumPy, to the last bit; what a parameter enters is an MX. A vector of k numbers is an array of shape
+(k,) or an MX of shape (k, 1), a table an array or an MX of shape (k, m).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TypeAlias
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
+
+Numbers: TypeAlias = FloatArray | Matrix
+"""Numbers that are known, or expressions of parameters."""
+
+Scalar: TypeAlias = float | Matrix
+"""A number that is known, or an expression of parameters."""
+
+ROUNDING = 1e-15
+"""Share of the largest entry below which an entry is zero by orthogonality."""
+
+
+def is_symbolic(value: object) -> TypeIs[Matrix]:
+    """Whether a value is an expression."""
+    return isinstance(value, ca.MX)
+
+
+def any_symbolic(values: Iterable[object]) -> bool:
+    """Whether there is an expression among values, or in a sequence among them."""
+    return any(any_symbolic(value) if isinstance(value, tuple | list) else is_symbolic(value) for value in values)
+
+
+def known(numbers: Numbers) -> FloatArray:
+    """Numbers of which no parameter is part, as an array."""
+    assert isinstance(numbers, np.ndarray), "asked for where no parameter is free"
+    return numbers
+
+
+def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
+    """Whether numbers are known to be zero, all of them."""
+    if isinstance(value, tuple | list):
+        return all(is_zero(entry) for entry in value)
+    if isinstance(value, ca.MX | ca.DM):
+        return bool(value.nnz() == 0)
+    return not np.any(np.asarray(value))
+
+
+def as_matrix(numbers: Numbers) -> Matrix:
+    """Numbers as a CasADi matrix; a vector is a column."""
+    if isinstance(numbers, ca.MX | ca.DM):
+        return numbers
+    return ca.DM(numbers)
+
+
+def as_vector(values: Sequence[Scalar]) -> Numbers:
+    """Scalars as a vector, of which those that are zero are not stored where one is an expression."""
+    if not any_symbolic(values):
+        return np.asarray(values, dtype=float)
+    entries = [value if isinstance(value, ca.MX) else ca.sparsify(ca.DM(value)) for value in values]
+    stacked: Matrix = ca.vertcat(*entries)
+    return stacked
+
+
+def side_by_side(columns: Sequence[Numbers]) -> Numbers:
+    """Vectors of one length as the columns of a table."""
+    if not any_symbolic(columns):
+        return np.stack([known(own) for own in columns], axis=-1)
+    # What is zero is not stored.
+    table: Matrix = ca.horzcat(*[own if is_symbolic(own) else ca.sparsify(as_matrix(own)) for own in columns])
+    return table
+
+
+def column(table: Numbers, index: int) -> Numbers:
+    """A column of a table, as a vector."""
+    part: Numbers = table[:, index]
+    return part
+
+
+def rows_of(table: Numbers) -> list[Numbers]:
+    """The rows of a table, each as a vector."""
+    if is_symbolic(table):
+        return [row.T for row in ca.vertsplit(table)]
+    return list(known(table))
+
+
+def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
+    """Vectors of one length as the rows of a table."""
+    if any_symbolic(rows):
+        return side_by_side(rows).T
+    return np.stack([known(row) for row in rows])
+
+
+def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:
+    """A vector, each entry times a known factor; one expression for all entries is repeated."""
+    if not is_symbolic(numbers):
+        return np.asarray(factors * numbers)
+    return ca.DM(factors) * numbers
+
+
+def repeated(numbers: Numbers, count: int) -> Numbers:
+    """A vector of so many entries; one that stands for all of them is repeated."""
+    if numbers.shape[0] != 1 or count == 1:
+        return numbers
+    if is_symbolic(numbers):
+        return ca.repmat(numbers, count, 1)
+    return np.repeat(known(numbers), count)
+
+
+def product(linear_map: FloatArray, numbers: Numbers) -> Matrix:
+    """A known matrix times a vector, with as few multiplications as the expressions allow.
+
+    Args:
+        linear_map: shape (m, k).
+        numbers: shape (k,); or one expression that stands for all k.
+    """
+    if is_symbolic(numbers) and not ca.symvar(numbers):
+        # A column of a table of expressions may be known all the same.
+        numbers = repeated(ca.evalf(numbers).full()[:, 0], linear_map.shape[1])
+    if not is_symbolic(numbers):
+        return ca.sparsify(ca.DM(without_rounding(linear_map @ known(numbers))))
+    if numbers.shape[0] == 1 and linear_map.shape[1] != 1:
+        total = without_rounding(linear_map.sum(axis=1))
+        return ca.sparsify(ca.DM(total)) * numbers
+    affine = _affine(numbers)
+    if affine is None:
+        return ca.sparsify(ca.DM(linear_map)) @ numbers
+    symbol, constant, slope = affine
+    # The product of the known matrices is known: one multiplication for each parameter is left.
+    columns = (linear_map @ slope).T
+    by_symbol = np.stack([without_rounding(own) for own in columns], axis=-1)
+    at_zero = without_rounding(linear_map @ constant)
+    return ca.sparsify(ca.DM(at_zero)) + ca.sparsify(ca.DM(by_symbol)) @ symbol
+
+
+def without_rounding(entries: FloatArray) -> FloatArray:
+    """Entries without those that are rounding beside the largest, which orthogonal polynomials leave."""
+    largest = np.abs(entries).max(initial=0.0)
+    return np.where(np.abs(entries) < ROUNDING * largest, 0.0, entries)
+
+
+def _affine(numbers: Matrix) -> tuple[Matrix, FloatArray, FloatArray] | None:
+    """The symbol p, constant and slope of numbers that are constant + slope p; None where they are not affine."""
+    (symbol,) = ca.symvar(numbers)
+    if any(ca.which_depends(numbers, symbol, 2, False)):
+        return None
+    at_zero = ca.Function("numbers", [symbol], [numbers, ca.jacobian(numbers, symbol)])
+    constant, slope = at_zero(0)
+    return symbol, constant.full()[:, 0], slope.full()

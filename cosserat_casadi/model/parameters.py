@@ -1,0 +1,115 @@
+"""Parameters of a model: numbers of the scene that are arguments of its functions, as records.
+
+A model with parameters is written in a scene whose numbers are expressions: where the scene names a number, its record
+holds an entry of the symbol p. What computes with the numbers of a scene therefore needs to know of no parameter. All
+that only scales the equations, such as EI/ℓ, is of the scene's own numbers, so that unknowns mean the same whatever p.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.stacked import StackedLayout
+from cosserat_casadi.scene.writing import scene_tables
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a model.
+
+    Attributes:
+        numbers: the numbers of the scene that it stands for.
+    """
+
+    numbers: scenes.NamedNumbers
+
+    @property
+    def name(self) -> str:
+        """As the scene spells it, such as ``finger.material.youngs_modulus``."""
+        return self.numbers.name
+
+    @property
+    def unit(self) -> str:
+        """SI unit of each number, "1" without unit."""
+        return self.numbers.unit
+
+    @property
+    def default(self) -> FloatArray:
+        """The scene's value, shape (components, places along the rod)."""
+        return self.numbers.default
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        return self.default.size
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Components, and values along the rod: of base and tip, or coefficients."""
+        components, places = self.default.shape
+        return components, places
+
+    def faults(self, value: FloatArray) -> Iterator[Problem]:
+        """What is wrong with a value but for its range, which the scene judges."""
+        if value.size != self.size:
+            yield Problem(self.name, f"must have {self.size} numbers, got {value.size}")
+        elif not np.all(np.isfinite(value)):
+            yield Problem(self.name, f"must be finite, got {value.tolist()}")
+
+
+@dataclass(frozen=True)
+class ParameterLayout(StackedLayout[Parameter]):
+    """The parameters of a model, stacked into one vector p."""
+
+    what = "a parameter"
+    several = "parameters"
+
+    @cached_property
+    def symbol(self) -> ca.MX:
+        """p, size×1: one symbol for all functions of a model."""
+        return ca.MX.sym("p", self.size)
+
+    @cached_property
+    def units(self) -> list[str]:
+        """Unit of every entry of p."""
+        return [entry.unit for entry in self.entries for _ in range(entry.size)]
+
+    def written(self, scene: scenes.Scene, p: Matrix | FloatArray) -> scenes.Scene:
+        """The scene whose numbers are entries of p: expressions, or numbers, which are not judged."""
+        for entry, span in self:
+            values = [p[i] for i in range(span.start, span.stop)]
+            scene = scene.with_numbers(entry.numbers, values)
+        return scene
+
+    def set_in(self, scene: scenes.Scene, values: Mapping[str, npt.ArrayLike] | None = None) -> scenes.Scene:
+        """The scene with values for its parameters, which are then constants of it.
+
+        Args:
+            scene: the scene that names the parameters.
+            values: by name; those that are left out keep the scene's value.
+
+        Raises:
+            SceneError: a name is unknown, or a scene with these values is refused.
+        """
+        p = self.pack(values).tolist()
+        changed = self.written(scene, p).baked()
+        # Ranges, and what two numbers have to do with each other, are the scene's to judge.
+        return scenes.scene_from_dict(scene_tables(changed))
+
+
+def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
+    """The parameters that a scene names."""
+    return ParameterLayout(tuple(Parameter(numbers) for numbers in scene.named_parameters()))
+
+
+NO_PARAMETERS = ParameterLayout(())
+"""What a model whose numbers are all constants has."""

@@ -1,0 +1,131 @@
+"""Named values stacked into one vector: what the inputs of a model and its parameters have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, Generic, Protocol, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+
+
+class StackedEntry(Protocol):
+    """A named value.
+
+    Attributes:
+        default: the scene's value, shape (components, k).
+    """
+
+    @property
+    def name(self) -> str:
+        """As the scene and the command line spell it."""
+
+    @property
+    def default(self) -> FloatArray:
+        """The scene's value, shape (components, k)."""
+
+    def faults(self, value: FloatArray) -> Iterator[Problem]:
+        """What is wrong with a value."""
+
+
+EntryType = TypeVar("EntryType", bound=StackedEntry)
+
+
+@dataclass(frozen=True)
+class StackedLayout(Generic[EntryType]):
+    """Named values, stacked into one vector.
+
+    Attributes:
+        entries: the values in the order of the vector.
+    """
+
+    entries: tuple[EntryType, ...]
+
+    what: ClassVar[str]
+    """One of them in words, with its article, and several."""
+
+    several: ClassVar[str]
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names in the order of the vector."""
+        return tuple(entry.name for entry in self.entries)
+
+    @cached_property
+    def defaults(self) -> tuple[FloatArray, ...]:
+        """The scene's value of each, shape (components, k)."""
+        return tuple(entry.default for entry in self.entries)
+
+    @cached_property
+    def size(self) -> int:
+        """Entries of the stacked vector."""
+        return sum(entry.default.size for entry in self.entries)
+
+    @cached_property
+    def slices(self) -> dict[str, slice]:
+        """Slice of each value in the stacked vector, column after column."""
+        slices = {}
+        start = 0
+        for entry in self.entries:
+            stop = start + entry.default.size
+            slices[entry.name] = slice(start, stop)
+            start = stop
+        return slices
+
+    def __iter__(self) -> Iterator[tuple[EntryType, slice]]:
+        """The values with their slices of the stacked vector."""
+        return zip(self.entries, self.slices.values(), strict=True)
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked vector, from the scene's values and those given here.
+
+        Args:
+            values: new values by name; a number, (3,) for a vector, (3, k) for Legendre coefficients.
+
+        Returns:
+            shape (size,), SI units.
+
+        Raises:
+            SceneError: a name is unknown, or a value has another shape or is not finite.
+        """
+        given = dict(values or {})
+        problems = list(self._unknown_names(given))
+        # An empty part: a model without inputs has a vector of no entries, of numbers all the same.
+        parts = [np.zeros(0)]
+        for entry in self.entries:
+            value = np.asarray(given.get(entry.name, entry.default), dtype=float)
+            problems.extend(entry.faults(value))
+            # Legendre coefficients are stacked degree after degree: column-major order.
+            parts.append(value.ravel(order="F"))
+        if problems:
+            raise SceneError(*problems)
+        return np.concatenate(parts)
+
+    def _unknown_names(self, given: Mapping[str, npt.ArrayLike]) -> Iterator[Problem]:
+        """A problem for every name that is none of them."""
+        known = ", ".join(self.names) or "none"
+        for name in given:
+            if name not in self.names:
+                yield Problem(name, f"is not {self.what} of this model", f"its {self.several} are {known}")
+
+    def split(self, stacked: npt.ArrayLike) -> dict[str, FloatArray]:
+        """Values by name from all of them stacked, shape (size,).
+
+        Raises:
+            SceneError: there are more or fewer.
+        """
+        vector = np.asarray(stacked, dtype=float).ravel()
+        if vector.size != self.size:
+            names = ", ".join(self.names) or "none"
+            problem = f"must be {self.size} numbers, got {vector.size}"
+            raise SceneError(Problem(self.several, problem, f"they are {names}"))
+        return self.unpack(vector)
+
+    def unpack(self, stacked: FloatArray) -> dict[str, FloatArray]:
+        """Values by name from the stacked vector, each shaped as its default."""
+        return {entry.name: stacked[span].reshape(entry.default.shape, order="F") for entry, span in self}

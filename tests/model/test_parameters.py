@@ -1,0 +1,498 @@
+"""Parameters: a model with named numbers against a model of a scene with these numbers, and their derivatives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import (
+    ExportError,
+    Model,
+    Scene,
+    SceneError,
+    build,
+    export,
+    follow_path,
+    modes_of,
+    scene_from_dict,
+    solve,
+)
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.scene.loads import LoadRecord
+from tests.loads.kinds import DipoleRecord, FoundationRecord, registered, with_loads
+from tests.scenes import WEIGHT, push
+
+WIRE: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.8,
+    "strain": "kirchhoff",
+    "material": {"youngs_modulus": 2.0e9, "poisson_ratio": 0.3, "density": 1200.0},
+    "section": {"shape": "annulus", "outer_radius": [0.011, 0.008], "inner_radius": 0.005},
+    "damping": {"retardation_time": 0.03},
+    "intrinsic": {"curvature": [0.2, [1.4, 0.3], 0.0], "tangent": [0, 0, 1]},
+    "base": {"position": [0.1, 0, 0.2], "quaternion": [0.8, 0.0, 0.6, 0.0]},
+}
+
+ELASTIC: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.8,
+    "strain": "reissner",
+    "stiffness": {
+        "bending_x": 1.0,
+        "bending_y": [1.4, 1.1],
+        "torsion": 0.7,
+        "shear_x": 40.0,
+        "shear_y": 60.0,
+        "extension": 90.0,
+    },
+    "linear_density": [0.9, 0.7],
+    "rotary_inertia": [2e-4, 3e-4, 4e-4],
+    "damping": {"bending_x": 0.01, "torsion": 0.02, "extension": 0.4},
+}
+
+PLATE: dict[str, Any] = {
+    "name": "wire",
+    "length": 0.5,
+    "strain": "reissner",
+    "material": {"youngs_modulus": 2.0e9, "shear_modulus": 7e8, "density": 1200.0},
+    "section": {"shape": "rectangle", "width": [0.02, 0.01], "height": 0.004, "shear_correction": 0.85},
+}
+
+CABLES = [
+    {"name": "east", "kind": "tendon", "rod": "wire", "tension": 1.0, "offset": [[8e-3, -2e-3], 1e-3]},
+    {"name": "coil", "kind": "tendon", "rod": "wire", "tension": 0.7, "helix": {"radius": 6e-3, "turns": 1.2}},
+    {"name": "air", "kind": "chamber", "rod": "wire", "pressure": 2e4, "area": 3e-6, "offset": [0.0, 4e-3]},
+]
+
+
+def tables(rod: dict[str, Any], *parameters: str, **changes: Any) -> dict[str, Any]:
+    load = push(rod="wire", force=[0.4, 0.2, -0.3], moment=[0.02, 0.0, 0.01])
+    return {
+        "schema": 1,
+        "rods": [rod],
+        "loads": [load, WEIGHT],
+        "inputs": ["push.force"],
+        "parameters": list(parameters),
+        **changes,
+    }
+
+
+PLATFORM: dict[str, Any] = {
+    "rods": [
+        {**WIRE, "name": "left", "base": {"position": [-0.1, 0, 0]}},
+        {**WIRE, "name": "right", "base": {"position": [0.1, 0, 0]}},
+    ],
+    "bodies": [{"name": "plate", "mass": 0.2, "centre_of_mass": [0.01, 0.0, 0.02], "inertia": [1e-3, 2e-3, 2.5e-3]}],
+    "joints": [
+        {"body": "plate", "rod": "left", "kind": "fixed", "position": [-0.1, 0, 0]},
+        {"body": "plate", "rod": "right", "kind": "spherical", "position": [0.1, 0, 0]},
+    ],
+    "loads": [
+        WEIGHT,
+        {"name": "pull", "kind": "body_wrench", "body": "plate", "force": [0.3, 0.1, 0], "position": [0.02, 0.03, 0]},
+    ],
+    "inputs": ["pull.force"],
+}
+
+ROPES = [
+    {"name": "rope", "kind": "tendon", "rod": "wire", "length": 0.8, "offset": [8e-3, 0.0]},
+    {"name": "line", "kind": "tendon", "rod": "wire", "length": 0.82, "slack": True, "offset": [0.0, 8e-3]},
+]
+
+HINGES = [
+    {"body": "plate", "rod": "left", "kind": "revolute", "position": [-0.1, 0, 0], "axis": [0, 1, 0.2]},
+    {"body": "plate", "rod": "right", "kind": "prismatic", "position": [0.1, 0, 0], "axis": [1, 0, 0]},
+]
+
+BRANCH: dict[str, Any] = {
+    "rods": [WIRE, {**WIRE, "name": "twig", "base": {"rod": "wire", "at": 0.5, "quaternion": [0.8, 0, 0.6, 0]}}],
+    "loads": [WEIGHT],
+    "supports": [
+        {"name": "tip", "rod": "twig", "kind": "clamped", "position": [0.6, 0, 0.9], "quaternion": [1, 0, 0, 0]}
+    ],
+    "inputs": ["weight.acceleration"],
+}
+
+CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "moduli": (tables(WIRE), {"wire.material.youngs_modulus": 3.1e9, "wire.material.poisson_ratio": 0.21}),
+    "modulus of a uniform rod": (
+        tables({**WIRE, "section": {"shape": "circle", "radius": 0.01}}),
+        {"wire.material.youngs_modulus": 3.1e9},
+    ),
+    "density": (tables(WIRE), {"wire.material.density": 1450.0}),
+    "radii": (tables(WIRE), {"wire.section.outer_radius": [0.012, 0.0075], "wire.section.inner_radius": 0.004}),
+    "tip radius": (tables(WIRE), {"wire.section.outer_radius.tip": 0.0085}),
+    "rectangle": (
+        tables(PLATE),
+        {"wire.section.width": [0.018, 0.012], "wire.section.height": 0.005, "wire.section.shear_correction": 0.8},
+    ),
+    "shear modulus": (tables(PLATE), {"wire.material.shear_modulus": 6e8}),
+    "stiffness": (
+        tables(ELASTIC),
+        {"wire.stiffness.bending_y": [1.6, 1.0], "wire.stiffness.torsion": 0.9, "wire.stiffness.shear_x": 33.0},
+    ),
+    "inertia": (
+        tables(ELASTIC),
+        {"wire.linear_density": [0.8, 1.1], "wire.rotary_inertia": [3e-4, 2.5e-4, 5e-4]},
+    ),
+    "damping": (tables(ELASTIC), {"wire.damping.torsion": 0.05, "wire.damping.bending_x": 0.015}),
+    "retardation": (tables(WIRE), {"wire.damping.retardation_time": 0.05, "wire.material.youngs_modulus": 1.7e9}),
+    "curvature": (tables(WIRE), {"wire.intrinsic.curvature": [[0.4, -0.1], [1.0, 0.5], [0.3, 0.2]]}),
+    "one coefficient": (tables(WIRE), {"wire.intrinsic.curvature.y[1]": -0.4}),
+    "tangent": (tables(ELASTIC), {"wire.intrinsic.tangent": [0.02, -0.01, 1.03]}),
+    "base": (
+        tables(WIRE),
+        {"wire.base.position": [0.3, -0.2, 0.1], "wire.base.quaternion": [0.6, 0.0, 0.0, 0.8]},
+    ),
+    "length": (tables(WIRE), {"wire.length": 0.95}),
+    "length and sections": (
+        tables(ELASTIC),
+        {"wire.length": 0.7, "wire.stiffness.bending_x": 1.2, "wire.intrinsic.curvature.x": 0.4},
+    ),
+    "loads": (tables(WIRE), {"push.moment": [0.0, 0.03, 0.01], "weight.acceleration.z": -9.0}),
+    "offsets": (tables(ELASTIC, actuators=CABLES), {"east.offset": [[7e-3, -1e-3], [2e-3, 1e-3]]}),
+    "helix": (
+        tables(ELASTIC, actuators=CABLES),
+        {"coil.helix.radius": 7e-3, "coil.helix.turns": 0.9, "coil.helix.phase": 0.4},
+    ),
+    "chamber": (
+        tables(ELASTIC, actuators=CABLES),
+        {"air.area": 4e-6, "air.offset.y": 3e-3, "air.pressure": 3e4, "east.tension": 1.5},
+    ),
+    "places of joints": (
+        {"schema": 1, **PLATFORM},
+        {
+            "joints[0].position": [-0.12, 0.01, 0],
+            "joints[0].quaternion": [0.8, 0.6, 0, 0],
+            "joints[1].position.x": 0.13,
+            "left.base.position.y": 0.02,
+        },
+    ),
+    "places of hinges and slides": (
+        {"schema": 1, **PLATFORM, "joints": HINGES},
+        {"joints[0].position": [-0.12, 0.01, 0.02], "joints[1].position.x": 0.13},
+    ),
+    "place of a branch": (
+        {"schema": 1, **BRANCH},
+        {"twig.base.position": [0.01, 0.02, 0], "twig.base.quaternion": [0.6, 0, 0.8, 0], "tip.position.y": 0.02},
+    ),
+    "cables of given length": (
+        tables(ELASTIC, actuators=ROPES),
+        {"rope.length": 0.79, "rope.offset.x": 7e-3, "line.offset.y": 9e-3, "wire.stiffness.extension": 80.0},
+    ),
+    "lengths in an assembly": (
+        {"schema": 1, **PLATFORM},
+        {"left.length": 0.85, "right.length": 0.78, "right.intrinsic.curvature.y[0]": 1.0},
+    ),
+    "bodies": (
+        {"schema": 1, **PLATFORM},
+        {
+            "plate.mass": 0.3,
+            "plate.centre_of_mass": [0.0, 0.02, 0.01],
+            "plate.inertia": [2e-3, 1.5e-3, 3e-3],
+            "pull.position": [0.0, 0.05, 0.01],
+            "left.material.youngs_modulus": 1.5e9,
+        },
+    ),
+}
+
+
+def scene_of(case: str) -> Scene:
+    given, values = CASES[case]
+    return scene_from_dict({**given, "parameters": list(values)})
+
+
+def model_of(case: str) -> Model:
+    scene = scene_of(case)
+    # Parameters of an assembly are those of its rods and frames: few modes show them.
+    modes, nodes = (2, 4) if len(scene.rods) > 1 else (4, 8)
+    return build(scene, discretise(scene, modes, nodes), moving=True)
+
+
+def point(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Unknowns, their rates, inputs and rates of the inputs, drawn at random."""
+    random = np.random.default_rng(7)
+    x, v, a = 0.3 * random.standard_normal((3, model.size))
+    inputs = model.pack() + 0.1 * random.standard_normal(model.inputs.size)
+    return x, v, a, inputs, np.zeros(model.inputs.size)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
+    model = model_of(case)
+    baked = build(scene_of(case).baked(), model.discretisation, moving=True)
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack()
+    for wanted, found in (
+        (baked.residual(x, inputs), model.residual(x, inputs, p)),
+        (baked.jacobian(x, inputs)[0], model.jacobian(x, inputs, p)[0]),
+        (
+            baked.inverse_dynamics(x, v, a, inputs, still, still),
+            model.inverse_dynamics(x, v, a, inputs, p, still, still),
+        ),
+        (baked.mass_matrix(x, inputs), model.mass_matrix(x, inputs, p)),
+        (baked.energy(x, inputs), model.energy(x, inputs, p)),
+    ):
+        wanted_entries = wanted.full()
+        assert_allclose(found.full(), wanted_entries, rtol=1e-13, atol=1e-14 * np.abs(wanted_entries).max())
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_elsewhere_it_is_the_model_with_these_numbers(case: str) -> None:
+    """The bound model computes with plain numbers: none of its constants is an expression."""
+    model = model_of(case)
+    values = CASES[case][1]
+    bound = model.at(values)
+    assert not bound.parameters.size
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack(values)
+    matrices = model.dynamics_jacobian(x, v, a, inputs, p, still, still)
+    wanted_matrices = bound.dynamics_jacobian(x, v, a, inputs, still, still)
+    pairs = [
+        (bound.residual(x, inputs), model.residual(x, inputs, p)),
+        (bound.jacobian(x, inputs)[0], model.jacobian(x, inputs, p)[0]),
+        *zip(wanted_matrices, matrices, strict=True),
+        *zip(bound.energies(x, v, inputs, still), model.energies(x, v, inputs, p, still), strict=True),
+        *zip(bound.powers(x, v, a, inputs, still, still), model.powers(x, v, a, inputs, p, still, still), strict=True),
+    ]
+    for wanted, found in pairs:
+        wanted_entries = wanted.full()
+        assert_allclose(found.full(), wanted_entries, rtol=1e-12, atol=1e-13 * np.abs(wanted_entries).max(initial=1e-9))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_derivatives_with_the_parameters(case: str) -> None:
+    """First derivatives against differences, and second ones finite, at a shape and in the unloaded rod."""
+    model = model_of(case)
+    random_x, _, _, inputs, _ = point(model)
+    p = model.parameters.pack()
+    step = np.where(p == 0.0, 0.05, np.abs(p)) * 1e-5
+    argument = model.parameters.symbol
+    x_symbol = ca.MX.sym("x", model.size)
+    residual = model.residual(x_symbol, inputs, argument)
+    second = ca.Function("second", [x_symbol, argument], [ca.hessian(ca.sumsqr(residual), argument)[0]])
+    for x in (random_x, np.zeros(model.size)):
+        found = model.parameter_jacobian(x, inputs, p).full()
+        columns = []
+        for i, width in enumerate(step):
+            there, back = p.copy(), p.copy()
+            there[i] += width
+            back[i] -= width
+            difference = model.residual(x, inputs, there) - model.residual(x, inputs, back)
+            columns.append(difference.full()[:, 0] / (2 * width))
+        # What each parameter does by a change of its own size.
+        wanted = np.stack(columns, axis=1) * step
+        scale = np.abs(wanted).max()
+        assert_allclose(found * step, wanted, rtol=1e-6, atol=1e-7 * scale)
+        assert np.all(np.isfinite(second(x, p).full()))
+
+
+PRICES = {
+    "modulus of a uniform rod": 30,
+    "one coefficient": 30,
+    "density": 60,
+    "length": 200,
+    "base": 150,
+}
+"""Most scalar operations that the parameters of a case add to the residual."""
+
+
+@pytest.mark.parametrize("case", PRICES)
+def test_parameters_cost_what_they_compute(case: str) -> None:
+    model = model_of(case)
+    bound = model.at()
+    added = model.operations(model.residual) - bound.operations(bound.residual)
+    assert added <= PRICES[case]
+
+
+def test_a_scene_without_parameters_has_no_argument_for_them() -> None:
+    model = build(scene_of("density").baked())
+    assert model.residual.name_in() == ["x", "inputs"]
+    assert model.parameter_jacobian is None
+    assert not model.parameters.names
+    assert model.at() is model
+
+
+def test_functions_take_parameters_behind_the_inputs() -> None:
+    model = model_of("radii")
+    assert model.residual.name_in() == ["x", "inputs", "p"]
+    assert model.path_jacobian.name_in() == ["x", "inputs", "p", "load_factor"]
+    assert model.energies.name_in() == ["x", "v", "inputs", "p", "inputs_rate"]
+    assert model.igm["wire"].name_in() == ["q", "base_position", "base_quaternion", "inputs", "p"]
+    assert model.parameters.names == ("wire.section.outer_radius", "wire.section.inner_radius")
+    assert model.parameters.units == ["m", "m", "m"]
+    assert [parameter.shape for parameter in model.parameters.entries] == [(1, 2), (1, 1)]
+
+
+EQUILIBRIA = (
+    "moduli",
+    "density",
+    "radii",
+    "rectangle",
+    "tangent",
+    "length and sections",
+    "curvature",
+    "base",
+    "loads",
+    "offsets",
+    "helix",
+    "chamber",
+    "cables of given length",
+    "lengths in an assembly",
+    "places of joints",
+    "places of hinges and slides",
+    "place of a branch",
+    "bodies",
+)
+"""Cases whose parameters move an equilibrium."""
+
+
+@pytest.mark.parametrize("case", EQUILIBRIA)
+def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
+    """The scene with these numbers has another scaling, and another model: poses are compared."""
+    model = model_of(case)
+    values = CASES[case][1]
+    found = solve(model, parameters=values)
+    rebuilt = build(model.parameters.set_in(model.scene, values), model.discretisation, moving=True)
+    wanted = solve(rebuilt)
+    assert found.converged
+    assert wanted.converged
+    for rod in model.discrete.rods:
+        assert_allclose(found.tip(rod).position, wanted.tip(rod).position, rtol=0, atol=1e-10)
+    p = model.parameters.pack(values)
+    assert np.abs(model.residual(found.x, found.inputs, p).full()).max() < 1e-9
+
+
+SAME_SCALING = (
+    "density",
+    "inertia",
+    "damping",
+    "curvature",
+    "one coefficient",
+    "tangent",
+    "base",
+    "loads",
+    "offsets",
+    "helix",
+    "chamber",
+)
+"""Cases whose parameters leave stiffness and length alone, so that unknowns mean the same in a scene of its own."""
+
+
+@pytest.mark.parametrize("case", SAME_SCALING)
+def test_equations_of_motion_are_those_of_a_scene_of_its_own(case: str) -> None:
+    model = model_of(case)
+    values = CASES[case][1]
+    rebuilt = build(model.parameters.set_in(model.scene, values), model.discretisation, moving=True)
+    x, v, a, inputs, still = point(model)
+    p = model.parameters.pack(values)
+    wanted = rebuilt.inverse_dynamics(x, v, a, inputs, still, still).full()
+    found = model.inverse_dynamics(x, v, a, inputs, p, still, still).full()
+    assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
+
+
+def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
+    model = model_of("length and sections")
+    values = CASES["length and sections"][1]
+    inputs = model.pack()
+    bound = model.at(values)
+    found = model.path_tangent(inputs, model.parameters.pack(values))
+    wanted = bound.path_tangent(inputs).full()
+    assert_allclose(found.full(), wanted, rtol=1e-10, atol=1e-12 * np.abs(wanted).max())
+
+
+def test_values_that_the_scene_refuses_are_refused() -> None:
+    model = model_of("radii")
+    with pytest.raises(SceneError, match="must be < outer_radius at both ends"):
+        model.at({"wire.section.inner_radius": 0.02})
+    with pytest.raises(SceneError, match="is not a parameter of this model"):
+        model.at({"wire.section.radius": 0.02})
+    with pytest.raises(SceneError, match="must have 2 numbers, got 1"):
+        model.at({"wire.section.outer_radius": 0.02})
+    with pytest.raises(SceneError, match="parameters: must be 3 numbers, got 2"):
+        model.at([0.01, 0.02])
+    with pytest.raises(SceneError, match="is not a parameter of this model"):
+        model.at().at({"wire.section.inner_radius": 0.004})
+
+
+def test_functions_in_c_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    model = model_of("density")
+    with pytest.raises(ExportError, match="functions in C take unknowns and inputs alone"):
+        export(model, tmp_path / "folder")
+    assert not (tmp_path / "folder").exists()
+
+
+def with_kind(load: LoadRecord, rod: dict[str, Any], *parameters: str) -> Scene:
+    """A scene of one rod with a load of a kind that does not ship."""
+    scene = with_loads({"schema": 1, "rods": [rod]}, load, inputs=())
+    return scene.model_copy(update={"parameters": parameters})
+
+
+def test_coefficients_of_loads_that_depend_on_poses() -> None:
+    with registered():
+        dipole = DipoleRecord(
+            name="magnet", kind="dipole", rod="wire", at=1.0, dipole=(0.1, 0.0, 0.3), gradient=0.4, field=(0.2, 0.1, 0)
+        )
+        model = build(with_kind(dipole, WIRE, "magnet.gradient", "magnet.field.x", "wire.length"))
+        values = {"magnet.gradient": 0.9, "magnet.field.x": -0.3, "wire.length": 0.7}
+        x, _, _, inputs, _ = point(model)
+        p = model.parameters.pack(values)
+        bound = model.at(values)
+        assert_allclose(model.residual(x, inputs, p).full(), bound.residual(x, inputs).full(), rtol=1e-12, atol=1e-13)
+        wanted = bound.jacobian(x, inputs)[0].full()
+        assert_allclose(model.jacobian(x, inputs, p)[0].full(), wanted, rtol=1e-11, atol=1e-13 * np.abs(wanted).max())
+        assert np.abs(model.parameter_jacobian(x, inputs, p).full()).max(axis=0).min() > 1e-3
+
+
+def test_what_is_bound_to_the_unloaded_rod_refuses_parameters_that_move_it() -> None:
+    with registered():
+        bed = FoundationRecord(name="bed", kind="foundation", rod="wire", strength=20.0)
+        moving = build(with_kind(bed, WIRE, "wire.intrinsic.curvature"))
+        with pytest.raises(SceneError, match="bound to where the unloaded rod was, which parameters move"):
+            _ = moving.residual
+        values = {"wire.intrinsic.curvature": [[0.0, 0.1], [0.9, 0.0], [0.2, 0.0]]}
+        bound = moving.at(values)
+        rebuilt = build(moving.parameters.set_in(moving.scene, values))
+        x, _, _, inputs, _ = point(bound)
+        assert_allclose(bound.residual(x, inputs).full(), rebuilt.residual(x, inputs).full(), rtol=1e-12, atol=1e-14)
+        # The unloaded rod lies in its bed, whatever its curvature.
+        assert np.abs(bound.residual(np.zeros(bound.size), inputs).full()).max() < 1e-13
+
+        stiffer = build(with_kind(bed, WIRE, "wire.material.youngs_modulus"))
+        assert stiffer.residual(x, inputs, stiffer.parameters.pack()).shape == (stiffer.size, 1)
+
+
+def test_the_literal_system_takes_parameters() -> None:
+    values = {"wire.length": 0.9, "wire.intrinsic.curvature.x": 0.5, "wire.material.youngs_modulus": 1.8e9}
+    scene = scene_from_dict({**tables(WIRE, *values), "accuracy": {"rotation": "permuted"}})
+    model = build(scene, discretise(scene, 3, 8))
+    bound = model.at(values)
+    x, _, _, inputs, _ = point(model)
+    p = model.parameters.pack(values)
+    wanted = bound.residual(x, inputs).full()
+    assert_allclose(model.residual(x, inputs, p).full(), wanted, rtol=1e-12, atol=1e-13 * np.abs(wanted).max())
+
+
+def test_algorithms_take_the_values_of_the_scene_or_those_that_are_bound() -> None:
+    scene = scene_from_dict({**tables(WIRE, "wire.material.youngs_modulus"), "inputs": ["push.force"]})
+    model = build(scene, discretise(scene, 3, 8))
+    baked = build(scene.baked(), model.discretisation)
+    soft = model.at({"wire.material.youngs_modulus": 5e8})
+    softer = solve(model, parameters=[5e8])
+    assert softer.model is soft
+    assert_allclose(solve(soft).x, softer.x, rtol=0, atol=0)
+    assert_allclose(solve(model).x, solve(baked).x, rtol=0, atol=0)
+    assert modes_of(softer).modes[0].frequency < modes_of(solve(model)).modes[0].frequency
+    path = follow_path(soft, "push.force", [0.0, 0.0, -0.4])
+    assert path.model is soft
+    assert path.factor[-1] == 1.0
+    assert softer.stable == solve(soft).stable
+    # From a solution of the model with other parameters: unknowns mean the same.
+    again = solve(model, start=softer)
+    assert_allclose(again.x, solve(model).x, rtol=0, atol=1e-8)
