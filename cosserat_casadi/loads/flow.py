@@ -23,6 +23,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 STILL = 1e-8
@@ -60,11 +61,10 @@ class FlowLoad(Load[scenes.Flow]):
         """One all along the rod: its sizes are data of the sections."""
         return np.ones((columns, len(X)))
 
-    def data(self, load: scenes.Flow, site: Site) -> FloatArray:
+    def data(self, load: scenes.Flow, site: Site) -> Numbers:
         """Diameter, m, and area of fluid displaced, m², at the sections."""
         if load.diameter is not None:
-            base, tip = np.broadcast_to(load.diameter, 2)
-            diameter = base + (tip - base) * site.X
+            diameter = _linear(load.diameter, site.X)
         else:
             assert site.rod.diameter is not None, "the rules of the scene ask for one"
             diameter = site.rod.diameter(site.X)
@@ -72,7 +72,7 @@ class FlowLoad(Load[scenes.Flow]):
         # A tube displaces what a solid rod would, a rod that is not round its own area.
         if site.rod.diameter is None and site.rod.area is not None:
             displaced = site.rod.area(site.X)
-        return np.stack([diameter, displaced])
+        return stacked_rows([diameter, displaced])
 
     @staticmethod
     def _drag(load: scenes.Flow, section: Section, stream: Matrix) -> Matrix:
@@ -84,6 +84,14 @@ class FlowLoad(Load[scenes.Flow]):
         of_normal = load.normal * _speed(across) * across
         of_tangential = np.pi * load.tangential * _speed(velocity) * along
         return of_normal + of_tangential
+
+
+def _linear(size: Scalar | tuple[Scalar, ...], X: FloatArray) -> Numbers:
+    """A size along the rod: constant, or linear from base to tip."""
+    base, tip = size if isinstance(size, tuple) else (size, size)
+    if any_symbolic([base, tip]):
+        return base * ca.DM(1 - X) + tip * ca.DM(X)
+    return np.asarray(base + (tip - base) * X)
 
 
 def _speed(velocity: Matrix) -> Matrix:
