@@ -10,8 +10,8 @@ from cosserat_casadi.cli.main import app
 
 WORDS = """# Every command and option
 
-What `cosserat COMMAND --help` says, from the commands themselves. [The command line](command-line.md) says what they are
-for, how they end, and what is in the files that they write."""
+What `cosserat COMMAND --help` says, from the commands themselves. [The command line](command-line.md) says what they
+are for, how they end, and what is in the files that they write."""
 
 
 def command_page() -> str:

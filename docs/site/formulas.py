@@ -8,7 +8,7 @@ from __future__ import annotations
 import html
 import logging
 import re
-from importlib.resources import as_file, files
+from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +36,8 @@ HAT = re.compile(r"<mo>&#x0005E;</mo>")
 WORD = re.compile(r"<m([io])>([A-Za-z]{2,})</m\1>")
 """The name of a function, such as tanh."""
 
-FONT = files("ziamath") / "fonts" / "STIXTwoMath-Regular.ttf"
-"""STIX Two Math, under the SIL Open Font License."""
+FONT = "ziamath/fonts/STIXTwoMath-Regular.ttf"
+"""STIX Two Math, under the SIL Open Font License, as the package ziamath has it."""
 
 log = logging.getLogger("mkdocs.formulas")
 
@@ -55,12 +55,11 @@ def on_page_content(content: str, page: Any, **_: Any) -> str:
 def on_post_build(config: Any, **_: Any) -> None:
     """Write the font with the letters of the formulas alone."""
     options = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True, name_IDs=["*"])
-    with as_file(FONT) as file:
-        font = subset.load_font(str(file), options)
     subsetter = subset.Subsetter(options)
     subsetter.populate(text="".join(sorted(letters | _styled(letters))))
-    subsetter.subset(font)
-    subset.save_font(font, str(Path(config.site_dir) / "assets" / "formulas.woff"), options)
+    with subset.load_font(str(distribution("ziamath").locate_file(FONT)), options) as font:
+        subsetter.subset(font)
+        subset.save_font(font, str(Path(config.site_dir) / "assets" / "formulas.woff"), options)
 
 
 def mathml(source: str, display: str, where: str) -> str:
@@ -90,5 +89,6 @@ def _styled(plain: set[str]) -> set[str]:
     latin = {chr(0x1D434 + ord(letter) - ord("A")) for letter in plain if "A" <= letter <= "Z"}
     latin |= {chr(0x1D44E + ord(letter) - ord("a")) for letter in plain if "a" <= letter <= "z"}
     greek = {chr(0x1D6FC + ord(letter) - ord("α")) for letter in plain if "α" <= letter <= "ω"}
-    # These have places of their own: h, and the variants of epsilon, theta, kappa, phi, rho and pi; ∂. A root is no letter of its formula.
+    # These have places of their own: h, and the variants of epsilon, theta, kappa, phi, rho and pi; ∂.
+    # A root is no letter of its formula.
     return latin | greek | set("ℎ𝜕𝜖𝜗𝜘𝜙𝜚𝜛√")

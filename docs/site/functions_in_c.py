@@ -21,15 +21,20 @@ Made from the table that the members of [`Model`](api/model.md) are made from. W
 body of bears its name: `NAME_shape_wire`. Arguments are pointers to arrays, single numbers are passed by value;
 `NAME.h` has the prototypes."""
 
-DECLARATION = re.compile(r"/\* ((?:(?!\*/).)*?) \*/\n((?:[a-z][^\n{#]*\n(?: +[^\n]*\n)*)+)", flags=re.DOTALL)
-"""A comment of the header and the prototypes below it."""
+DECLARATION = re.compile(
+    r"(?:/\* ((?:(?!\*/).)*?) \*/\n(?:#define[^\n]*\n)?)?((?:^[a-z][\w *]*\([^;]*;\n)+)", flags=re.DOTALL | re.MULTILINE
+)
+"""Prototypes of the header, with the comment above them where they have one."""
 
 
 def functions_page() -> str:
     """The page: the functions of the table, then the solver as the header of the wire declares it."""
     public = [spec for spec in table(Model) if spec.public]
     rows = ["| function | one for each | arguments | results | |", "|---|---|---|---|---|", *map(_row, public)]
-    solver = ["## The solver", "As `nitinol_wire.h` declares it, the header of the folder of `examples/nitinol_wire.toml`."]
+    solver = [
+        "## The solver",
+        "As `nitinol_wire.h` declares it, the header of the folder of `examples/nitinol_wire.toml`.",
+    ]
     declarations = [_declared(comment, prototypes) for comment, prototypes in _declarations(public)]
     return "\n\n".join([WORDS, "\n".join(rows), *solver, *declarations]) + "\n"
 
@@ -49,9 +54,13 @@ def _declarations(public: list[FunctionSpec]) -> list[tuple[str, str]]:
     """Comments and prototypes of the header, without those of the table."""
     found = DECLARATION.findall(HEADER.read_text())
     tabled = tuple(f"nitinol_wire_{spec.name_in_c}" for spec in public)
-    return [(comment, text) for comment, text in found if not any(f"{name}(" in text or f"{name}_" in text for name in tabled)]
+    return [
+        (comment, text)
+        for comment, text in found
+        if not any(f"{name}(" in text or f"{name}_" in text for name in tabled)
+    ]
 
 
 def _declared(comment: str, prototypes: str) -> str:
     paragraphs = re.sub(r"\n {2,}", "\n", comment)
-    return f"```c\n{prototypes.rstrip()}\n```\n\n{paragraphs}"
+    return f"```c\n{prototypes.rstrip()}\n```\n\n{paragraphs}".rstrip()

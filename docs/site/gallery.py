@@ -117,7 +117,7 @@ def _scene_card(name: str, runs: Path) -> Card:
         sections=(
             f"```sh\ncosserat {command}\n```",
             f"{found['message']} {_error_words(found)}",
-            f"## The scene\n\n```toml title=\"examples/{name}.toml\"\n{text}```",
+            f'## The scene\n\n```toml title="examples/{name}.toml"\n{text}```',
         ),
     )
 
@@ -133,7 +133,9 @@ def _program_card(name: str) -> Card:
     text = (EXAMPLES / f"{name}.py").read_text()
     doc = ast.get_docstring(ast.parse(text)) or ""
     title, _, more = doc.partition("\n\n")
-    pictures = tuple(FIGURES / f"{name}{suffix}" for suffix in (".gif", ".png") if (FIGURES / f"{name}{suffix}").exists())
+    pictures = tuple(
+        FIGURES / f"{name}{suffix}" for suffix in (".gif", ".png") if (FIGURES / f"{name}{suffix}").exists()
+    )
     return Card(
         name=name,
         title=title.rstrip("."),
@@ -141,7 +143,7 @@ def _program_card(name: str) -> Card:
         sections=(
             f"```sh\npython examples/{name}.py --help\n```",
             more,
-            f"## The program\n\n```python title=\"examples/{name}.py\"\n{text}```",
+            f'## The program\n\n```python title="examples/{name}.py"\n{text}```',
         ),
     )
 
