@@ -12,14 +12,14 @@ HEADER = Path(__file__).resolve().parents[2] / "generated" / "nitinol_wire" / "n
 
 WORDS = """# Every function in C
 
-[From C](c-interface.md) says how a folder is exported, compiled and used. `NAME` stands for the name of the scene, *owner* for
-that of a rod, an actuator or a body.
+[From C](c-interface.md) says how a folder is exported, compiled and used. `NAME` stands for the name of the scene,
+*owner* for that of a rod, an actuator or a body.
 
 ## The model
 
-Made from the table that the members of [`Model`](api/model.md) are made from. What there is one for each rod, actuator or
-body of bears its name: `NAME_shape_wire`. Arguments are pointers to arrays, single numbers are passed by value;
-`NAME.h` has the prototypes."""
+Made from the table that the members of [`Model`](api/model.md) are made from. What there is one of for each rod,
+actuator or body bears the name of its owner: `NAME_shape_wire`. Arguments are pointers to arrays, single numbers are
+passed by value; `NAME.h` has the prototypes."""
 
 DECLARATION = re.compile(
     r"(?:/\* ((?:(?!\*/).)*?) \*/\n(?:#define[^\n]*\n)?)?((?:^[a-z][\w *]*\([^;]*;\n)+)", flags=re.DOTALL | re.MULTILINE
@@ -31,10 +31,7 @@ def functions_page() -> str:
     """The page: the functions of the table, then the solver as the header of the wire declares it."""
     public = [spec for spec in table(Model) if spec.public]
     rows = ["| function | one for each | arguments | results | |", "|---|---|---|---|---|", *map(_row, public)]
-    solver = [
-        "## The solver",
-        "As `nitinol_wire.h` declares it, the header of the folder of `examples/nitinol_wire.toml`.",
-    ]
+    solver = ["## The solver", "As the header of the exported folder of `examples/nitinol_wire.toml` declares it."]
     declarations = [_declared(comment, prototypes) for comment, prototypes in _declarations(public)]
     return "\n\n".join([WORDS, "\n".join(rows), *solver, *declarations]) + "\n"
 
@@ -54,11 +51,7 @@ def _declarations(public: list[FunctionSpec]) -> list[tuple[str, str]]:
     """Comments and prototypes of the header, without those of the table."""
     found = DECLARATION.findall(HEADER.read_text())
     tabled = tuple(f"nitinol_wire_{spec.name_in_c}" for spec in public)
-    return [
-        (comment, text)
-        for comment, text in found
-        if not any(f"{name}(" in text or f"{name}_" in text for name in tabled)
-    ]
+    return [(comment, text) for comment, text in found if not any(name in text for name in tabled)]
 
 
 def _declared(comment: str, prototypes: str) -> str:

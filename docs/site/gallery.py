@@ -107,19 +107,24 @@ def _scene_card(name: str, runs: Path) -> Card:
     text = (EXAMPLES / f"{name}.toml").read_text()
     title = tomllib.loads(text).get("title", name)
     found = json.loads((runs / f"{name}.json").read_text())
-    pictures = tuple(runs / f"{name}{suffix}" for suffix in (".png", ".gif") if (runs / f"{name}{suffix}").exists())
     command = " ".join(word.replace(f"{runs}/", "") for word in arguments_of(name, runs))
     command = command.replace(str(EXAMPLES), "examples")
     return Card(
         name=name,
         title=title,
-        pictures=pictures,
+        pictures=_pictures(runs, name),
         sections=(
             f"```sh\ncosserat {command}\n```",
             f"{found['message']} {_error_words(found)}",
             f'## The scene\n\n```toml title="examples/{name}.toml"\n{text}```',
         ),
     )
+
+
+def _pictures(folder: Path, name: str) -> tuple[Path, ...]:
+    """Film and picture of an example, as far as there are any."""
+    files = [folder / f"{name}{suffix}" for suffix in (".gif", ".png")]
+    return tuple(file for file in files if file.exists())
 
 
 def _error_words(found: dict[str, Any]) -> str:
@@ -133,13 +138,10 @@ def _program_card(name: str) -> Card:
     text = (EXAMPLES / f"{name}.py").read_text()
     doc = ast.get_docstring(ast.parse(text)) or ""
     title, _, more = doc.partition("\n\n")
-    pictures = tuple(
-        FIGURES / f"{name}{suffix}" for suffix in (".gif", ".png") if (FIGURES / f"{name}{suffix}").exists()
-    )
     return Card(
         name=name,
         title=title.rstrip("."),
-        pictures=pictures,
+        pictures=_pictures(FIGURES, name),
         sections=(
             f"```sh\npython examples/{name}.py --help\n```",
             more,
