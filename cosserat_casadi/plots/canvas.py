@@ -15,6 +15,18 @@ Plane = tuple[int, int]
 SPACE = (0, 1, 2)
 AXIS_NAMES = "xyz"
 
+TICKS = 5
+"""Most intervals between the ticks of the longest axis in space; of shorter ones there are fewer."""
+
+LABEL_PAD = 6.0
+"""Between the ticks of the third axis and its label, points."""
+
+THINNEST_BOX = 0.4
+"""Least side of the box of a scene in space, relative to the longest."""
+
+ZOOM = 0.85
+"""Size of that box in its axes, which leaves room for labels."""
+
 FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
 
@@ -134,7 +146,7 @@ class Canvas:
         self.axes.set_xlabel(f"{AXIS_NAMES[right]}, m")
         self.axes.set_ylabel(f"{AXIS_NAMES[up]}, m")
         if rest:
-            self.axes.set_zlabel("z, m")
+            self.axes.set_zlabel("z, m", labelpad=LABEL_PAD)
 
     def equalise(self, points: FloatArray) -> None:
         """Give all axes one scale, about the points, shape (k, 3)."""
@@ -142,12 +154,16 @@ class Canvas:
             self.axes.set_aspect("equal", adjustable="datalim")
             self.axes.grid(alpha=0.3)
             return
-        # matplotlib has no equal aspect in space: a cube about the middle of the points takes its part.
+        # matplotlib has no equal aspect in space: a box about the points, with sides as their ranges, takes its part.
         highest = points.max(axis=0)
         lowest = points.min(axis=0)
         centre = (highest + lowest) / 2
-        half_width = 0.55 * max(float((highest - lowest).max()), 0.2 * self.size)
-        limits = np.stack([centre - half_width, centre + half_width], axis=1)
+        extents = highest - lowest
+        widths = 1.1 * np.maximum(extents, THINNEST_BOX * max(extents.max(), 0.2 * self.size))
+        limits = np.stack([centre - widths / 2, centre + widths / 2], axis=1)
         self.axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-        self.axes.set_box_aspect((1, 1, 1))
+        self.axes.set_box_aspect(widths, zoom=ZOOM)
+        for name, width in zip(AXIS_NAMES, widths, strict=True):
+            # Short axes have room for few ticks.
+            self.axes.locator_params(axis=name, nbins=max(2, round(TICKS * width / widths.max())))
         self.axes.view_init(elev=22, azim=-58)

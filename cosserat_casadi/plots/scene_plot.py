@@ -59,6 +59,8 @@ def plot_solution(solution: Solution) -> Any:
         projection = "3d"
     canvas = Canvas(figure.add_subplot(grid[:, 0], projection=projection), plane, shapes.size)
     _draw_scene(canvas, solution, shapes, arrows)
+    # Below the axes, where it covers no rod.
+    figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
 
     panels = [figure.add_subplot(grid[row, 1]) for row in range(len(QUANTITIES))]
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
@@ -89,7 +91,6 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_targets(canvas, solution)
     canvas.label_axes()
     canvas.equalise(shapes.points)
-    canvas.axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
 
 
 def _draw_subtitle(axes: Any, solution: Solution) -> None:

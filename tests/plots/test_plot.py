@@ -77,6 +77,46 @@ def test_several_rods_are_named() -> None:
     assert {"rod", "other"} <= set(labels)
 
 
+def boxes(figure: Any) -> tuple[list[Any], list[Any]]:
+    """Where all axes and all legends of a figure are, pixels."""
+    figure.draw_without_rendering()
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend() is not None]
+    axes_boxes = [axes.get_window_extent() for axes in figure.axes]
+    return axes_boxes, [legend.get_window_extent() for legend in [*figure.legends, *legends]]
+
+
+@pytest.mark.parametrize("kind", ["spatial", "planar"])
+def test_legends_cover_nothing(kind: str, request: pytest.FixtureRequest) -> None:
+    axes_boxes, legend_boxes = boxes(plot_solution(request.getfixturevalue(kind)))
+    assert len(legend_boxes) == 4
+    for legend in legend_boxes:
+        for axes in axes_boxes:
+            width = min(legend.x1, axes.x1) - max(legend.x0, axes.x0)
+            height = min(legend.y1, axes.y1) - max(legend.y0, axes.y0)
+            # A pixel is the line around the axes.
+            assert min(width, height) < 1.0
+
+
+def test_axes_of_space_have_one_scale(spatial: Solution) -> None:
+    scenery = plot_solution(spatial).axes[0]
+    limits = np.array([scenery.get_xlim(), scenery.get_ylim(), scenery.get_zlim()])
+    widths = np.ptp(limits, axis=1)
+    # matplotlib gives the sides of its box by no public name.
+    sides = scenery._box_aspect
+    assert_allclose(sides / sides.max(), widths / widths.max(), rtol=1e-12, atol=0)
+    drawn = spatial.pose(SAMPLES).position
+    assert np.all(drawn > limits[:, 0])
+    assert np.all(drawn < limits[:, 1])
+
+
+def test_many_rods_differ_in_colour_or_marks() -> None:
+    many = [rod(name=f"rod_{i}", base={"position": [0.1 * i, 0, 0]}) for i in range(8)]
+    scenery = plot_solution(solve(build(scene(WEIGHT, rods=many)))).axes[0]
+    drawn = lines(scenery)
+    styles = {(drawn[f"rod_{i}"].get_color(), drawn[f"rod_{i}"].get_marker()) for i in range(8)}
+    assert len(styles) == 8
+
+
 def test_an_unconverged_solution_says_so_in_red(planar: Solution) -> None:
     stalled = replace(planar, outcome=Outcome.LOAD_STALLED, message=Outcome.LOAD_STALLED.value)
     title = plot_solution(stalled).axes[0].title
