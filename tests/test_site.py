@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 from tests.browser import browser
 from tests.conftest import ROOT
@@ -224,7 +225,7 @@ def test_gallery_has_every_scene_of_the_repository(tmp_path: Path, monkeypatch: 
     assert sorted(names) == sorted(path.stem for path in (ROOT / "examples").glob("*.toml"))
     for name in names:
         (tmp_path / f"{name}.json").write_text(json.dumps({"message": "Done.", "error_estimate": 1e-7}))
-        (tmp_path / f"{name}.png").write_bytes(b"")
+        Image.new("RGB", (100, 50)).save(tmp_path / f"{name}.png")
     contents = write_gallery(tmp_path / "gallery", tmp_path)
     cards = (tmp_path / "gallery" / "index.md").read_text()
     for name in names:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from PIL import Image
+
 from cosserat_casadi.cli.main import app, run
 from examples.demo import MOTIONS, SCENES, arguments_of
 
@@ -20,9 +22,20 @@ FIGURES = ROOT / "docs" / "figures"
 PROGRAMS = ("carry_load", "tendon_robot_mpc", "trace_circle")
 """Programs of examples/, whose pictures are in docs/figures: they optimise for minutes."""
 
+NO_CONTENTS = "---\nhide:\n  - toc\n---\n\n"
+"""Leaves the cards the whole width."""
+
 WORDS = """# Gallery
 
 Every scene and program of `examples/`, and what comes out when it is run. `cosserat examples` copies them for you."""
+
+
+ROBOT = (0.0, 0.08, 0.54, 0.92)
+"""Left, upper, right and lower edge of the robot in a figure of ``--plot``, relative to its size: panels stand beside
+it, the title above and the legend below."""
+
+CARD_WIDTH = 560
+"""Of the picture of a card, pixels."""
 
 
 class ExampleError(Exception):
@@ -36,7 +49,7 @@ class Card:
     Attributes:
         name: that of its file, without suffix.
         title: its heading.
-        pictures: files that show it, the one of the card first.
+        pictures: files that show it, films first.
         sections: Markdown of its page, below heading and pictures.
     """
 
@@ -94,12 +107,13 @@ def write_gallery(folder: Path, runs: Path, examples: tuple[str, ...] | None = N
     for card in cards:
         for picture in card.pictures:
             shutil.copyfile(picture, folder / picture.name)
+        _draw_card(card, folder)
         page = runs / f"{card.name}.html"
         if page.exists():
             shutil.copyfile(page, folder / f"{card.name}_live.html")
         (folder / f"{card.name}.md").write_text(_page(card, live=page.exists()))
     listed = "\n".join(_listed(card) for card in cards)
-    (folder / "index.md").write_text(f'{WORDS}\n\n<div class="gallery" markdown>\n\n{listed}\n\n</div>\n')
+    (folder / "index.md").write_text(f'{NO_CONTENTS}{WORDS}\n\n<div class="gallery" markdown>\n\n{listed}\n\n</div>\n')
     return ["gallery/index.md", *[{card.title: f"gallery/{card.name}.md"} for card in cards]]
 
 
@@ -160,6 +174,25 @@ def _page(card: Card, *, live: bool) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _draw_card(card: Card, folder: Path) -> None:
+    """Write the picture of a card: a film as it is, of a figure the robot alone."""
+    picture = card.pictures[0]
+    if picture.suffix == ".gif":
+        return
+    with Image.open(picture) as figure:
+        left, upper, right, lower = ROBOT
+        box = (left * figure.width, upper * figure.height, right * figure.width, lower * figure.height)
+        robot = figure.convert("RGB").crop([round(edge) for edge in box])
+    robot.thumbnail((CARD_WIDTH, CARD_WIDTH))
+    robot.save(folder / f"{card.name}_card.png")
+
+
+def _card_picture(card: Card) -> str:
+    picture = card.pictures[0]
+    if picture.suffix == ".gif":
+        return picture.name
+    return f"{card.name}_card.png"
+
+
 def _listed(card: Card) -> str:
-    picture = card.pictures[0].name
-    return f"* [![{card.title}]({picture}){{ loading=lazy }}<br>{card.title}]({card.name}.md)"
+    return f"* [![{card.title}]({_card_picture(card)}){{ loading=lazy }}<br>{card.title}]({card.name}.md)"

@@ -27,7 +27,9 @@ class Template(StrEnum):
 
 def new(
     scene: Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML) to write.", show_default=False)],
-    template: Annotated[Template, typer.Option(help="What to begin with.")] = Template.WIRE,
+    template: Annotated[
+        Template, typer.Option(help="What to begin with: wire, tendon-robot or parallel-robot.")
+    ] = Template.WIRE,
 ) -> None:
     """Write a scene with comments, to begin with. Exit codes: 0 written, 2 refused."""
     if scene.exists():
