@@ -55,6 +55,27 @@ def test_a_plane_scene_is_drawn_in_its_plane(planar: Solution) -> None:
     assert any(text.get_text() in "↺↻" for text in scenery.texts if text.get_text())
 
 
+@pytest.mark.parametrize("angle", [0.6, 2.5])
+def test_a_plane_that_stands_askew_is_drawn_as_a_plane_too(angle: float) -> None:
+    """A planar rod in a plane turned about the vertical: the picture is that of the same rod in the x–z plane."""
+    towards = np.array([np.cos(angle), np.sin(angle), 0.0])
+    across = np.array([-np.sin(angle), np.cos(angle), 0.0])
+    push_askew = push(force=(0.5 * towards - [0, 0, 0.3]).tolist(), moment=(0.4 * across).tolist())
+    turned = {"position": [0.0, 0.0, 0.0], "quaternion": [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]}
+    askew = solve(build(scene(push_askew, rods=[rod(strain="planar", base=turned)])))
+    scenery = plot_solution(askew).axes[0]
+    assert scenery.name == "rectilinear"
+    right = towards * np.sign(towards[0])
+    drawn = lines(scenery)["deformed"].get_xydata()
+    position = askew.pose(SAMPLES).position
+    assert_allclose(drawn, np.stack([position @ right, position[:, 2]], axis=1), rtol=0, atol=1e-9)
+    assert scenery.get_xlabel() == f"along ({right[0]:.3g}, {right[1]:.3g}, 0), m"
+    assert scenery.get_ylabel() == "z, m"
+    # A moment about the normal that points away from the reader is seen clockwise.
+    (sign,) = [text.get_text() for text in scenery.texts if text.get_text()]
+    assert sign == {True: "↻", False: "↺"}[bool(towards[0] > 0)]
+
+
 def test_panels_hold_strain_moment_and_force(spatial: Solution) -> None:
     _, strain, moment, force, linear = plot_solution(spatial).axes
     assert_allclose(lines(strain)["K_y"].get_ydata(), spatial.strain(SAMPLES)[:, 1], rtol=0, atol=1e-15)
