@@ -21,8 +21,8 @@ AXIS_NAMES = "xyz"
 TICKS = 5
 """Most intervals between the ticks of the longest axis in space; of shorter ones there are fewer."""
 
-LABEL_PAD = 10.0
-"""Between the ticks of the third axis and its label, points."""
+LABEL_HEIGHT = 0.05
+"""Of the name of the vertical axis above its end, relative to the longest side."""
 
 THINNEST_BOX = 0.4
 """Least side of the box of a scene in space, relative to the longest."""
@@ -146,12 +146,10 @@ class Canvas:
         return np.asarray(points @ self.view_axes[list(self.columns)].T)
 
     def label_axes(self) -> None:
-        """Name the axes that are shown, with their unit."""
-        right, up, *rest = self.columns
+        """Name the axes that are shown, with their unit; the vertical one of space where its end is known."""
+        right, up = self.columns[:2]
         self.axes.set_xlabel(f"{self._axis_name(right)}, m")
         self.axes.set_ylabel(f"{self._axis_name(up)}, m")
-        if rest:
-            self.axes.set_zlabel("z, m", labelpad=LABEL_PAD)
 
     def _axis_name(self, index: int) -> str:
         """Name of an axis that is shown: one of the world's, or the direction that it has in the world."""
@@ -176,8 +174,12 @@ class Canvas:
         widths = 1.1 * np.maximum(extents, THINNEST_BOX * max(extents.max(), 0.2 * self.size))
         limits = np.stack([centre - widths / 2, centre + widths / 2], axis=1)
         self.axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-        self.axes.set_box_aspect(widths, zoom=ZOOM)
+        # As a tuple: matplotlib would scale the array itself.
+        self.axes.set_box_aspect(tuple(widths), zoom=ZOOM)
         for name, width in zip(AXIS_NAMES, widths, strict=True):
             # Short axes have room for few ticks.
             self.axes.locator_params(axis=name, nbins=max(2, round(TICKS * width / widths.max())))
         self.axes.view_init(elev=22, azim=-58)
+        # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
+        right, back, top = limits[:, 1]
+        self.axes.text(right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center")
