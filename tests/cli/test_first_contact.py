@@ -9,6 +9,7 @@ from pathlib import Path
 
 import casadi as ca
 import pytest
+from rich.console import Console
 
 # Errors are defined where they are raised: all of these modules are loaded with the commands.
 import cosserat_casadi.cli.main
@@ -130,6 +131,16 @@ def test_unknown_examples_are_refused(capsys: pytest.CaptureFixture[str]) -> Non
 def test_page_goes_through_a_pipe_as_it_is_written(capsys: pytest.CaptureFixture[str]) -> None:
     assert cosserat("docs", "api/solving") == 0
     assert capsys.readouterr().out.rstrip("\n") == (ROOT / "docs" / "api" / "solving.md").read_text().rstrip("\n")
+
+
+def test_page_is_laid_out_in_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+    monkeypatch.setattr("rich.pager.SystemPager.show", lambda pager, content: shown.append(content))
+    terminal = Console(force_terminal=True, width=100)
+    monkeypatch.setattr("cosserat_casadi.cli.commands.docs.Console", lambda: terminal)
+    assert cosserat("docs", "glossary") == 0
+    assert "Glossary" in shown[0]
+    assert "# Glossary" not in shown[0]
 
 
 def test_pages_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
