@@ -117,6 +117,24 @@ def test_browser_shows_every_page(site: Path, visit: Visit) -> None:
         assert visit.faults == [], name
 
 
+BROKEN = r"""<!DOCTYPE html>
+<article><p>A formula \(x\) as it was written</p><img src="nowhere.png" loading="lazy"></article>
+<math><mi></mi></math>
+<script>nothing.happens()</script>"""
+
+
+def test_faults_of_a_page_are_seen(tmp_path: Path, visit: Visit) -> None:
+    page = tmp_path / "broken.html"
+    page.write_text(BROKEN)
+    visit.window.goto(page.as_uri())
+    (image,) = visit.window.evaluate(BROKEN_IMAGES)
+    assert image.endswith("nowhere.png")
+    assert visit.window.evaluate(UNSEEN_FORMULAS) == [""]
+    assert UNRENDERED.search(visit.window.evaluate(WORDS_OF_ARTICLE))
+    assert "nothing is not defined" in visit.faults
+    assert any("nowhere.png does not load" in fault for fault in visit.faults)
+
+
 def test_formulas_are_drawn_in_the_font_of_the_site(site: Path, visit: Visit) -> None:
     visit.window.goto((site / "theory.html").as_uri())
     assert visit.window.evaluate("document.fonts.ready.then(() => document.fonts.check('16px Formulas', 'ξ'))")
