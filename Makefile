@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS := 1
 STAMP := $(VENV)/.installed
 
-.PHONY: help demo test test-slow fuzz bench dial lint format schema api generated clean
+.PHONY: help demo test test-slow fuzz bench dial lint format schema api docs generated clean
 
 help:
 	@echo "make demo       set up .venv, solve the example scenes, write results and figures to out/"
@@ -19,6 +19,7 @@ help:
 	@echo "make generated  write the C folders in generated/ anew"
 	@echo "make schema     write the JSON schema and the reference of the scene format anew"
 	@echo "make api        write docs/api anew from the docstrings"
+	@echo "make docs       build the site of all pages, with a gallery of the examples, in build/site"
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -63,6 +64,9 @@ schema: $(STAMP)
 
 api: $(STAMP)
 	$(BIN)/python docs/api_pages.py
+
+docs: $(STAMP)
+	$(BIN)/python -m docs.site --output build/site --runs out
 
 # Solves the scenes for their discretisation, then runs the comparison that 'make test' makes.
 generated: $(STAMP)

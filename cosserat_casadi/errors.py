@@ -26,7 +26,13 @@ class Problem:
 
 
 class CosseratError(Exception):
-    """Root of the errors of this package."""
+    """Root of the errors of this package.
+
+    Attributes:
+        page: the page of the documentation that helps, as ``cosserat docs`` names it.
+    """
+
+    page = "command-line"
 
 
 class WriteError(CosseratError, OSError):
@@ -46,11 +52,16 @@ class SceneError(CosseratError):
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
+        # What is wrong with an option is no matter of the scene.
+        if any(not problem.where.startswith("--") for problem in problems):
+            self.page = "scene"
         super().__init__("\n".join(str(problem) for problem in problems))
 
 
 class SolveError(CosseratError):
     """No equilibrium was found and the caller asked for an exception."""
+
+    page = "hard-cases"
 
 
 class ExportError(CosseratError):
@@ -59,6 +70,8 @@ class ExportError(CosseratError):
     Attributes:
         problems: every fault found.
     """
+
+    page = "c-interface"
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems

@@ -35,6 +35,8 @@ AGREEMENT = 1e-6
 class NoReferenceError(CosseratError):
     """No reference was found."""
 
+    page = "accuracy"
+
 
 @dataclass(frozen=True)
 class Errors:

@@ -55,9 +55,13 @@ Batch = npt.NDArray[Any]
 class ShootingError(CosseratError):
     """Shooting cannot do this scene, or Newton did not converge."""
 
+    page = "accuracy"
+
 
 class BenchUnavailableError(CosseratError):
     """SciPy is not installed."""
+
+    page = "accuracy"
 
     def __init__(self) -> None:
         super().__init__("the bench needs scipy: install it with  pip install 'cosserat-casadi[bench]'")

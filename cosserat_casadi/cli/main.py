@@ -1,27 +1,35 @@
-"""The command line: solve, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
+"""The command line: begin, solve, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
 
 from __future__ import annotations
 
 import os
+import platform
 import sys
 from collections.abc import Callable
+from typing import Annotated
 
+import casadi as ca
 import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cosserat_casadi import __version__
 from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.cli.commands.bench import bench
 from cosserat_casadi.cli.commands.check import check
+from cosserat_casadi.cli.commands.docs import docs
+from cosserat_casadi.cli.commands.examples import examples
 from cosserat_casadi.cli.commands.export import export
 from cosserat_casadi.cli.commands.inverse import inverse
 from cosserat_casadi.cli.commands.modes import modes
+from cosserat_casadi.cli.commands.new import new
 from cosserat_casadi.cli.commands.path import path
 from cosserat_casadi.cli.commands.simulate import simulate
 from cosserat_casadi.cli.commands.solve import solve
 from cosserat_casadi.cli.commands.sweep import sweep
 from cosserat_casadi.cli.commands.tune import tune
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
+from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.problems import print_refusal
 from cosserat_casadi.cli.signals import (
     StoppedError,
@@ -39,13 +47,31 @@ __all__ = ["INTERRUPTED", "NOT_FOUND", "REFUSED", "app", "main", "run"]
 app = typer.Typer(
     help="Cosserat rods: from a scene file to the deformed rod.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_show_locals=False,
 )
 
 # In the order in which --help lists them.
-for command in (solve, path, simulate, modes, inverse, sweep, check, export, tune, bench):
+for command in (new, examples, docs, solve, path, simulate, modes, inverse, sweep, check, export, tune, bench):
     app.command()(command)
+
+
+def _print_version(asked: bool) -> None:
+    """Print what runs here, and end."""
+    if asked:
+        typer.echo(f"cosserat_casadi {__version__}, CasADi {ca.__version__}, Python {platform.python_version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def _general(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the versions of this and CasADi."
+        ),
+    ] = False,
+) -> None:
+    """Cosserat rods: from a scene file to the deformed rod."""
 
 
 def main() -> None:
@@ -103,9 +129,11 @@ def _failed(console: Console, error: Exception) -> int:
     """
     if isinstance(error, SceneError | ExportError):
         print_refusal(console, error)
+        _print_page(console, error)
         return REFUSED
     if isinstance(error, CosseratError):
         _print_error(console, str(error))
+        _print_page(console, error)
         # Of these two the input is in order: the disk is full, or there is no reference.
         if isinstance(error, NoReferenceError):
             return NOT_FOUND
@@ -136,6 +164,11 @@ def _system_sentence(error: OSError) -> str:
     if error.filename is None:
         return f"Standard output or a temporary file could not be written: {error.strerror}"
     return f"{error.filename}: {error.strerror}"
+
+
+def _print_page(console: Console, error: CosseratError) -> None:
+    """Name the page of the documentation that helps."""
+    print_plain(console, f"Help: cosserat docs {error.page}")
 
 
 def _print_error(console: Console, sentence: str) -> None:

@@ -24,7 +24,7 @@ from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.poses import section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour
+from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
@@ -317,7 +317,7 @@ class _Film:
             body = canvas.line(outlines[0], color=BODIES, linewidth=2.0, label=name)
             lines.append(_Moving(body, outlines))
         for index, (name, centre_lines) in enumerate(shapes.rods.items()):
-            rod = canvas.line(centre_lines[0], color=rod_colour(index), linewidth=3.5, label=name)
+            rod = canvas.line(centre_lines[0], linewidth=3.5, label=name, **rod_style(index))
             lines.append(_Moving(rod, centre_lines))
             if model.discrete.unloaded.floating_base(name) is None:
                 bases = centre_lines[:, :1]

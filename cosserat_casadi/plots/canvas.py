@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,22 @@ Plane = tuple[int, int]
 """World axes to the right and upwards."""
 
 SPACE = (0, 1, 2)
+WORLD: FloatArray = np.eye(3)
+"""The axes of the world, a row each."""
+
 AXIS_NAMES = "xyz"
+
+TICKS = 5
+"""Most intervals between the ticks of the longest axis in space; of shorter ones there are fewer."""
+
+LABEL_HEIGHT = 0.05
+"""Of the name of the vertical axis above its end, relative to the longest side."""
+
+THINNEST_BOX = 0.4
+"""Least side of the box of a scene in space, relative to the longest."""
+
+ZOOM = 0.85
+"""Size of that box in its axes, which leaves room for labels."""
 
 FLAT = 1e-9
 """Share of an extent below which it counts as zero."""
@@ -27,11 +42,13 @@ class Canvas:
         axes: of the projection that the plane asks for.
         plane: the coordinate plane that is shown; None shows space.
         size: largest extent of the scene, m, which arrows and section axes are scaled with.
+        view_axes: the axes that the plane is counted in, a row each, shape (3, 3).
     """
 
     axes: Any
     plane: Plane | None
     size: float
+    view_axes: FloatArray = field(default_factory=lambda: WORLD)
 
     @property
     def columns(self) -> tuple[int, ...]:
@@ -40,13 +57,13 @@ class Canvas:
 
     def line(self, points: FloatArray, **style: Any) -> Any:
         """Draw a line through points, shape (k, 3); it is returned, and may be moved."""
-        coordinates = points[:, self.columns]
+        coordinates = self.projected(points)
         (drawn,) = self.axes.plot(*coordinates.T, **style)
         return drawn
 
     def move(self, line: Any, points: FloatArray) -> None:
         """Lead a line that was drawn through other points, shape (k, 3)."""
-        coordinates = points[:, self.columns].T
+        coordinates = self.projected(points).T
         if self.plane is None:
             line.set_data_3d(*coordinates)
         else:
@@ -60,7 +77,7 @@ class Canvas:
             values: at the points, shape (k,).
             style: colour map, limits of the values and the like.
         """
-        coordinates = points[:, self.columns]
+        coordinates = self.projected(points)
         pieces = np.stack([coordinates[:-1], coordinates[1:]], axis=1)
         middles = (values[:-1] + values[1:]) / 2
         if self.plane is None:
@@ -83,7 +100,7 @@ class Canvas:
     def polygon(self, corners: FloatArray, colour: str) -> None:
         """Fill a polygon, shape (k, 3)."""
         if self.plane is not None:
-            self.axes.fill(*corners[:, self.plane].T, color=colour, alpha=0.25)
+            self.axes.fill(*self.projected(corners).T, color=colour, alpha=0.25)
             return
         from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -115,26 +132,33 @@ class Canvas:
         if self.plane is None:
             return
         (across,) = set(SPACE) - set(self.plane)
-        counter_clockwise = bool(moment[across] > 0)
+        counter_clockwise = bool(self.view_axes[across] @ moment > 0)
         if self.plane == (0, 2):
-            # World y points away from the reader of the x–z plane, so the turn is seen reversed.
+            # The second axis points away from the reader of such a plane, so the turn is seen reversed.
             counter_clockwise = not counter_clockwise
         sign = {True: "↺", False: "↻"}[counter_clockwise]
         # Text of a fixed size: a moment has no length that the scale of the axes could give it.
         style = {"fontsize": 20, "color": colour, "ha": "center", "va": "center"}
         self.axes.annotate(sign, self.projected(point), **style)
 
-    def projected(self, point: FloatArray) -> FloatArray:
-        """Coordinates of a point in the axes, shape (2,) or (3,)."""
-        return point[list(self.columns)]
+    def projected(self, points: FloatArray) -> FloatArray:
+        """Coordinates of points, shape (…, 3), in the axes that are shown, shape (…, 2) or (…, 3)."""
+        return np.asarray(points @ self.view_axes[list(self.columns)].T)
 
     def label_axes(self) -> None:
-        """Name the axes that are shown, with their unit."""
-        right, up, *rest = self.columns
-        self.axes.set_xlabel(f"{AXIS_NAMES[right]}, m")
-        self.axes.set_ylabel(f"{AXIS_NAMES[up]}, m")
-        if rest:
-            self.axes.set_zlabel("z, m")
+        """Name the axes that are shown, with their unit; the vertical one of space where its end is known."""
+        right, up = self.columns[:2]
+        self.axes.set_xlabel(f"{self._axis_name(right)}, m")
+        self.axes.set_ylabel(f"{self._axis_name(up)}, m")
+
+    def _axis_name(self, index: int) -> str:
+        """Name of an axis that is shown: one of the world's, or the direction that it has in the world."""
+        direction = self.view_axes[index]
+        if np.allclose(direction, WORLD[index], rtol=0, atol=1e-9):
+            return AXIS_NAMES[index]
+        # Adding zero turns −0 into 0.
+        components = ", ".join(f"{component:.3g}" for component in np.round(direction, 6) + 0.0)
+        return f"along ({components})"
 
     def equalise(self, points: FloatArray) -> None:
         """Give all axes one scale, about the points, shape (k, 3)."""
@@ -142,12 +166,20 @@ class Canvas:
             self.axes.set_aspect("equal", adjustable="datalim")
             self.axes.grid(alpha=0.3)
             return
-        # matplotlib has no equal aspect in space: a cube about the middle of the points takes its part.
+        # matplotlib has no equal aspect in space: a box about the points, with sides as their ranges, takes its part.
         highest = points.max(axis=0)
         lowest = points.min(axis=0)
         centre = (highest + lowest) / 2
-        half_width = 0.55 * max(float((highest - lowest).max()), 0.2 * self.size)
-        limits = np.stack([centre - half_width, centre + half_width], axis=1)
+        extents = highest - lowest
+        widths = 1.1 * np.maximum(extents, THINNEST_BOX * max(extents.max(), 0.2 * self.size))
+        limits = np.stack([centre - widths / 2, centre + widths / 2], axis=1)
         self.axes.set(xlim=limits[0], ylim=limits[1], zlim=limits[2])
-        self.axes.set_box_aspect((1, 1, 1))
+        # As a tuple: matplotlib would scale the array itself.
+        self.axes.set_box_aspect(tuple(widths), zoom=ZOOM)
+        for name, width in zip(AXIS_NAMES, widths, strict=True):
+            # Short axes have room for few ticks.
+            self.axes.locator_params(axis=name, nbins=max(2, round(TICKS * width / widths.max())))
         self.axes.view_init(elev=22, azim=-58)
+        # Beside the axis its name would stand on the ticks of a tall box, and outside of a small panel.
+        right, back, top = limits[:, 1]
+        self.axes.text(right, back, top + LABEL_HEIGHT * widths.max(), "z, m", ha="center")

@@ -1,11 +1,16 @@
-"""Colours and markers of figures."""
+"""Colours and markers of figures; those of one set stay apart for colour-blind readers too."""
 
 from __future__ import annotations
 
-AXES = ("#cc3311", "#228833", "#0055bb")
-"""Axes x, y, z, and components along them."""
+from typing import Any
 
-RODS = ("#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377")
+AXES = ("#cc3311", "#33aa66", "#0044aa")
+"""Axes x, y, z, and components along them: the green is lighter than the red, which is all that some readers see."""
+
+RODS = ("#0072b2", "#ee6677", "#ccbb44", "#332288", "#33bbee", "#882255")
+ROD_MARKERS = ("", "o", "^", "s", "D", "v")
+"""Marks along the rods of each round of colours."""
+
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 BODIES = "#777777"
 FORCES = "#b2560d"
@@ -18,7 +23,7 @@ FAILURE = "#cc3311"
 """Text of a figure whose solve did not end as it should."""
 
 CATEGORIES = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#000000")
-"""Colours that stay apart for colour-blind readers.
+"""Colours of curves and of outcomes.
 
 M. Okabe, K. Ito, *Color Universal Design* (2008), without its yellow, which a small dot on white does not show.
 """
@@ -37,6 +42,13 @@ def category_style(index: int) -> dict[str, str]:
 def rod_colour(index: int) -> str:
     """Colour of the rod of this index; they come again after the last."""
     return RODS[index % len(RODS)]
+
+
+def rod_style(index: int) -> dict[str, Any]:
+    """Colour of the rod of this index, and marks along it that tell it from the rods of the same colour."""
+    marker = ROD_MARKERS[index // len(RODS) % len(ROD_MARKERS)]
+    # A mark in every tenth of the picture: points along a rod may be many or few.
+    return {"color": rod_colour(index), "marker": marker, "markersize": 7, "markevery": 0.1}
 
 
 def actuator_colour(index: int) -> str:

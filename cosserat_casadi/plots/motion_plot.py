@@ -16,7 +16,7 @@ from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_colour
+from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
@@ -129,7 +129,9 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
         last = order == len(rows) - 1
         for index, (name, lines) in enumerate(shapes.rods.items()):
             label = name if last else None
-            canvas.line(lines[row], color=_faded(rod_colour(index), share), linewidth=2.5, label=label)
+            style = rod_style(index)
+            style["color"] = _faded(style["color"], share)
+            canvas.line(lines[row], linewidth=2.5, label=label, **style)
         for name, outlines in shapes.outlines.items():
             label = name if last else None
             canvas.line(outlines[row], color=_faded(BODIES, share), linewidth=1.8, label=label)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.plots.colours import AXES, rod_colour
+from cosserat_casadi.plots.colours import AXES, rod_style
 from cosserat_casadi.plots.shapes import SAMPLES
 
 STROKES = ("-", "--", "-.")
@@ -69,7 +69,12 @@ def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
                 continue
             axes = linear_axes if component >= 3 else panel
             style = _curve_style(len(rods), index, component)
-            axes.plot(SAMPLES, curve, label=_curve_label(len(rods), name, label, labelled), **style)
+            # Strokes tell components and are named once; the picture beside names the rods.
+            shown_label = None
+            if label not in labelled:
+                shown_label = label
+            labelled.add(label)
+            axes.plot(SAMPLES, curve, label=shown_label, **style)
         # Fields may jump where one element ends and the next begins.
         for element_end in discrete_rod.grid.breaks[1:-1]:
             panel.axvline(element_end, color="0.6", linewidth=0.8)
@@ -79,28 +84,14 @@ def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
     _finish_panel(shown)
 
 
-def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, str]:
+def _curve_style(rod_count: int, rod_index: int, component: int) -> dict[str, Any]:
     """Colours tell the components of one rod, else the rods, as in the picture beside; strokes tell the rest."""
-    style = {"color": AXES[component % 3], "linestyle": "-"}
+    style: dict[str, Any] = {"color": AXES[component % 3], "linestyle": "-"}
     if rod_count > 1:
-        style["color"] = rod_colour(rod_index)
-    if rod_count > 2:
-        style["linestyle"] = STROKES[component % 3]
+        style |= {**rod_style(rod_index), "markersize": 4, "linestyle": STROKES[component % 3]}
     if component >= 3:
         style["linestyle"] = ":"
     return style
-
-
-def _curve_label(rod_count: int, rod: str, label: str, labelled: set[str]) -> str | None:
-    """Label of a curve; with many rods each component is named once, and the set of named ones grows."""
-    if rod_count == 1:
-        return label
-    if rod_count == 2:
-        return f"{rod} {label}"
-    if label in labelled:
-        return None
-    labelled.add(label)
-    return label
 
 
 def _finish_panel(shown: list[Any]) -> None:
@@ -111,7 +102,9 @@ def _finish_panel(shown: list[Any]) -> None:
         panel.text(0.5, 0.5, "zero", ha="center", va="center", color="0.5", transform=panel.transAxes)
         panel.set_yticks([])
         return
-    shown[-1].legend(handles=handles, fontsize=9, ncols=3, framealpha=0.9)
+    # Above the panel: inside it would cover a curve sooner or later.
+    place = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.1}
+    shown[-1].legend(handles=handles, fontsize=9, ncols=3, frameon=False, **place)
     for axes in shown:
         _hide_rounding(axes)
     if len(shown) > 1:

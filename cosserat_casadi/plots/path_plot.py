@@ -33,6 +33,10 @@ SMALLEST_DISPLACEMENT = 1e-9
 """Displacement relative to the length below which a component is not drawn."""
 
 
+COLUMNS = 3
+"""Most panels beside each other."""
+
+
 def save_path_plot(path: EquilibriumPath, file: str | Path) -> None:
     """Draw a path into a file, whole or not at all; the same path gives the same bytes.
 
@@ -55,9 +59,11 @@ def plot_path(path: EquilibriumPath) -> Any:
         PlotUnavailableError: matplotlib is not installed.
     """
     names = list(path.model.discrete.rods)
-    figure = figure_class()(figsize=(7.5 * len(names), 5.4), layout="constrained")
+    columns = min(len(names), COLUMNS)
+    rows = -(-len(names) // columns)
+    figure = figure_class()(figsize=(7.5 * columns, 5.6 * rows), layout="constrained")
     for index, name in enumerate(names):
-        axes = figure.add_subplot(1, len(names), index + 1)
+        axes = figure.add_subplot(rows, columns, index + 1)
         _draw_rod(axes, path, _followed_section(path, name))
         title = name
         if len(names) == 1:
@@ -123,7 +129,8 @@ def _draw_rod(axes: Any, path: EquilibriumPath, section: _Section) -> None:
     axes.set_xlabel(f"displacement of {section.words} / length")
     axes.set_ylabel(f"factor × {_input_value(path)}")
     axes.grid(alpha=0.3)
-    axes.legend(loc="best", fontsize=9, framealpha=0.9)
+    # Below the panel: inside it would cover a curve sooner or later.
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, fontsize=9, frameon=False)
 
 
 def _moving_components(displacement: FloatArray) -> list[int]:

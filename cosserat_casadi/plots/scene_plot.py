@@ -9,21 +9,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.plots.arrows import draw_arrows, lies_in_plane
-from cosserat_casadi.plots.canvas import FLAT, Canvas, Plane
+from cosserat_casadi.plots.arrows import draw_arrows
+from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.load_arrows import scene_arrows
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
+from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
 from cosserat_casadi.plots.shapes import RodShapes, rod_shapes
-
-PLANES: tuple[tuple[int, Plane], ...] = ((1, (0, 2)), (2, (0, 1)), (0, (1, 2)))
-"""Normal and axes of the coordinate planes, in the order in which they are tried."""
 
 
 def save_plot(solution: Solution, path: str | Path) -> None:
@@ -39,7 +35,7 @@ def save_plot(solution: Solution, path: str | Path) -> None:
 def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
-    Left the rods in space, in the plane where all of the scene lies in a coordinate plane: deformed thick, unloaded
+    Left the rods in space, or in the plane that holds all of the scene: deformed thick, unloaded
     dashed, section axes (x red, y green, z blue), tendons and chambers, bodies filled, joints, loads as arrows.
     Right, along X: the strains that are admitted, the internal moment and the internal force in section axes.
 
@@ -53,12 +49,14 @@ def plot_solution(solution: Solution) -> Any:
     grid = figure.add_gridspec(3, 2, width_ratios=(1.5, 1.0))
     shapes = rod_shapes(solution)
     arrows = scene_arrows(solution)
-    plane = _plane(shapes, arrows)
+    plane, view_axes = scene_view(shapes, arrows)
     projection = None
     if plane is None:
         projection = "3d"
-    canvas = Canvas(figure.add_subplot(grid[:, 0], projection=projection), plane, shapes.size)
+    canvas = Canvas(figure.add_subplot(grid[:, 0], projection=projection), plane, shapes.size, view_axes)
     _draw_scene(canvas, solution, shapes, arrows)
+    # Below the axes, where it covers no rod.
+    figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
 
     panels = [figure.add_subplot(grid[row, 1]) for row in range(len(QUANTITIES))]
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
@@ -67,17 +65,6 @@ def plot_solution(solution: Solution) -> Any:
     add_title(figure, solution.model.scene.title)
     _draw_subtitle(canvas.axes, solution)
     return figure
-
-
-def _plane(shapes: RodShapes, arrows: Sequence[Arrow]) -> Plane | None:
-    """World axes of the coordinate plane that holds all rods and forces, moments across it, or None."""
-    lines = list(shapes.deformed.values())
-    deformed = np.concatenate(lines)
-    for normal, axes in PLANES:
-        flat = np.abs(deformed[:, normal]).max() <= FLAT * shapes.size
-        if flat and all(lies_in_plane(arrow, normal) for arrow in arrows):
-            return axes
-    return None
 
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:
@@ -89,7 +76,6 @@ def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: S
     draw_targets(canvas, solution)
     canvas.label_axes()
     canvas.equalise(shapes.points)
-    canvas.axes.legend(loc="upper left", fontsize=9, framealpha=0.9)
 
 
 def _draw_subtitle(axes: Any, solution: Solution) -> None:

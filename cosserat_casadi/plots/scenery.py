@@ -13,7 +13,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_colour
+from cosserat_casadi.plots.colours import AXES, BODIES, TARGETS, actuator_colour, rod_style
 from cosserat_casadi.plots.shapes import SAMPLES, RodShapes, in_world
 from cosserat_casadi.scene import CurveTarget, Scene
 
@@ -63,7 +63,7 @@ def draw_rods(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
         label = "deformed"
         if several:
             label = name
-        canvas.line(deformed, color=rod_colour(index), linewidth=3.5, label=label)
+        canvas.line(deformed, linewidth=3.5, label=label, **rod_style(index))
         base_style = JOINTS["fixed"]
         if unloaded.floating_base(name) is None:
             base_style = CLAMP

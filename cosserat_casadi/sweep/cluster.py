@@ -28,6 +28,8 @@ PATIENCE = 15
 class ClusterError(CosseratError):
     """The cluster cannot be used as it is."""
 
+    page = "sweeps"
+
 
 class Cluster:
     """A scheduler with its workers; results come as they are ready."""

@@ -29,6 +29,8 @@ BLOCK = 4096
 class ParquetUnavailableError(CosseratError):
     """Parquet files need pyarrow."""
 
+    page = "sweeps"
+
     def __init__(self) -> None:
         super().__init__("Parquet needs pyarrow: install it with  pip install 'cosserat-casadi[sweep]', or write .csv")
 

@@ -55,6 +55,27 @@ def test_a_plane_scene_is_drawn_in_its_plane(planar: Solution) -> None:
     assert any(text.get_text() in "↺↻" for text in scenery.texts if text.get_text())
 
 
+@pytest.mark.parametrize("angle", [0.6, 2.5])
+def test_a_plane_that_stands_askew_is_drawn_as_a_plane_too(angle: float) -> None:
+    """A planar rod in a plane turned about the vertical: the picture is that of the same rod in the x–z plane."""
+    towards = np.array([np.cos(angle), np.sin(angle), 0.0])
+    across = np.array([-np.sin(angle), np.cos(angle), 0.0])
+    push_askew = push(force=(0.5 * towards - [0, 0, 0.3]).tolist(), moment=(0.4 * across).tolist())
+    turned = {"position": [0.0, 0.0, 0.0], "quaternion": [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]}
+    askew = solve(build(scene(push_askew, rods=[rod(strain="planar", base=turned)])))
+    scenery = plot_solution(askew).axes[0]
+    assert scenery.name == "rectilinear"
+    right = towards * np.sign(towards[0])
+    drawn = lines(scenery)["deformed"].get_xydata()
+    position = askew.pose(SAMPLES).position
+    assert_allclose(drawn, np.stack([position @ right, position[:, 2]], axis=1), rtol=0, atol=1e-9)
+    assert scenery.get_xlabel() == f"along ({right[0]:.3g}, {right[1]:.3g}, 0), m"
+    assert scenery.get_ylabel() == "z, m"
+    # A moment about the normal that points away from the reader is seen clockwise.
+    (sign,) = [text.get_text() for text in scenery.texts if text.get_text()]
+    assert sign == {True: "↻", False: "↺"}[bool(towards[0] > 0)]
+
+
 def test_panels_hold_strain_moment_and_force(spatial: Solution) -> None:
     _, strain, moment, force, linear = plot_solution(spatial).axes
     assert_allclose(lines(strain)["K_y"].get_ydata(), spatial.strain(SAMPLES)[:, 1], rtol=0, atol=1e-15)
@@ -75,6 +96,46 @@ def test_several_rods_are_named() -> None:
     solution = solve(build(scene(push(), rods=[rod(), other])))
     labels = plot_solution(solution).axes[0].get_legend_handles_labels()[1]
     assert {"rod", "other"} <= set(labels)
+
+
+def boxes(figure: Any) -> tuple[list[Any], list[Any]]:
+    """Where all axes and all legends of a figure are, pixels."""
+    figure.draw_without_rendering()
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend() is not None]
+    axes_boxes = [axes.get_window_extent() for axes in figure.axes]
+    return axes_boxes, [legend.get_window_extent() for legend in [*figure.legends, *legends]]
+
+
+@pytest.mark.parametrize("kind", ["spatial", "planar"])
+def test_legends_cover_nothing(kind: str, request: pytest.FixtureRequest) -> None:
+    axes_boxes, legend_boxes = boxes(plot_solution(request.getfixturevalue(kind)))
+    assert len(legend_boxes) == 4
+    for legend in legend_boxes:
+        for axes in axes_boxes:
+            width = min(legend.x1, axes.x1) - max(legend.x0, axes.x0)
+            height = min(legend.y1, axes.y1) - max(legend.y0, axes.y0)
+            # A pixel is the line around the axes.
+            assert min(width, height) < 1.0
+
+
+def test_axes_of_space_have_one_scale(spatial: Solution) -> None:
+    scenery = plot_solution(spatial).axes[0]
+    limits = np.array([scenery.get_xlim(), scenery.get_ylim(), scenery.get_zlim()])
+    widths = np.ptp(limits, axis=1)
+    # matplotlib gives the sides of its box by no public name.
+    sides = scenery._box_aspect
+    assert_allclose(sides / sides.max(), widths / widths.max(), rtol=1e-12, atol=0)
+    drawn = spatial.pose(SAMPLES).position
+    assert np.all(drawn > limits[:, 0])
+    assert np.all(drawn < limits[:, 1])
+
+
+def test_many_rods_differ_in_colour_or_marks() -> None:
+    many = [rod(name=f"rod_{i}", base={"position": [0.1 * i, 0, 0]}) for i in range(8)]
+    scenery = plot_solution(solve(build(scene(WEIGHT, rods=many)))).axes[0]
+    drawn = lines(scenery)
+    styles = {(drawn[f"rod_{i}"].get_color(), drawn[f"rod_{i}"].get_marker()) for i in range(8)}
+    assert len(styles) == 8
 
 
 def test_an_unconverged_solution_says_so_in_red(planar: Solution) -> None:

@@ -1,0 +1,73 @@
+"""Files that come with the package: examples and pages of the documentation.
+
+In a wheel they lie in the package; in a checkout they are where the repository has them, and setup.py copies them from
+there when a wheel is built.
+"""
+
+from __future__ import annotations
+
+import ast
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def shipped_folder(name: str) -> Path:
+    """The folder ``examples`` or ``docs``."""
+    inside = PACKAGE / name
+    if inside.is_dir():
+        return inside
+    return PACKAGE.parent / name
+
+
+@dataclass(frozen=True)
+class Example:
+    """An example that comes with the package.
+
+    Attributes:
+        name: its path in the folder of examples, without suffix.
+        file: a scene, a table of a sweep, or a program.
+        title: one sentence.
+    """
+
+    name: str
+    file: Path
+    title: str
+
+
+def examples() -> dict[str, Example]:
+    """All examples by name: scenes, tables of sweeps, programs."""
+    folder = shipped_folder("examples")
+    found = {}
+    for pattern in ("*.toml", "sweeps/*.toml", "*.py"):
+        for file in sorted(folder.glob(pattern)):
+            name = file.relative_to(folder).with_suffix("").as_posix()
+            found[name] = Example(name, file, _title(file))
+    return found
+
+
+def pages() -> dict[str, Path]:
+    """Pages of the documentation by name: their paths in the folder of pages, without suffix."""
+    folder = shipped_folder("docs")
+    files = [*sorted(folder.glob("*.md")), *sorted(folder.glob("api/*.md"))]
+    return {file.relative_to(folder).with_suffix("").as_posix(): file for file in files}
+
+
+def page_title(page: Path) -> str:
+    """The first heading of a page."""
+    lines = page.read_text(encoding="utf-8").splitlines()
+    return next(line.removeprefix("# ") for line in lines if line.startswith("# "))
+
+
+def _title(file: Path) -> str:
+    """What a file says of itself: the title of a scene, else its first comment; the first line of a program."""
+    text = file.read_text(encoding="utf-8")
+    if file.suffix == ".py":
+        doc = ast.get_docstring(ast.parse(text)) or ""
+        return doc.partition("\n")[0]
+    title = tomllib.loads(text).get("title")
+    if title is not None:
+        return str(title)
+    return text.partition("\n")[0].lstrip("# ")
