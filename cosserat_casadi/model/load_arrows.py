@@ -133,9 +133,7 @@ def _body_label(load: scenes.Load, body: scenes.Body) -> str:
     return f"{load.name} of {body.name}"
 
 
-def _wrench(
-    kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray
-) -> tuple[Matrix, Matrix]:
+def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:
     """Force and moment at sections, world axes, 3×k each."""
     position, rotation = poses
     forces = []

@@ -60,7 +60,7 @@ class DrawnModel(Model):
 
 
 def drawn_layout(model: Model) -> list[dict[str, Any]]:
-    """Where each part lies among the numbers of ``drawn``: kind, name, first entry, rows, columns, and sort of arrows."""
+    """Where each part lies among the numbers of ``drawn``: kind, name, first entry, rows, columns, sort of arrows."""
     symbols = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
     entries: list[dict[str, Any]] = []
     first = 0
@@ -122,7 +122,8 @@ class _Picture:
         offset, _ = offset_at(actuator, X)
         position, rotations = self._rod_poses(actuator.rod, X)
         points = [position[:, k] + rotations[k][:, :2] @ ca.DM(offset[:, k]) for k in range(len(X))]
-        return ca.horzcat(*points)
+        routing: Matrix = ca.horzcat(*points)
+        return routing
 
     def arrows(self) -> Iterator[Drawn]:
         """Arrows of all loads; what is zero for good has none."""
@@ -133,7 +134,7 @@ class _Picture:
             if drawn.at_point:
                 vectors = {"point": drawn.force, "moment": drawn.moment}
             for sort, vector in vectors.items():
-                if not vector.is_zero():
+                if not ca.MX(vector).is_zero():
                     yield Drawn("arrows", drawn.load.name, ca.vertcat(drawn.position, vector), sort)
 
     def _rod_poses(self, rod: str, X: FloatArray) -> DrawnPoses:
