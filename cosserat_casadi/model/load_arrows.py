@@ -140,6 +140,6 @@ def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: Flo
     moments = []
     for k in range(data.shape[1]):
         force, moment = kernel.kernel.world_wrench(position[:, k], rotation[k], parameters, data[:, k])
-        forces.append(ca.densify(force))
-        moments.append(ca.densify(moment))
+        forces.append(force)
+        moments.append(moment)
     return ca.horzcat(*forces), ca.horzcat(*moments)

@@ -134,7 +134,7 @@ class _Picture:
             if drawn.at_point:
                 vectors = {"point": drawn.force, "moment": drawn.moment}
             for sort, vector in vectors.items():
-                if not ca.MX(vector).is_zero():
+                if vector.nnz():
                     yield Drawn("arrows", drawn.load.name, ca.vertcat(drawn.position, vector), sort)
 
     def _rod_poses(self, rod: str, X: FloatArray) -> DrawnPoses:

@@ -16,7 +16,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
-from cosserat_casadi.page.ranges import sliders
+from cosserat_casadi.page.ranges import movable, sliders
 from cosserat_casadi.plots.arrows import STYLES
 from cosserat_casadi.plots.colours import BODIES, TARGETS, actuator_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners
@@ -43,6 +43,7 @@ def page_facts(solution: Solution) -> dict[str, Any]:
         "title": scene.title or "Cosserat rods",
         "unknowns": model.size,
         "sliders": [asdict(slider) for slider in sliders(model)],
+        "hand": [slider.index for slider in sliders(model) if slider.input in movable(model)],
         "layout": drawn_layout(model),
         "poses": [*({"rod": rod} for rod in model.discrete.rods), *({"body": body.name} for body in scene.bodies)],
         "rods": {rod.name: _rod(scene, rod, i) for i, rod in enumerate(scene.rods)},

@@ -6,6 +6,7 @@ import base64
 import gzip
 import html
 import json
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
 
-SCRIPTS = ("spectrum.js", "scenery.js", "panel.js")
+SCRIPTS = ("spectrum.js", "scenery.js", "panel.js", "hand.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 
@@ -38,7 +39,7 @@ def export_page(solution: Solution, file: Path) -> Path:
     """
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
-    content = page_text(page_facts(solution), ["wasm_robot.js"], module).encode()
+    content = page_text(page_facts(solution), [asset("wasm_robot.js")], module).encode()
     if len(content) > LARGEST:
         problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
         raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
@@ -46,15 +47,16 @@ def export_page(solution: Solution, file: Path) -> Path:
     return file
 
 
-def page_text(facts: dict[str, Any], engine: list[str], module: bytes = b"") -> str:
+def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:
     """The page of a scene.
 
     Args:
         facts: of the scene.
-        engine: the scripts that give the class of the robot, and what stands on them.
+        engine: texts of the scripts that give the robot, ``openRobot``, and what else stands on it.
         module: the solver as WebAssembly; empty where a server solves.
     """
-    scripts = "\n".join(f"<script>\n{asset(name)}</script>" for name in (*SCRIPTS, *engine, "start.js"))
+    texts = [*map(asset, SCRIPTS), *engine, asset("start.js")]
+    scripts = "\n".join(f"<script>\n{text}</script>" for text in texts)
     # The time stamp of the archive is left out: the same scene makes the same page.
     packed = base64.b64encode(gzip.compress(module, 9, mtime=0)).decode() if module else ""
     words = {

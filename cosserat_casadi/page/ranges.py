@@ -90,3 +90,12 @@ def _size(model: Model, entry: Input) -> float:
     force = softest.bending_stiffness / softest.length**2
     sizes = {"N": force, "N m": force * softest.length, "N/m": force / softest.length, "m/s²": GRAVITY}
     return sizes.get(entry.unit, 1.0)
+
+
+def movable(model: Model) -> list[str]:
+    """Names of the inputs that a hand on the tip moves: those with bounds, else the actuators', else all."""
+    bounded = {bound.input for bound in model.scene.bounds}
+    actuators = {actuator.name for actuator in model.scene.actuators}
+    of_actuators = {entry.name for entry, _ in model.inputs if entry.owner in actuators and not entry.of_rod}
+    chosen = bounded or of_actuators or set(model.inputs.names)
+    return [name for name in model.inputs.names if name in chosen]

@@ -15,6 +15,8 @@ class Panel {
     this.point = Math.max(facts.poses.findIndex((pose) => pose.body), 0);
     this.rows = [];
     this.waiting = [];
+    // Told of every equilibrium that is shown.
+    this.listeners = [];
     this.buildSliders();
     this.buildLayers();
     document.getElementById("reset").onclick = () => this.reset();
@@ -96,6 +98,7 @@ class Panel {
         this.point = Number(choice.value);
         this.showReadings();
         this.showDerivatives();
+        this.listeners.forEach((listener) => listener());
       };
     }
   }
@@ -116,13 +119,16 @@ class Panel {
   }
 
   async work() {
-    await new Promise(requestAnimationFrame);
     while (this.wanted) {
       const inputs = this.wanted;
       const waiting = this.waiting;
       this.wanted = null;
       this.waiting = [];
-      this.accept(inputs, await this.robot.move(inputs));
+      try {
+        this.accept(inputs, await this.robot.move(inputs));
+      } catch (error) {
+        this.say("✕ Nobody answers", `The program that solves has ended, or failed: ${error.message}.`);
+      }
       waiting.forEach((resolve) => resolve(this.state));
       await new Promise(requestAnimationFrame);
     }
@@ -139,6 +145,15 @@ class Panel {
     this.showDerivatives();
     clearTimeout(this.rest);
     this.rest = setTimeout(() => this.judge(), REST);
+    this.listeners.forEach((listener) => listener());
+  }
+
+  // An equilibrium that someone else has found, with its inputs.
+  receive(answer) {
+    if (answer.refused) return this.say("✕ Refused", answer.refused);
+    const inputs = Float64Array.from(answer.inputs);
+    inputs.forEach((value, i) => this.rows[i].show(value));
+    return this.accept(inputs, { ...answer, drawn: Float64Array.from(answer.drawn) });
   }
 
   async judge() {
@@ -164,11 +179,12 @@ class Panel {
       return ["bad", "✕ No equilibrium shown", text + share];
     }
     const jump = anew ? " The robot could not be followed here: it has jumped, and was solved anew from the unloaded one." : "";
+    if (this.state.met === false) return ["warn", "✓ In equilibrium, the point is not reached", text];
     const steps = `${this.state.iterations} Newton ${this.state.iterations === 1 ? "step" : "steps"}.`;
     if (!this.eigenvalues) return [anew ? "warn" : "good", "✓ In equilibrium", `${text}${jump} ${steps}`];
-    const largest = Math.max(1, ...this.eigenvalues.map(Math.abs));
-    const negative = this.eigenvalues.filter((value) => value < -1e-10 * largest).length;
-    const zero = this.eigenvalues.some((value) => Math.abs(value) <= 1e-10 * largest);
+    const rounding = 1e-10 * Math.max(1, ...this.eigenvalues.map(Math.abs));
+    const negative = this.eigenvalues.some((value) => value < -rounding);
+    const zero = this.eigenvalues.some((value) => Math.abs(value) <= rounding);
     if (negative) return ["warn", "! In equilibrium, but not stable", `A real robot leaves it at the slightest push: some variation releases energy.${jump}`];
     if (zero) return ["warn", "~ In equilibrium, neutral", `Some variation costs no energy.${jump}`];
     return [anew ? "warn" : "good", "✓ In equilibrium, stable", `${text}${jump} ${steps}`];
@@ -176,6 +192,10 @@ class Panel {
 
   showStatus() {
     const [kind, head, words] = this.verdict;
+    this.say(head, words, kind);
+  }
+
+  say(head, words, kind = "warn") {
     const box = document.getElementById("status");
     box.className = kind;
     // A screen reader hears only what is new.

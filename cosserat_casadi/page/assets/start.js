@@ -7,5 +7,8 @@ async function start() {
   const panel = new Panel(facts, robot, scenery);
   window.robot = panel.api;
   await panel.reset();
+  if (facts.hand.length) new Hand(panel);
+  // Motions need a program behind the page.
+  if (typeof Theatre !== "undefined") window.theatre = new Theatre(panel, facts);
   document.body.dataset.ready = "yes";
 }
