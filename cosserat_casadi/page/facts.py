@@ -25,6 +25,9 @@ from cosserat_casadi.plots.shapes import rod_shapes
 DIGITS = 6
 """Significant digits of what is only drawn."""
 
+IN_PLANE = {1, 3, 5}
+"""Strains that keep a rod in the plane of its x and z: bending_y, shear_x, extension."""
+
 STILL = 8
 """Every so many of the sampled points of an unloaded rod are kept."""
 
@@ -51,10 +54,11 @@ def page_facts(solution: Solution) -> dict[str, Any]:
         "actuators": {actuator.name: _actuator(actuator, i) for i, actuator in enumerate(scene.actuators)},
         "bodies": {body.name: _body(scene, body) for body in scene.bodies},
         "held": [_rounded(np.array(support.position)) for support in scene.supports],
-        "targets": _targets(scene),
+        "targets": [_rounded(np.array(point)) for point in _target_points(scene)],
         "colours": {"body": BODIES, "target": TARGETS, **{sort: style.colour for sort, style in STYLES.items()}},
         "arrow_lengths": {sort: style.share for sort, style in STYLES.items()},
         "arrow_units": dict(UNITS),
+        "planar": all(set(rod.admitted) <= IN_PLANE for rod in scene.rods) and bool(np.ptp(points[:, 1]) == 0.0),
         "least": _rounded(points.min(axis=0)),
         "most": _rounded(points.max(axis=0)),
         "stability": _stability(model),
@@ -62,9 +66,11 @@ def page_facts(solution: Solution) -> dict[str, Any]:
 
 
 def _extent_points(solution: Solution, points: FloatArray) -> FloatArray:
-    """Points that a picture must hold: rods and bodies."""
+    """Points that a picture must hold: rods, bodies and targets."""
+    scene = solution.model.scene
     parts = [points]
-    parts += [solution.body(body.name).position for body in solution.model.scene.bodies]
+    parts += [solution.body(body.name).position for body in scene.bodies]
+    parts += [np.array([point]) for point in _target_points(scene)]
     return np.concatenate(parts)
 
 
@@ -115,11 +121,11 @@ def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
     return {"corners": _rounded(body_corners(scene, body)), "joints": _rounded(np.array(joints))}
 
 
-def _targets(scene: scenes.Scene) -> list[Any]:
-    points: list[Any] = []
+def _target_points(scene: scenes.Scene) -> list[tuple[float, float, float]]:
+    points: list[tuple[float, float, float]] = []
     for target in scene.targets:
         points += target.points if isinstance(target, scenes.CurveTarget) else [target.position]
-    return [_rounded(np.array(point)) for point in points]
+    return points
 
 
 def _stability(model: Model) -> dict[str, Any] | None:

@@ -22,7 +22,7 @@ ASSETS = Path(page.__file__).parent / "assets"
 FEW = {"modes": 2, "nodes": 5}
 
 
-def finger() -> Scene:
+def finger(strain: str = "kirchhoff") -> Scene:
     """A slim rod, two tendons, a force at the tip with bounds, its weight."""
     tendon = {"kind": "tendon", "rod": "rod", "tension": 1.5, "offset": [0.02, 0.0]}
     return scene_from_dict(
@@ -30,7 +30,7 @@ def finger() -> Scene:
             "schema": 1,
             "title": "A finger </title> & its tendons",
             "accuracy": FEW,
-            "rods": [rod()],
+            "rods": [rod(strain)],
             "loads": [
                 {"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.3, 0.0, -0.2]},
                 {"name": "weight", "kind": "gravity", "acceleration": [0, 0, -1.5]},
@@ -42,6 +42,11 @@ def finger() -> Scene:
             "bounds": [{"input": "push.force", "lower": -3.0, "upper": 4.0}],
         }
     )
+
+
+def strip() -> Scene:
+    """The same in a plane: a compiler is done with it in no time."""
+    return finger("planar")
 
 
 def portal() -> Scene:

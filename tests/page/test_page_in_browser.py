@@ -12,18 +12,18 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Solution, build, solve
 from cosserat_casadi.page.page import LARGEST, export_page
 from tests.browser import browser
-from tests.page.pages_made import finger, wasm_compiler
+from tests.page.pages_made import strip, wasm_compiler
 
 
 @pytest.fixture(scope="module")
 def solution() -> Solution:
-    return solve(build(finger()))
+    return solve(build(strip()))
 
 
 @pytest.fixture(scope="module")
 def file(solution: Solution, tmp_path_factory: pytest.TempPathFactory) -> Path:
     wasm_compiler()
-    return export_page(solution, tmp_path_factory.mktemp("page") / "finger.html")
+    return export_page(solution, tmp_path_factory.mktemp("page") / "strip.html")
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +111,7 @@ def test_an_equilibrium_that_is_not_found_is_said_in_words(page: Any) -> None:
 def test_an_unstable_equilibrium_is_said_in_words(page: Any) -> None:
     # Followed straight up to beyond the buckling load, the upright rod stays upright: no real one would.
     page.evaluate("""async () => { for (const [name, value] of [["push.force", [0, 0, 0]], ["front.tension", 0],
-        ["side.tension", 0], ["weight.acceleration", [0, 0, 0]], ["push.force", [0, 0, -4.5]]])
+        ["side.tension", 0], ["weight.acceleration", [0, 0, 0]], ["push.force", [0, 0, -6.5]]])
         await window.robot.setInput(name, value); }""")
     at_rest(page)
     assert page.evaluate("window.robot.stable") is False
@@ -130,6 +130,28 @@ def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None
     assert words[solution.model.inputs.slices["front.tension"].start] == f"moves it {1000 * size:.3g} mm per N"
     page.get_by_label("derivatives").uncheck()
     page.wait_for_function("() => !document.querySelector('#labels span')")
+
+
+def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
+    before = page.locator("#hand").bounding_box()
+    x, y = before["x"] + before["width"] / 2, before["y"] + before["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 45, y + 20, steps=3)
+    page.wait_for_function(
+        """([x, y]) => { const box = document.getElementById("hand").getBoundingClientRect();
+        return Math.hypot(box.x + box.width / 2 - x, box.y + box.height / 2 - y) < 0.5; }""",
+        arg=[x + 45, y + 20],
+        timeout=20_000,
+    )
+    page.mouse.up()
+    # It has moved what has bounds, and nothing else; what is drawn is the equilibrium at these inputs.
+    inputs = page.evaluate("window.robot.inputs")
+    assert inputs["front.tension"] == 1.5
+    force = [inputs[f"push.force.{axis}"] for axis in "xyz"]
+    assert max(abs(value - old) for value, old in zip(force, [0.3, 0.0, -0.2], strict=True)) > 0.05
+    expected = solve(solution.model, {"push.force": force}).tip().position[0]
+    assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
 
 
 def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:

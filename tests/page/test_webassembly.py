@@ -15,10 +15,10 @@ from cosserat_casadi.errors import ExportError
 from cosserat_casadi.page.drawn_model import DrawnModel
 from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.webassembly import VARIABLE, find_wasm_compiler, wasm_of
-from tests.page.pages_made import finger, portal, run_node, wasm_compiler
+from tests.page.pages_made import portal, run_node, strip, wasm_compiler
 
 
-@pytest.mark.parametrize(("made", "steps"), [(finger, 6), (portal, 3)])
+@pytest.mark.parametrize(("made", "steps"), [(strip, 6), (portal, 3)])
 def test_node_finds_what_gcc_finds(made: Callable[[], Scene], steps: int, tmp_path: Path) -> None:
     scene = made()
     compiler = wasm_compiler()
@@ -50,7 +50,7 @@ def test_node_finds_what_gcc_finds(made: Callable[[], Scene], steps: int, tmp_pa
     # The first is solved from the unloaded scene by both: digit by digit the same way.
     assert_allclose(first["x"], library.solve(cases[0]).x, rtol=0, atol=1e-12)
     assert first["label"] == "converged"
-    if made is finger:
+    if made is strip:
         assert_allclose(first["eigenvalues"][0], solution.smallest_eigenvalue, rtol=1e-8)
     else:
         # The moment of the hand has no potential.

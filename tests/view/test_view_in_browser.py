@@ -82,6 +82,7 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     page.wait_for_selector("body.playing", timeout=60_000)
     page.get_by_label("Play or pause").click()
     assert "Hz, swings" in page.inner_text("#transport")
+    assert "In motion" in page.inner_text("#status")
     page.get_by_role("button", name="Motion of the scene").click()
     page.wait_for_function(
         "() => /^[0-9.]+ s/.test(document.querySelector('#transport output').textContent)", timeout=90_000
@@ -91,6 +92,7 @@ def test_modes_and_motion_are_played_with_a_time_bar(page: Any) -> None:
     assert page.inner_text("#transport output") == "0.200 s"
     page.get_by_label("Back to the equilibrium").click()
     assert not page.locator("#transport").is_visible()
+    assert "In equilibrium" in page.inner_text("#status")
 
 
 def request(server: RobotServer, method: str, path: str, body: str = "", **headers: str) -> tuple[int, bytes]:

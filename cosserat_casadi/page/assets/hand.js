@@ -32,36 +32,36 @@ class Hand {
   take(event) {
     event.preventDefault();
     this.mark.setPointerCapture(event.pointerId);
-    this.target = null;
-    this.depth = this.position.project(this.scenery.camera).z;
+    this.last = null;
   }
 
-  // The point under the pointer, as far from the eye as the tip was when it was taken.
+  // The ray of sight through the pointer: how far away the tip is on it is left to the robot.
   under(event) {
     const box = this.scenery.canvas.getBoundingClientRect();
     const x = (2 * (event.clientX - box.left)) / box.width - 1;
     const y = 1 - (2 * (event.clientY - box.top)) / box.height;
-    return new THREE.Vector3(x, y, this.depth).unproject(this.scenery.camera);
+    const { camera } = this.scenery;
+    return new THREE.Ray(camera.position.clone(), new THREE.Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize());
   }
 
-  // Go on towards a point until it is reached, or no step brings the robot nearer.
-  async lead(point) {
-    this.wanted = point;
-    this.target = point;
+  // Go on towards a ray until the tip is on it, or no step brings the tip nearer.
+  async lead(ray) {
+    this.wanted = ray;
+    this.last = ray;
     if (this.following) return;
     this.following = true;
     while (this.wanted) {
       const wanted = this.wanted;
-      const before = this.position.distanceTo(wanted);
+      const before = wanted.distanceToPoint(this.position);
       await this.step(wanted);
-      const after = this.position.distanceTo(wanted);
+      const after = wanted.distanceToPoint(this.position);
       const arrived = after < 1e-6 * this.scenery.size || after > 0.999 * before;
       if (arrived && wanted === this.wanted) this.wanted = null;
     }
     this.following = false;
   }
 
-  async step(wanted) {
+  async step(ray) {
     const { facts } = this.panel;
     const all = await this.panel.robot.derivatives();
     if (!all) return;
@@ -69,9 +69,10 @@ class Hand {
     const columns = facts.hand.map((i) => {
       const first = 7 * (facts.sliders.length * this.panel.point + i);
       const half = (facts.sliders[i].most - facts.sliders[i].least) / 2;
-      return [...all.subarray(first, first + 3)].map((value) => value * half);
+      const column = new THREE.Vector3(...all.subarray(first, first + 3)).multiplyScalar(half);
+      return column.addScaledVector(ray.direction, -column.dot(ray.direction)).toArray();
     });
-    const gap = wanted.clone().sub(this.position).toArray();
+    const gap = ray.closestPointToPoint(this.position, new THREE.Vector3()).sub(this.position).toArray();
     const changes = leastChange(columns, gap, (k, change) => {
       const { least, most } = facts.sliders[facts.hand[k]];
       const value = inputs[facts.hand[k]];
@@ -88,9 +89,9 @@ class Hand {
 
   // A program behind the page finds the inputs once more, as `inverse` does, and says whether the point is met.
   async letGo() {
-    const point = this.target;
-    this.target = null;
-    if (!point || !this.panel.robot.reach) return;
+    if (!this.last || !this.panel.robot.reach) return;
+    const point = this.last.closestPointToPoint(this.position, new THREE.Vector3());
+    this.last = null;
     this.wanted = null;
     this.panel.say("… Finding the inputs", "for the point where you let go.");
     const answer = await this.panel.robot.reach(this.panel.facts.poses[this.panel.point], point.toArray());

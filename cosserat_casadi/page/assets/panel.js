@@ -226,7 +226,7 @@ class Panel {
     columns.forEach((column, i) => {
       const unit = this.facts.sliders[i].unit;
       const [factor, length] = this.lengths;
-      const size = (factor * Math.hypot(...column)).toPrecision(3);
+      const size = Number((factor * Math.hypot(...column)).toPrecision(3));
       this.rows[i].derivative.textContent = `moves it ${size} ${length} per ${unit === "1" ? "unit" : unit}`;
     });
     this.scenery.drawDerivatives(this.pose(this.point).position, columns);

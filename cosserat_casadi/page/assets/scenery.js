@@ -31,10 +31,6 @@ class Scenery {
     this.resize();
   }
 
-  get planar() {
-    return this.most.y - this.least.y < 1e-6 * this.size;
-  }
-
   addLight() {
     this.scene.add(new THREE.HemisphereLight("#ffffff", "#c4ccd4", 3.0));
     const sun = new THREE.DirectionalLight("#ffffff", 2.2);
@@ -50,10 +46,10 @@ class Scenery {
     this.lookAtAll();
   }
 
-  // The whole scene in view; a planar one is seen across its plane.
+  // The whole scene in view; a planar one is seen across its plane, a little aslant: moments stand on it.
   lookAtAll() {
     const middle = this.least.clone().add(this.most).multiplyScalar(0.5);
-    const direction = this.planar ? new THREE.Vector3(0, -1, 0.0001) : new THREE.Vector3(0.9, -1.5, 0.6);
+    const direction = this.facts.planar ? new THREE.Vector3(0.2, -1, 0.2) : new THREE.Vector3(0.9, -1.5, 0.6);
     const narrow = Math.max(1, 1 / (this.camera.aspect || 1));
     this.controls.target.copy(middle);
     this.camera.position.copy(middle).addScaledVector(direction.normalize(), 1.7 * this.size * Math.min(narrow, 1.6));
@@ -69,7 +65,7 @@ class Scenery {
     const grid = new THREE.GridHelper(count * this.cell, count, "#b9c1c9", "#dde2e7");
     const middle = this.least.clone().add(this.most).multiplyScalar(0.5);
     const round = (value) => Math.round(value / this.cell) * this.cell;
-    if (this.planar) {
+    if (this.facts.planar) {
       // The grid of three.js lies across y, as a planar scene does.
       grid.position.set(round(middle.x), this.most.y + 0.02 * this.size, round(middle.z));
     } else {

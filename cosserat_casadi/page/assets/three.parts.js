@@ -1,2 +1,3 @@
-export { AmbientLight, BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Plane, Quaternion, Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer } from 'three';
+// What the bundle three.min.js holds of three.js; CONTRIBUTING.md says how it is made.
+export { BufferAttribute, BufferGeometry, Color, ConeGeometry, CylinderGeometry, DirectionalLight, DoubleSide, GridHelper, Group, HemisphereLight, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh, MeshStandardMaterial, PerspectiveCamera, Quaternion, Ray, Scene, SphereGeometry, Vector3, WebGLRenderer } from 'three';
 export { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';

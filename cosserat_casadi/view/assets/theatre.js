@@ -77,6 +77,7 @@ class Theatre {
     this.transport.hidden = false;
     document.body.classList.add("playing");
     this.panel.clearDerivatives();
+    this.panel.say("▶ In motion", "What moves is no equilibrium: close the time bar, or move a slider, to come back to it.", "");
     this.pause(false);
   }
 
@@ -115,6 +116,7 @@ class Theatre {
     document.body.classList.remove("playing");
     this.panel.scenery.draw(this.panel.state.drawn, this.panel.state.found);
     this.panel.showDerivatives();
+    this.panel.showStatus();
   }
 }
 
