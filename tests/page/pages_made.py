@@ -19,6 +19,9 @@ from tests.scenes import rod
 HARNESS = Path(__file__).parent / "harness"
 ASSETS = Path(page.__file__).parent / "assets"
 
+EXPORT_COMMAND = "cosserat export examples/planar_strip.toml"
+"""Of the page on the viewer."""
+
 FEW = {"modes": 2, "nodes": 5}
 
 

@@ -133,25 +133,33 @@ def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None
 
 
 def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
-    before = page.locator("#hand").bounding_box()
-    x, y = before["x"] + before["width"] / 2, before["y"] + before["height"] / 2
-    page.mouse.move(x, y)
+    def middle() -> tuple[float, float]:
+        box = page.locator("#hand").bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    # A point that the robot can reach.
+    page.evaluate("window.robot.setInput('push.force', [1.4, 0, 0.5])")
+    aim = middle()
+    page.evaluate("window.robot.reset()")
+    start = middle()
+    assert abs(aim[0] - start[0]) > 40
+    page.mouse.move(*start)
     page.mouse.down()
-    page.mouse.move(x + 45, y + 20, steps=3)
+    page.mouse.move(*aim, steps=3)
     page.wait_for_function(
         """([x, y]) => { const box = document.getElementById("hand").getBoundingClientRect();
         return Math.hypot(box.x + box.width / 2 - x, box.y + box.height / 2 - y) < 0.5; }""",
-        arg=[x + 45, y + 20],
+        arg=list(aim),
         timeout=20_000,
     )
     page.mouse.up()
     # It has moved what has bounds, and nothing else; what is drawn is the equilibrium at these inputs.
-    inputs = page.evaluate("window.robot.inputs")
+    inputs, tip = page.evaluate("[window.robot.inputs, window.robot.tip()]")
     assert inputs["front.tension"] == 1.5
     force = [inputs[f"push.force.{axis}"] for axis in "xyz"]
     assert max(abs(value - old) for value, old in zip(force, [0.3, 0.0, -0.2], strict=True)) > 0.05
     expected = solve(solution.model, {"push.force": force}).tip().position[0]
-    assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
+    assert_allclose(tip, expected, rtol=0, atol=1e-8)
 
 
 def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:

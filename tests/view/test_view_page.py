@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from cosserat_casadi.page.webassembly import VARIABLE
-from tests.page.pages_made import ASSETS, wasm_compiler
-from tests.pages import DOCS, blocks, commands, run_command, run_python
+from tests.page.pages_made import ASSETS, EXPORT_COMMAND
+from tests.pages import DOCS, blocks, commands, run_python
 
 PAGE = DOCS / "view.md"
 
 
-def test_commands_and_python_of_the_page(tmp_path: Path) -> None:
+def test_commands_and_python_of_the_page() -> None:
     assert PAGE.name == "view.md"
-    viewed, exported = commands(PAGE)
-    assert viewed == "cosserat view examples/two_section_robot.toml"
+    # One is started and stopped in test_view_command.py, the other is run in tests/page/test_export_command.py.
+    assert commands(PAGE) == ["cosserat view examples/two_section_robot.toml", f"{EXPORT_COMMAND} --page strip.html"]
     (code,) = blocks(PAGE, "python")
     run_python(code)
-    wasm_compiler()
-    run_command(exported, tmp_path)
-    assert (tmp_path / "strip.html").stat().st_size < 2_000_000
 
 
 def test_names_of_the_page_are_those_of_the_program() -> None:

@@ -2,6 +2,7 @@
 
 const STEP = 0.25; // Largest change of an input in one step, over half its slider.
 const DAMPING = 1e-4; // Of the least squares, over the largest eigenvalue: what is hardly reachable is hardly tried.
+const MOST_DAMPING = 1e2; // Beyond it no step brings the tip nearer.
 
 class Hand {
   constructor(panel) {
@@ -50,18 +51,25 @@ class Hand {
     this.last = ray;
     if (this.following) return;
     this.following = true;
+    // Levenberg and Marquardt: a step that leads away is taken back, and tried again with more damping.
+    let damping = DAMPING;
+    let aim = this.wanted;
     while (this.wanted) {
-      const wanted = this.wanted;
-      const before = wanted.distanceToPoint(this.position);
-      await this.step(wanted);
-      const after = wanted.distanceToPoint(this.position);
-      const arrived = after < 1e-6 * this.scenery.size || after > 0.999 * before;
-      if (arrived && wanted === this.wanted) this.wanted = null;
+      if (aim !== this.wanted) damping = DAMPING;
+      aim = this.wanted;
+      const before = aim.distanceToPoint(this.position);
+      const inputs = this.panel.inputs;
+      await this.step(aim, damping);
+      const nearer = aim.distanceToPoint(this.position) < before;
+      if (!nearer) await this.panel.solve(inputs);
+      damping = nearer ? Math.max(damping / 10, DAMPING) : damping * 10;
+      const arrived = aim.distanceToPoint(this.position) < 1e-5 * this.scenery.size;
+      if ((arrived || damping > MOST_DAMPING) && aim === this.wanted) this.wanted = null;
     }
     this.following = false;
   }
 
-  async step(ray) {
+  async step(ray, damping) {
     const { facts } = this.panel;
     const all = await this.panel.robot.derivatives();
     if (!all) return;
@@ -73,7 +81,7 @@ class Hand {
       return column.addScaledVector(ray.direction, -column.dot(ray.direction)).toArray();
     });
     const gap = ray.closestPointToPoint(this.position, new THREE.Vector3()).sub(this.position).toArray();
-    const changes = leastChange(columns, gap, (k, change) => {
+    const changes = leastChange(columns, gap, damping, (k, change) => {
       const { least, most } = facts.sliders[facts.hand[k]];
       const value = inputs[facts.hand[k]];
       return change > 0 ? value >= most : value <= least;
@@ -100,18 +108,18 @@ class Hand {
 }
 
 // Changes u of least size with Σ u_k column_k near a gap (damped least squares), without those that are at their ends.
-function leastChange(columns, gap, atEnd) {
+function leastChange(columns, gap, damping, atEnd) {
   const free = new Set(columns.keys());
   for (;;) {
     const axes = [0, 1, 2];
     const chosen = [...free];
     const gram = axes.map((i) => axes.map((j) => chosen.reduce((sum, k) => sum + columns[k][i] * columns[k][j], 0)));
     const { values, vectors } = eigen(gram);
-    const damping = DAMPING * Math.max(...values);
+    const added = damping * Math.max(...values);
     const weights = new Float64Array(3);
     axes.forEach((axis) => {
       const along = axes.reduce((sum, i) => sum + vectors[i][axis] * gap[i], 0);
-      if (damping > 0) axes.forEach((i) => (weights[i] += (vectors[i][axis] * along) / (values[axis] + damping)));
+      if (added > 0) axes.forEach((i) => (weights[i] += (vectors[i][axis] * along) / (values[axis] + added)));
     });
     const changes = columns.map((column, k) => (free.has(k) ? column.reduce((sum, value, i) => sum + value * weights[i], 0) : 0));
     const blocked = chosen.filter((k) => changes[k] !== 0 && atEnd(k, changes[k]));

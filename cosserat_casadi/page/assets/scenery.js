@@ -52,7 +52,7 @@ class Scenery {
     const direction = this.facts.planar ? new THREE.Vector3(0.2, -1, 0.2) : new THREE.Vector3(0.9, -1.5, 0.6);
     const narrow = Math.max(1, 1 / (this.camera.aspect || 1));
     this.controls.target.copy(middle);
-    this.camera.position.copy(middle).addScaledVector(direction.normalize(), 1.7 * this.size * Math.min(narrow, 1.6));
+    this.camera.position.copy(middle).addScaledVector(direction.normalize(), 1.9 * this.size * Math.min(narrow, 1.6));
     this.controls.update();
   }
 
