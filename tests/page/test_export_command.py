@@ -12,11 +12,10 @@ from tests.page.pages_made import wasm_compiler
 
 
 def export(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()", "export", str(STRIP)]
+    program = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()"]
+    command = [*program, *EXPORT_COMMAND.split()[1:], *arguments]
     everything = {**os.environ, **environment}
-    return subprocess.run(
-        [*command, *arguments], env=everything, capture_output=True, text=True, timeout=120, check=False
-    )
+    return subprocess.run(command, env=everything, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
 
 
 def test_a_page_is_written_beside_no_folder(tmp_path: Path) -> None:

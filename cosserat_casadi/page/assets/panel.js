@@ -161,7 +161,8 @@ class Panel {
     const eigenvalues = await this.robot.eigenvalues();
     if (state !== this.state) return;
     this.eigenvalues = eigenvalues;
-    this.showStatus();
+    // The verdict waits while something else is said, as of a motion that is played.
+    if (!this.elsewhere) this.showStatus();
   }
 
   async reset() {
@@ -193,9 +194,12 @@ class Panel {
   showStatus() {
     const [kind, head, words] = this.verdict;
     this.say(head, words, kind);
+    this.elsewhere = false;
   }
 
+  // Say something that is not the verdict on the equilibrium.
   say(head, words, kind = "warn") {
+    this.elsewhere = true;
     const box = document.getElementById("status");
     box.className = kind;
     // A screen reader hears only what is new.
