@@ -53,8 +53,9 @@ def strip() -> Scene:
 
 
 def portal() -> Scene:
-    """Two rods that carry a plate: a body, joints, multipliers."""
-    legs = [rod(name=name, base={"position": [x, 0, 0]}) for name, x in (("left", 0.0), ("right", 0.3))]
+    """Two rods, one of them aslant, that carry a plate: a body, joints, multipliers."""
+    left = rod(name="left", base={"position": [0.0, 0.0, 0.0]})
+    right = rod(name="right", base={"position": [0.3, 0.0, 0.0], "tangent": [0.2, 0.1, 1.0]})
     joints = [
         {"body": "plate", "rod": name, "kind": kind, "position": [x, 0, 0]}
         for name, kind, x in (("left", "fixed", 0.0), ("right", "spherical", 0.3))
@@ -63,7 +64,7 @@ def portal() -> Scene:
         {
             "schema": 1,
             "accuracy": FEW,
-            "rods": legs,
+            "rods": [left, right],
             "bodies": [{"name": "plate", "mass": 0.1, "centre_of_mass": [0.15, 0, 0.02]}],
             "joints": joints,
             "loads": [

@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 from cosserat_casadi.page.webassembly import VARIABLE
-from tests.page.pages_made import wasm_compiler
+from tests.conftest import ROOT
+from tests.page.pages_made import EXPORT_COMMAND, wasm_compiler
 
 
 def export(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
