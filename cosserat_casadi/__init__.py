@@ -34,6 +34,7 @@ from cosserat_casadi.motion.resolve import simulate_scene
 from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.page.page import export_page
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.paths.trace import PathOutcome
@@ -84,6 +85,7 @@ __all__ = [
     "compiled_stage",
     "discretise",
     "export",
+    "export_page",
     "follow_path",
     "follow_scene_path",
     "inverse",

@@ -124,8 +124,9 @@ CONCEPTS = (
     Concept(
         "export",
         "Export and load",
-        "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md).",
-        ("export", "load", "Compiled", "ExportError"),
+        "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md). "
+        "A solution as a page for [a browser](../view.md).",
+        ("export", "load", "Compiled", "export_page", "ExportError"),
         ("StepState", "StepOptions", "CompiledStep", "StepSensitivity", "LinearMotion", "MotionStatus"),
     ),
     Concept(

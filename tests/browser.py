@@ -21,8 +21,10 @@ def browser() -> Iterator[Any]:
     if not programs:
         pytest.skip("no browser on this machine: apt install chromium")
     with playwright.sync_playwright() as driver:
-        # The sandbox of Chromium asks for rights that root and containers do not have.
-        opened = driver.chromium.launch(executable_path=programs[0], args=["--no-sandbox"])
+        # The sandbox of Chromium asks for rights that root and containers do not have; WebGL without a graphics card
+        # is drawn by the processor.
+        rights = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+        opened = driver.chromium.launch(executable_path=programs[0], args=rights)
         try:
             yield opened
         finally:

@@ -19,6 +19,7 @@ ELSEWHERE = {
     "motion.md": "test_guide.py",
     "control.md": "test_control_page.py",
     "sweeps.md": "sweep/test_page.py",
+    "view.md": "view/test_view_page.py",
 }
 """Pages that a test of their own runs."""
 

@@ -1,4 +1,4 @@
-"""The command line: begin, solve, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
+"""The command line: begin, solve, view, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from cosserat_casadi.cli.commands.simulate import simulate
 from cosserat_casadi.cli.commands.solve import solve
 from cosserat_casadi.cli.commands.sweep import sweep
 from cosserat_casadi.cli.commands.tune import tune
+from cosserat_casadi.cli.commands.view import view
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.problems import print_refusal
@@ -51,7 +52,7 @@ app = typer.Typer(
 )
 
 # In the order in which --help lists them.
-for command in (new, examples, docs, solve, path, simulate, modes, inverse, sweep, check, export, tune, bench):
+for command in (new, examples, docs, solve, view, path, simulate, modes, inverse, sweep, check, export, tune, bench):
     app.command()(command)
 
 

@@ -107,7 +107,12 @@ def library_sources(
 
 def render(template: str, words: dict[str, Any]) -> str:
     """A template of this package with its words filled in."""
-    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), resource("templates", template))
+    return fill(resource("templates", template), words)
+
+
+def fill(text: str, words: Mapping[str, Any]) -> str:
+    """The text of a template with its words filled in: ``@{word}``."""
+    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
 
 
 def resource(folder: str, file: str) -> str:

@@ -53,6 +53,16 @@ def decision_variables(model: Model) -> DecisionVariables:
     if not chosen:
         remedy = "list them in inputs, or give each its range in [[bounds]]"
         raise SceneError(Problem("inputs", "no input is named that could be found", remedy))
+    lower, upper = bounds_of_inputs(model)
+    _refuse_empty_ranges(model, lower, upper)
+    all_indices = np.arange(layout.size)
+    indices = np.concatenate([all_indices[layout.slices[name]] for name in chosen])
+    return DecisionVariables(indices, lower[indices], upper[indices])
+
+
+def bounds_of_inputs(model: Model) -> tuple[FloatArray, FloatArray]:
+    """Least and largest values of the stacked inputs by what they are and by ``[[bounds]]``, infinite where none is."""
+    layout = model.inputs
     lower = _physical_lower(model)
     upper = np.full(layout.size, np.inf)
     for bound in model.scene.bounds:
@@ -62,10 +72,7 @@ def decision_variables(model: Model) -> DecisionVariables:
             lower[entries] = np.maximum(lower[entries], bound.lower)
         if bound.upper is not None:
             upper[entries] = bound.upper
-    _refuse_empty_ranges(model, lower, upper)
-    all_indices = np.arange(layout.size)
-    indices = np.concatenate([all_indices[layout.slices[name]] for name in chosen])
-    return DecisionVariables(indices, lower[indices], upper[indices])
+    return lower, upper
 
 
 def scales(model: Model, variables: DecisionVariables, start: Solution) -> FloatArray:

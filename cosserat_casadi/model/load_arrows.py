@@ -1,32 +1,71 @@
-"""The loads of a solved scene as arrows: every load's kernel evaluated on the sections it is drawn at."""
+"""The loads of a scene as arrows: every load's kernel evaluated on the sections and bodies it is drawn at."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.arrow import Arrow
-from cosserat_casadi.loads.load import Poses, Site
+from cosserat_casadi.loads.load import Load, Site
 from cosserat_casadi.loads.trace import TracedLoad, stored, traced
 from cosserat_casadi.maths.numbers import known
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
-from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.model.load_assembly import unloaded_poses
+from cosserat_casadi.model.load_assembly import input_values, unloaded_poses
 from cosserat_casadi.model.registry import EFFECTS
 
 DRAWN_SECTIONS = np.linspace(0.05, 0.95, 8)
 """Where a load per length is drawn, as shares of its span."""
 
+DrawnPoses: TypeAlias = tuple[Matrix | FloatArray, Sequence[Matrix] | FloatArray]
+"""World positions, 3×k in m, and rotation matrices world_R_section, k of 3×3: numbers or expressions."""
+
+
+@dataclass(frozen=True)
+class DrawnLoad:
+    """A load on the sections of one rod that it is drawn at, or on one body.
+
+    Attributes:
+        member: the kind of load.
+        load: the load as the scene has it.
+        label: its name in the legend; empty where the legend names it already.
+        on_body: whether it acts on a body, as that of one section.
+        position: of the k sections, world axes, 3×k, m.
+        force: on them, world axes, 3×k, N or N/m.
+        moment: likewise, N m or N m/m.
+    """
+
+    member: Load[Any]
+    load: scenes.Load
+    label: str
+    on_body: bool
+    position: Matrix | FloatArray
+    force: Matrix
+    moment: Matrix
+
+    @property
+    def at_point(self) -> bool:
+        """Whether it is a force and a moment; else it is both per length."""
+        return self.on_body or self.member.abscissa(self.load) is not None
+
+    def arrows(self) -> list[Arrow]:
+        """How it is drawn, where the numbers are known."""
+        numbers = [ca.DM(part).full() for part in (self.position, self.force, self.moment)]
+        position, force, moment = numbers
+        if self.on_body:
+            return self.member.point_arrows(self.label, position, force, moment)
+        return self.member.arrows(self.load, self.label, position, force, moment)
+
 
 @dataclass(frozen=True)
 class LoadArrows:
-    """Arrows of the loads of a scene in one equilibrium.
+    """Arrows of the loads of a scene in one equilibrium, in numbers or in symbols.
 
     Attributes:
         discrete: the scene.
@@ -36,28 +75,30 @@ class LoadArrows:
     """
 
     discrete: DiscreteScene
-    inputs: FloatArray
-    rod_poses: Callable[[str, FloatArray], Poses]
-    body_pose: Callable[[str], Poses]
+    inputs: Matrix
+    rod_poses: Callable[[str, FloatArray], DrawnPoses]
+    body_pose: Callable[[str], DrawnPoses]
 
     def all(self) -> list[Arrow]:
         """Arrows of all loads, in the order of the scene."""
-        values = load_values(self.discrete.scene, self.discrete.layout, self.inputs)
-        arrows: list[Arrow] = []
-        for load in self.discrete.scene.loads:
-            numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[load.name].items()}
-            arrows += self._on_rods(load, numbers)
-            arrows += self._on_bodies(load, numbers)
-        return arrows
+        return [arrow for drawn in self.drawn() for arrow in drawn.arrows()]
 
-    def _on_rods(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
+    def drawn(self) -> Iterator[DrawnLoad]:
+        """All loads on all that they act on, in the order of the scene."""
+        for load in self.discrete.scene.loads:
+            values = input_values(self.discrete.layout, load, self.inputs)
+            yield from self._on_rods(load, values)
+            yield from self._on_bodies(load, values)
+
+    def _on_rods(self, load: scenes.Load, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
         start, end = member.span(load)
         X = start + (end - start) * DRAWN_SECTIONS
         if at is not None:
             X = np.array([at])
-        arrows: list[Arrow] = []
+        # The legend names a load once: the arrows of its first rod carry the label.
+        label = load.name
         for rod, discrete_rod in self.discrete.rods.items():
             if not member.acts_on(load, rod):
                 continue
@@ -66,16 +107,13 @@ class LoadArrows:
             data_size = len(member.data(load, site))
             kernel = traced(member, load, values, data_size)
             poses = self.rod_poses(rod, X)
-            force, moment = _wrench(kernel, values, poses, known(kernel.data(site)))
-            # The legend names a load once: the arrows of its first rod carry the label.
-            label = "" if arrows else load.name
+            force, moment = _wrench(kernel, stored(values), poses, known(kernel.data(site)))
             positions, _ = poses
-            arrows += member.arrows(load, label, positions, force, moment)
-        return arrows
+            yield DrawnLoad(member, load, label, False, positions, force, moment)
+            label = ""
 
-    def _on_bodies(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
+    def _on_bodies(self, load: scenes.Load, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
         member = EFFECTS[load.kind]
-        arrows: list[Arrow] = []
         for body in self.discrete.scene.bodies:
             point = member.on_body(load, body)
             if point is None:
@@ -85,10 +123,9 @@ class LoadArrows:
             kernel = traced(member, load, values)
             # Profiles are those of a load per length: at a point they are one.
             profiles = np.ones((sum(kernel.columns), 1))
-            force, moment = _wrench(kernel, values, (start, rotation), profiles)
+            force, moment = _wrench(kernel, stored(values), (start, rotation), profiles)
             label = _body_label(load, body)
-            arrows += member.point_arrows(label, start, point.factor * force, point.factor * moment)
-        return arrows
+            yield DrawnLoad(member, load, label, True, start, point.factor * force, point.factor * moment)
 
 
 def _body_label(load: scenes.Load, body: scenes.Body) -> str:
@@ -98,16 +135,13 @@ def _body_label(load: scenes.Load, body: scenes.Body) -> str:
     return f"{load.name} of {body.name}"
 
 
-def _wrench(
-    kernel: TracedLoad, values: Mapping[str, ca.DM], poses: Poses, data: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Force and moment at sections, world axes, shape (3, k) each."""
+def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:
+    """Force and moment at sections, world axes, 3×k each."""
     position, rotation = poses
-    parameters = stored(values)
     forces = []
     moments = []
-    for k, section_rotation in enumerate(rotation):
-        force, moment = kernel.kernel.world_wrench(position[:, k], section_rotation, parameters, data[:, k])
-        forces.append(force.full()[:, 0])
-        moments.append(moment.full()[:, 0])
-    return np.array(forces).T, np.array(moments).T
+    for k in range(data.shape[1]):
+        force, moment = kernel.kernel.world_wrench(position[:, k], rotation[k], parameters, data[:, k])
+        forces.append(force)
+        moments.append(moment)
+    return ca.horzcat(*forces), ca.horzcat(*moments)

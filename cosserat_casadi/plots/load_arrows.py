@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import casadi as ca
+
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.loads.load import Poses
@@ -18,7 +20,7 @@ def scene_arrows(solution: Solution) -> list[Arrow]:
     def body_pose(name: str) -> Poses:
         return _columns(solution.body(name))
 
-    arrows = LoadArrows(solution.model.discrete, solution.inputs, rod_poses, body_pose)
+    arrows = LoadArrows(solution.model.discrete, ca.DM(solution.inputs), rod_poses, body_pose)
     return arrows.all()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -34,7 +35,7 @@ def arrows(solution: Solution) -> list[Arrow]:
         pose = solution.body(name)
         return pose.position.T, pose.rotation
 
-    return LoadArrows(solution.model.discrete, solution.inputs, rod_poses, body_pose).all()
+    return LoadArrows(solution.model.discrete, ca.DM(solution.inputs), rod_poses, body_pose).all()
 
 
 def test_point_loads_are_drawn_at_their_sections() -> None:

@@ -8,24 +8,41 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
+from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.parameters import refuse_parameters
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.page.page import export_page
+from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import read_scene
 
 
 def export(
     scene: SceneFile,
-    output: Annotated[Path, typer.Option(help="Folder to write: new, empty, or of an earlier export.")],
+    output: Annotated[
+        Path | None, typer.Option(help="Folder to write: new, empty, or of an earlier export.", show_default=False)
+    ] = None,
+    page: Annotated[
+        Path | None,
+        typer.Option(help="HTML file to write: the robot with sliders, solved in the browser.", show_default=False),
+    ] = None,
+    fmu: Annotated[
+        Path | None,
+        typer.Option(help="File to write for other simulators, ending in .fmu: the motion by FMI 3.0.", show_default=False),
+    ] = None,
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
     derivatives: Annotated[
         bool, typer.Option("--derivatives", help="With second derivatives, for CasADi: no controller needs them.")
@@ -35,31 +52,53 @@ def export(
     ] = False,
     settings: Settings = None,
 ) -> None:
-    """Write a scene as C sources: equations, Jacobians, solver. Exit codes: 0 written, 2 refused, 3 not solved.
+    """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
+
+    The sources are equations, Jacobians and solver. The page is one file that needs no server and no network. The FMU
+    is one file that other simulators step.
 
     Modes and nodes are chosen so that the tolerance is met at the scene's own loads, unless the scene fixes them.
     """
     if name is None:
         name = re.sub(r"\W", "_", scene.stem)
     # All that can be refused is refused before the solve, which may take a minute.
-    check_export(output, name)
+    if output is None and page is None and fmu is None:
+        remedy = "name a folder for the sources, or a file with --page or --fmu"
+        raise ExportError(Problem("--output", "missing", remedy))
+    if output is not None:
+        check_export(output, name)
+    if page is not None:
+        check_writable(page, "--page")
+        find_wasm_compiler()
+    if fmu is not None:
+        check_fmu(fmu)
+    moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
     refuse_parameters(exported_scene)
-    if dynamics:
+    if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
     scene_names(name, exported_scene)
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
-    solution = solve_with_progress(exported_scene.held() if dynamics else exported_scene)
+    solution = solve_with_progress(exported_scene.held() if moves else exported_scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing was written.[/] {solution.message}", highlight=False)
         raise typer.Exit(NOT_FOUND)
+    console = Console()
     model = solution.model
-    if dynamics:
+    if moves:
         model = build(exported_scene, model.discretisation, moving=True)
-    # The folder keeps the estimate, which is for these inputs; tune gives one for a range of them.
-    export_model(
-        model, output, name, error_estimate=solution.error_estimate, derivatives=derivatives, dynamics=dynamics
-    )
-    print_export(Console(), solution, output)
+    # Folder and FMU keep the estimate, which is for these inputs; tune gives one for a range of them.
+    estimate = solution.error_estimate
+    if output is not None:
+        export_model(model, output, name, error_estimate=estimate, derivatives=derivatives, dynamics=dynamics)
+        print_export(console, solution, output)
+    if fmu is not None:
+        with Console(stderr=True).status("Compiling the FMU"):
+            write_fmu(model, fmu, name, error_estimate=estimate)
+        print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0")
+    if page is not None:
+        with Console(stderr=True).status("Compiling the page"):
+            export_page(solution, page)
+        print_plain(console, f"wrote {escape(str(page))}; any browser opens it")

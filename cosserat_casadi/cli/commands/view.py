@@ -1,0 +1,52 @@
+"""``cosserat view``."""
+
+from __future__ import annotations
+
+import webbrowser
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.commands.solving import solve_with_progress
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings
+from cosserat_casadi.cli.progress import count_reporter, progress_bar
+from cosserat_casadi.cli.reports.format import print_plain
+from cosserat_casadi.cli.signals import StoppedError
+from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.scene import read_scene
+
+
+def view(
+    scene: SceneFile,
+    port: Annotated[int, typer.Option(help="Of this machine; 0 for one that is free.")] = 0,
+    browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
+    settings: Settings = None,
+) -> None:
+    """Move a scene in a browser: sliders, the tip under the hand, vibrations, the motion. Ctrl-C ends it.
+
+    Only this machine reaches the page. Exit codes: 2 refused, 3 not solved, 130 ended.
+    """
+    # Imported here, because motions and inverse problems are needed by few commands.
+    from cosserat_casadi.view.server import RobotServer
+    from cosserat_casadi.view.session import opened
+
+    viewed_scene = read_scene(scene, tuple(settings or ()))
+    find_compiler()
+    solution = solve_with_progress(viewed_scene)
+    if not solution.converged:
+        Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)
+        raise typer.Exit(NOT_FOUND)
+    with progress_bar() as bar:
+        session = opened(solution, count_reporter(bar, "Writing the model in C"))
+    console = Console()
+    with RobotServer(session, port) as server:
+        print_plain(console, f"The robot is at {server.address} until you press Ctrl-C.")
+        if browser:
+            webbrowser.open(server.address)
+        try:
+            server.serve_forever()
+        except KeyboardInterrupt:
+            print_plain(console, "Ended.")
+            raise StoppedError from None

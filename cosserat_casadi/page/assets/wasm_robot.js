@@ -1,0 +1,83 @@
+// The robot solved in this page: the exported C library as WebAssembly, warm-started from where it was.
+
+const CONVERGED = 0;
+
+class WasmRobot {
+  // packed: the module, compressed by gzip, in base64.
+  static async open(facts, packed) {
+    const bytes = Uint8Array.from(atob(packed), (character) => character.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const module = await new Response(stream).arrayBuffer();
+    const { instance } = await WebAssembly.instantiate(module, {});
+    return new WasmRobot(facts, instance.exports);
+  }
+
+  constructor(facts, library) {
+    this.facts = facts;
+    this.library = library;
+    this.atEquilibrium = false;
+    const last = facts.layout[facts.layout.length - 1];
+    this.drawnCount = last.first + last.rows * last.columns;
+  }
+
+  // A vector in the memory of the library.
+  view(address, count) {
+    return new Float64Array(this.library.memory.buffer, address, count);
+  }
+
+  // A sentence or a word of the library.
+  string(address) {
+    const bytes = new Uint8Array(this.library.memory.buffer);
+    return new TextDecoder().decode(bytes.subarray(address, bytes.indexOf(0, address)));
+  }
+
+  // The equilibrium for these inputs: along the way from the last one, or anew where that leads nowhere.
+  async move(inputs) {
+    this.view(this.library.inputs(), inputs.length).set(inputs);
+    let status = this.atEquilibrium ? this.library.track() : this.library.solve();
+    const anew = this.atEquilibrium && status !== CONVERGED;
+    if (anew) status = this.library.solve();
+    return this.state(status, anew);
+  }
+
+  // The same from the unloaded robot, whatever was before.
+  async reset(inputs) {
+    this.view(this.library.inputs(), inputs.length).set(inputs);
+    return this.state(this.library.solve(), false);
+  }
+
+  state(status, anew) {
+    this.atEquilibrium = status === CONVERGED;
+    this.library.draw();
+    return {
+      found: this.atEquilibrium,
+      label: this.string(this.library.label(status)),
+      text: this.string(this.library.text(status)),
+      anew,
+      loadFactor: this.library.load_factor(),
+      iterations: this.library.iterations(),
+      drawn: this.view(this.library.drawn(), this.drawnCount).slice(),
+    };
+  }
+
+  // Derivatives of all poses by all inputs, [pose][input][7]; null where there are none.
+  async derivatives() {
+    if (!this.atEquilibrium || this.library.differentiate() !== CONVERGED) return null;
+    const count = this.facts.poses.length * this.facts.sliders.length * 7;
+    return this.view(this.library.d_poses(), count).slice();
+  }
+
+  // Eigenvalues of the second variation; null where stability has no meaning.
+  async eigenvalues() {
+    const allowed = this.facts.stability;
+    if (!allowed || !this.atEquilibrium) return null;
+    this.library.linearise();
+    const n = this.facts.unknowns;
+    const entries = this.view(this.library.jacobian(), n * n);
+    return secondVariation((i, j) => entries[i + n * j], allowed);
+  }
+}
+
+function openRobot(facts) {
+  return WasmRobot.open(facts, document.getElementById("module").textContent);
+}

@@ -1,0 +1,146 @@
+"""A model with one function more: all that is drawn of a scene, so that the compiled library draws what it solves.
+
+An ordinary folder does not have this function: it costs the scenes that are exported for a controller nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.loads.arrow import Sort
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.function_table import Expressions, Output, scene_function
+from cosserat_casadi.model.load_arrows import DrawnPoses, LoadArrows
+from cosserat_casadi.model.system import Arguments, System
+
+SECTIONS = np.linspace(0.0, 1.0, 49)
+"""Abscissae at which rods and actuators are drawn."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One thing that is drawn.
+
+    Attributes:
+        kind: "rod" (position and quaternion of each section, 7×k), "actuator" (positions, 3×k), "body" (position and
+            quaternion, 7×1), or "arrows" (start and vector of each, 6×k); metres, and the unit of the arrows' sort.
+        name: of the rod, the actuator, the body or the load.
+        numbers: the columns.
+        sort: of arrows, what they stand for.
+    """
+
+    kind: str
+    name: str
+    numbers: Matrix
+    sort: Sort | None = None
+
+
+class DrawnModel(Model):
+    """A model that can be drawn without Python."""
+
+    @scene_function(
+        Output("drawn"),
+        kernel="drawn",
+        header="What is drawn of the scene, in the order of the layout of the page: poses of sections and of bodies, "
+        "points of actuators, arrows of loads, world axes.",
+    )
+    def drawn(self, written: Expressions) -> list[Matrix]:
+        """(x, inputs) ↦ all numbers that a picture is made of, one column."""
+        return [ca.densify(ca.vertcat(*[ca.vec(part.numbers) for part in drawn_parts(written.system)]))]
+
+
+def drawn_layout(model: Model) -> list[dict[str, Any]]:
+    """Where each part lies among the numbers of ``drawn``: kind, name, first entry, rows, columns, sort of arrows."""
+    symbols = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
+    entries: list[dict[str, Any]] = []
+    first = 0
+    for part in drawn_parts(System(model.discrete, symbols)):
+        rows, columns = part.numbers.shape
+        entry = {"kind": part.kind, "name": part.name, "first": first, "rows": rows, "columns": columns}
+        if part.sort is not None:
+            entry["sort"] = part.sort
+        entries.append(entry)
+        first += rows * columns
+    return entries
+
+
+def drawn_parts(system: System) -> Iterator[Drawn]:
+    """All that is drawn, as expressions: rods, actuators, bodies, loads, in the order of the scene."""
+    picture = _Picture(system)
+    scene = system.discrete.scene
+    for rod in system.discrete.rods:
+        position, quaternion = picture.sections(rod, SECTIONS)
+        yield Drawn("rod", rod, ca.vertcat(position, quaternion))
+    for actuator in scene.actuators:
+        if hasattr(actuator, "offset"):
+            yield Drawn("actuator", actuator.name, picture.routing(actuator))
+    for body in scene.bodies:
+        pose = system.frame(FrameName("body", body.name))
+        yield Drawn("body", body.name, ca.vertcat(pose.position, pose.quaternion))
+    yield from picture.arrows()
+
+
+@dataclass(frozen=True)
+class _Picture:
+    system: System
+
+    @cached_property
+    def _fields(self) -> dict[str, tuple[Matrix, Matrix]]:
+        """World positions 3×M and quaternions 4×M at the nodes of every rod."""
+        fields = {}
+        for rod, shape in self.system.shapes.items():
+            base = self.system.base(rod)
+            rotation = quaternion_to_matrix(base.quaternion)
+            count = self.system.discrete.rods[rod].grid.size
+            bases = ca.repmat(ca.MX(base.quaternion), 1, count)
+            position = ca.repmat(base.position, 1, count) + rotation @ shape.position
+            fields[rod] = position, quaternion_product(bases, ca.densify(shape.quaternion))
+        return fields
+
+    def sections(self, rod: str, X: FloatArray) -> tuple[Matrix, Matrix]:
+        """World positions 3×k and unit quaternions 4×k of sections: the interpolants through the nodes."""
+        weights = ca.DM(self.system.discrete.rods[rod].grid.interpolation_matrix(X).T)
+        position, quaternion = self._fields[rod]
+        between = quaternion @ weights
+        norm = ca.sqrt(ca.sum1(between**2))
+        return position @ weights, between / ca.repmat(norm, 4, 1)
+
+    def routing(self, actuator: Any) -> Matrix:
+        """Points of an actuator's routing in world axes, 3×k: r + R D."""
+        start, end = actuator.span
+        X = start + (end - start) * SECTIONS
+        offset, _ = offset_at(actuator, X)
+        position, rotations = self._rod_poses(actuator.rod, X)
+        points = [position[:, k] + rotations[k][:, :2] @ ca.DM(offset[:, k]) for k in range(len(X))]
+        routing: Matrix = ca.horzcat(*points)
+        return routing
+
+    def arrows(self) -> Iterator[Drawn]:
+        """Arrows of all loads; what is zero for good has none."""
+        arguments = self.system.arguments
+        loads = LoadArrows(self.system.discrete, arguments.inputs, self._rod_poses, self._body_pose)
+        for drawn in loads.drawn():
+            vectors: dict[Sort, Matrix] = {"line": drawn.force}
+            if drawn.at_point:
+                vectors = {"point": drawn.force, "moment": drawn.moment}
+            for sort, vector in vectors.items():
+                if vector.nnz():
+                    yield Drawn("arrows", drawn.load.name, ca.vertcat(drawn.position, vector), sort)
+
+    def _rod_poses(self, rod: str, X: FloatArray) -> DrawnPoses:
+        position, quaternion = self.sections(rod, X)
+        return position, [quaternion_to_matrix(column) for column in ca.horzsplit(quaternion)]
+
+    def _body_pose(self, body: str) -> DrawnPoses:
+        pose = self.system.frame(FrameName("body", body))
+        return pose.position, [pose.rotation]

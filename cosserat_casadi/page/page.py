@@ -1,0 +1,77 @@
+"""The page: one HTML file with everything in it."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import html
+import json
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from cosserat_casadi.codegen.library import fill
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.page.drawn_model import DrawnModel
+from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
+
+LARGEST = 3_000_000
+"""Bytes that a page may have: what a mail takes without a word."""
+
+SCRIPTS = ("spectrum.js", "scenery.js", "panel.js", "hand.js")
+"""Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
+
+
+def export_page(solution: Solution, file: Path) -> Path:
+    """Write an equilibrium's scene as one HTML file that solves it anew wherever the sliders are.
+
+    Args:
+        solution: the equilibrium at the scene's own inputs, whose discretisation the page keeps.
+        file: what is written.
+
+    Raises:
+        ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
+        WriteError: the file cannot be written.
+    """
+    model = DrawnModel(solution.model.discrete)
+    module = wasm_of(model, find_wasm_compiler())
+    content = page_text(page_facts(solution), [asset("wasm_robot.js")], module).encode()
+    if len(content) > LARGEST:
+        problem = f"the page would have {len(content) / 1e6:.1f} MB, more than {LARGEST / 1e6:g} MB"
+        raise ExportError(Problem("--page", problem, "a larger tolerance makes it smaller"))
+    write_atomically(file, content)
+    return file
+
+
+def page_text(facts: dict[str, Any], engine: Sequence[str], module: bytes = b"") -> str:
+    """The page of a scene.
+
+    Args:
+        facts: of the scene.
+        engine: texts of the scripts that give the robot, ``openRobot``, and what else stands on it.
+        module: the solver as WebAssembly; empty where a server solves.
+    """
+    texts = [*map(asset, SCRIPTS), *engine, asset("start.js")]
+    scripts = "\n".join(f"<script>\n{text}</script>" for text in texts)
+    # The time stamp of the archive is left out: the same scene makes the same page.
+    packed = base64.b64encode(gzip.compress(module, 9, mtime=0)).decode() if module else ""
+    words = {
+        "title": html.escape(str(facts["title"])),
+        "style": asset("page.css"),
+        "three": asset("three.min.js"),
+        "scripts": scripts,
+        "where": "here in your browser" if module else "by the program that opened this page",
+        # No text of the scene can end the element that it stands in.
+        "facts": json.dumps(facts, ensure_ascii=False).replace("<", "\\u003c"),
+        "module": packed,
+    }
+    return fill(asset("page.html.in"), words)
+
+
+def asset(name: str) -> str:
+    """A file of this package's folder ``assets``."""
+    return (resources.files("cosserat_casadi.page") / "assets" / name).read_text(encoding="utf-8")

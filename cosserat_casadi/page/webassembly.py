@@ -1,0 +1,110 @@
+"""The exported solver as WebAssembly: clang with the C library of WASI, everything linked in, nothing imported."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+from pathlib import Path
+
+from cosserat_casadi.codegen.export import folder_files
+from cosserat_casadi.codegen.library import fill
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.page.drawn_model import DrawnModel
+
+VARIABLE = "COSSERAT_CASADI_WASM_CC"
+"""Environment variable that names the compiler, such as the clang of the WASI SDK."""
+
+REMEDY = (
+    "a page needs clang, lld and wasi-libc (Debian and Ubuntu: apt install clang lld wasi-libc "
+    f"libclang-rt-dev-wasm32; elsewhere the WASI SDK, with its clang in the environment variable {VARIABLE})"
+)
+
+STACK = 1 << 20
+"""Bytes of the stack: far more than the deepest function of the solver needs."""
+
+FLAGS = (
+    "--target=wasm32-wasi",
+    "-O2",
+    "-std=c99",
+    # Products and sums are rounded one by one, as other compilers do without being told.
+    "-ffp-contract=off",
+    "-nostartfiles",
+    "-Wl,--no-entry",
+    "-Wl,--strip-all",
+    "-Wl,--stack-first",
+    f"-Wl,-z,stack-size={STACK}",
+)
+
+PROBE = """#include <math.h>
+#include <string.h>
+__attribute__((export_name("probe"))) double probe(double x, char *text) { return sin(x) * (double)strlen(text); }
+"""
+"""What every page needs of the compiler: mathematics and strings."""
+
+NAME = "robot"
+"""What symbols of the library inside a page begin with; nobody outside sees it."""
+
+
+def find_wasm_compiler() -> str:
+    """Path of a compiler that links WebAssembly.
+
+    Raises:
+        ExportError: there is none, or it lacks the linker or the library.
+    """
+    asked = os.environ.get(VARIABLE)
+    path = shutil.which(asked or "clang")
+    if path is None:
+        problem = f"{asked} is not a program" if asked else "there is no clang on the path"
+        raise ExportError(Problem("--page", problem, REMEDY))
+    fault = _fault_of(path)
+    if fault:
+        raise ExportError(Problem("--page", f"{path} cannot make WebAssembly: {fault}", REMEDY))
+    return path
+
+
+@cache
+def _fault_of(compiler: str) -> str:
+    """What a compiler says of a small program; empty where it makes WebAssembly of it."""
+    try:
+        _compiled(compiler, {"probe.c": PROBE}, ["probe.c"])
+    except ExportError as error:
+        return error.problems[0].problem
+    return ""
+
+
+def wasm_of(model: DrawnModel, compiler: str) -> bytes:
+    """The library of a model as a WebAssembly module that imports nothing.
+
+    Args:
+        model: what is exported, with its picture.
+        compiler: path of a clang for WebAssembly.
+
+    Raises:
+        ExportError: the compiler fails.
+    """
+    files = folder_files(model, NAME)
+    template = (resources.files("cosserat_casadi.page") / "assets" / "page.c.in").read_text(encoding="utf-8")
+    words = {"name": NAME, "MACRO": NAME.upper(), "drawn": model.drawn.size1_out(0)}
+    files["page.c"] = fill(template, words)
+    return _compiled(compiler, files, ["page.c", f"{NAME}.c", f"{NAME}_kernels.c"])
+
+
+def _compiled(compiler: str, files: Mapping[str, str], sources: list[str]) -> bytes:
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        module = folder / "module.wasm"
+        command = [compiler, *FLAGS, *sources, "-lm", "-o", module.name]
+        try:
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", check=False)
+        except OSError as error:
+            raise ExportError(Problem("--page", f"{compiler} cannot be run: {error.strerror}", REMEDY)) from None
+        if done.returncode:
+            raise ExportError(Problem("--page", done.stderr.strip()[-400:]))
+        return module.read_bytes()

@@ -1,0 +1,128 @@
+// Motions and modes, played with a time bar.
+
+const PERIOD = 1.6; // Seconds that one period of a mode takes on the screen.
+const SPEEDS = [1, 0.5, 0.1, 0.02];
+
+class Theatre {
+  constructor(panel, facts) {
+    this.panel = panel;
+    this.film = null;
+    const field = element("fieldset", document.getElementById("extras"));
+    element("legend", field).textContent = "In motion";
+    this.button(field, "Vibrations here", () => this.showModes());
+    if (facts.motion) this.button(field, "Motion of the scene", () => this.showMotion());
+    this.choice = element("select", field);
+    this.choice.setAttribute("aria-label", "Mode");
+    this.choice.hidden = true;
+    this.choice.onchange = () => this.play(this.modes[Number(this.choice.value)]);
+    this.words = element("p", field);
+    this.words.setAttribute("role", "status");
+    this.buildTransport();
+    panel.listeners.push(() => this.close());
+  }
+
+  button(parent, words, act) {
+    const button = element("button", parent);
+    Object.assign(button, { type: "button", textContent: words, onclick: act });
+    return button;
+  }
+
+  buildTransport() {
+    this.transport = document.getElementById("transport");
+    this.toggle = this.button(this.transport, "❚❚", () => this.pause(!this.paused));
+    this.toggle.setAttribute("aria-label", "Play or pause");
+    this.bar = element("input", this.transport);
+    Object.assign(this.bar, { type: "range", min: 0, max: 1, step: "any" });
+    this.bar.setAttribute("aria-label", "Time");
+    this.bar.oninput = () => {
+      this.pause(true);
+      this.seek(this.bar.valueAsNumber);
+    };
+    this.clock = element("output", this.transport);
+    this.speed = element("select", this.transport);
+    this.speed.setAttribute("aria-label", "Speed");
+    for (const speed of SPEEDS) this.speed.add(new Option(`× ${speed}`, speed));
+    this.button(this.transport, "✕", () => this.close()).setAttribute("aria-label", "Back to the equilibrium");
+  }
+
+  async showModes() {
+    this.words.textContent = "Finding the modes …";
+    const answer = await this.panel.robot.modes();
+    this.words.textContent = answer.refused || answer.text;
+    if (answer.refused || !answer.modes.length) return;
+    this.modes = answer.modes.map((mode) => ({ ...unpacked(mode.frames, this.size), duration: PERIOD, loop: true, words: mode.words }));
+    this.choice.replaceChildren(...this.modes.map((mode, i) => new Option(`${i + 1}: ${mode.words}`, i)));
+    this.play(this.modes[0]);
+    this.choice.hidden = false;
+  }
+
+  async showMotion() {
+    this.words.textContent = "Computing the motion, from the scene's own inputs …";
+    const answer = await this.panel.robot.motion();
+    this.words.textContent = answer.refused || answer.text;
+    if (answer.refused || !answer.times.length) return;
+    const { times } = answer;
+    this.choice.hidden = true;
+    this.play({ ...unpacked(answer.frames, this.size), start: times[0], duration: times[times.length - 1] - times[0], loop: true });
+  }
+
+  // Numbers of one picture.
+  get size() {
+    return this.panel.state.drawn.length;
+  }
+
+  play(film) {
+    this.film = film;
+    this.share = 0;
+    this.transport.hidden = false;
+    document.body.classList.add("playing");
+    this.panel.clearDerivatives();
+    this.panel.say("▶ In motion", "What moves is no equilibrium: close the time bar, or move a slider, to come back to it.", "");
+    this.pause(false);
+  }
+
+  pause(paused) {
+    this.paused = paused;
+    this.toggle.textContent = paused ? "▶" : "❚❚";
+    if (!paused) {
+      this.last = performance.now();
+      requestAnimationFrame((now) => this.tick(now));
+    }
+  }
+
+  tick(now) {
+    if (this.paused || !this.film) return;
+    const elapsed = ((now - this.last) / 1000) * Number(this.speed.value);
+    this.last = now;
+    this.seek((this.share + elapsed / this.film.duration) % 1);
+    requestAnimationFrame((later) => this.tick(later));
+  }
+
+  // Show the picture at a share of the time.
+  seek(share) {
+    this.share = share;
+    const { frames, count, start, duration, words } = this.film;
+    // A mode's last picture is followed by its first; of a motion the last is the end.
+    const index = Math.min(Math.floor(share * (words ? count : count - 1) + 1e-9), count - 1);
+    this.panel.scenery.draw(frames.subarray(index * this.size, (index + 1) * this.size));
+    this.bar.value = share;
+    this.clock.textContent = words || `${(start + share * duration).toFixed(3)} s`;
+  }
+
+  close() {
+    if (!this.film) return;
+    this.film = null;
+    this.transport.hidden = true;
+    document.body.classList.remove("playing");
+    this.panel.scenery.draw(this.panel.state.drawn, this.panel.state.found);
+    this.panel.showDerivatives();
+    this.panel.showStatus();
+  }
+}
+
+// Pictures from 32-bit floats in base64.
+function unpacked(text, size) {
+  const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  const frames = new Float32Array(bytes.buffer);
+  return { frames, count: frames.length / size };
+}

@@ -1,0 +1,45 @@
+"""``cosserat export --page``."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from cosserat_casadi.page.webassembly import VARIABLE
+from tests.conftest import ROOT
+from tests.page.pages_made import EXPORT_COMMAND, wasm_compiler
+
+
+def export(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    program = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()"]
+    command = [*program, *EXPORT_COMMAND.split()[1:], *arguments]
+    everything = {**os.environ, **environment}
+    return subprocess.run(command, env=everything, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_a_page_is_written_beside_no_folder(tmp_path: Path) -> None:
+    wasm_compiler()
+    done = export("--page", str(tmp_path / "strip.html"))
+    assert done.returncode == 0, done.stderr
+    assert "strip.html; any browser opens it" in " ".join(done.stdout.split())
+    text = (tmp_path / "strip.html").read_text(encoding="utf-8")
+    assert text.startswith("<!doctype html>")
+    assert len(text) < 2_000_000
+    assert "Permission is hereby granted" in text
+    assert [path.name for path in tmp_path.iterdir()] == ["strip.html"]
+
+
+def test_what_cannot_be_written_is_refused_before_the_solve(tmp_path: Path) -> None:
+    neither = export()
+    assert neither.returncode == 2
+    assert "--output" in neither.stderr
+    assert "--page" in neither.stderr
+    nowhere = export("--page", str(tmp_path / "none" / "strip.html"))
+    assert nowhere.returncode == 2
+    assert "does not exist" in nowhere.stderr
+    without = export("--page", str(tmp_path / "strip.html"), **{VARIABLE: "no-such-clang"})
+    assert without.returncode == 2
+    assert "apt install clang lld wasi-libc" in " ".join(without.stderr.split())
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,174 @@
+"""A page opened in a real browser: it solves, draws, and says how it went."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi import Solution, build, solve
+from cosserat_casadi.page.page import LARGEST, export_page
+from tests.browser import browser
+from tests.page.pages_made import strip, wasm_compiler
+
+
+@pytest.fixture(scope="module")
+def solution() -> Solution:
+    return solve(build(strip()))
+
+
+@pytest.fixture(scope="module")
+def file(solution: Solution, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    wasm_compiler()
+    return export_page(solution, tmp_path_factory.mktemp("page") / "strip.html")
+
+
+@pytest.fixture(scope="module")
+def window() -> Iterator[Any]:
+    with browser() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def page_and_faults(window: Any, file: Path) -> tuple[Any, list[str]]:
+    """The page, ready, and what it complains of or asks of a network."""
+    opened = window.new_page(viewport={"width": 1100, "height": 700})
+    faults: list[str] = []
+    opened.on("pageerror", lambda error: faults.append(str(error)))
+    opened.on("console", lambda message: faults.append(message.text) if message.type == "error" else None)
+    opened.on("request", lambda request: faults.append(request.url) if request.url.startswith("http") else None)
+    opened.goto(file.as_uri())
+    opened.wait_for_selector("body[data-ready]", timeout=20_000)
+    return opened, faults
+
+
+@pytest.fixture
+def page(page_and_faults: tuple[Any, list[str]]) -> Iterator[Any]:
+    """The page as it opens; a fault fails the test in which it came."""
+    opened, faults = page_and_faults
+    opened.evaluate("window.robot.reset()")
+    yield opened
+    assert faults == []
+
+
+def at_rest(page: Any) -> None:
+    """Wait until the stability of the last equilibrium is shown."""
+    page.wait_for_function("() => window.robot.stable !== null", timeout=20_000)
+
+
+def test_it_is_one_small_file_with_the_title_of_the_scene(file: Path, page: Any) -> None:
+    assert file.stat().st_size < LARGEST
+    assert page.title() == "A finger </title> & its tendons"
+    assert page.inner_text("h1") == "A finger </title> & its tendons"
+
+
+def test_it_opens_at_the_scene_s_own_equilibrium(page: Any, solution: Solution) -> None:
+    assert_allclose(page.evaluate("window.robot.tip()"), solution.tip().position[0], rtol=0, atol=1e-9)
+    at_rest(page)
+    assert page.evaluate("window.robot.stable") is True
+    assert "In equilibrium, stable" in page.inner_text("#status")
+    # The picture is not empty: the rod's blue is on it.
+    shown = page.evaluate("""() => { const copy = document.createElement("canvas").getContext("2d");
+        const source = document.getElementById("canvas");
+        window.robot.redraw(); copy.canvas.width = source.width; copy.canvas.height = source.height;
+        copy.drawImage(source, 0, 0); const { data } = copy.getImageData(0, 0, source.width, source.height);
+        let blue = 0; for (let i = 0; i < data.length; i += 4) blue += data[i + 3] > 200 && data[i + 2] > data[i] + 40;
+        return blue; }""")
+    assert shown > 500
+
+
+def test_a_slider_moves_the_tip_to_where_solve_says(page: Any, solution: Solution) -> None:
+    slider = page.get_by_label("push.force x, N", exact=True)
+    slider.evaluate("(range) => { range.value = 2.5; range.dispatchEvent(new Event('input')); }")
+    page.wait_for_function("() => window.robot.inputs['push.force.x'] === 2.5")
+    inputs = solution.model.pack({"push.force": [2.5, 0.0, -0.2]})
+    expected = solve(solution.model, inputs).tip().position[0]
+    assert abs(expected - solution.tip().position[0]).max() > 0.1
+    assert_allclose(page.evaluate("window.robot.tip()"), expected, rtol=0, atol=1e-8)
+    assert page.get_by_label("push.force x in N, as a number").input_value() == "2.5"
+
+
+def test_a_script_moves_inputs_by_name(page: Any, solution: Solution) -> None:
+    page.evaluate("window.robot.setInput('front.tension', 2.4)")
+    page.evaluate("window.robot.setInput('push.force', [0.1, 0.2, 0.3])")
+    inputs = solution.model.pack({"front.tension": 2.4, "push.force": [0.1, 0.2, 0.3]})
+    expected = solve(solution.model, inputs).tip().position[0]
+    assert_allclose(page.evaluate("window.robot.tip('rod')"), expected, rtol=0, atol=1e-8)
+    page.evaluate("window.robot.reset()")
+    assert page.evaluate("window.robot.inputs['front.tension']") == 1.5
+
+
+def test_an_equilibrium_that_is_not_found_is_said_in_words(page: Any) -> None:
+    text = page.evaluate("window.robot.setInput('push.force', [NaN, 0, 0]).then((state) => state.text)")
+    assert "not a finite number" in text
+    assert page.get_attribute("#status", "class") == "bad"
+    assert "No equilibrium shown" in page.inner_text("#status")
+
+
+def test_an_unstable_equilibrium_is_said_in_words(page: Any) -> None:
+    # Followed straight up to beyond the buckling load, the upright rod stays upright: no real one would.
+    page.evaluate("""async () => { for (const [name, value] of [["push.force", [0, 0, 0]], ["front.tension", 0],
+        ["side.tension", 0], ["weight.acceleration", [0, 0, 0]], ["push.force", [0, 0, -6.5]]])
+        await window.robot.setInput(name, value); }""")
+    at_rest(page)
+    assert page.evaluate("window.robot.stable") is False
+    assert "not stable" in page.inner_text("#status")
+    assert page.get_attribute("#status", "class") == "warn"
+
+
+def test_derivatives_are_drawn_on_request(page: Any, solution: Solution) -> None:
+    page.get_by_label("derivatives").check()
+    page.wait_for_selector("#labels span")
+    words = page.locator(".slider output").all_inner_texts()
+    step = 1e-4
+    ends = [solve(solution.model, solution.model.pack({"front.tension": 1.5 + sign * step})) for sign in (1, -1)]
+    velocity = (ends[0].tip().position - ends[1].tip().position)[0] / (2 * step)
+    size = (velocity @ velocity) ** 0.5
+    assert words[solution.model.inputs.slices["front.tension"].start] == f"moves it {1000 * size:.3g} mm per N"
+    page.get_by_label("derivatives").uncheck()
+    page.wait_for_function("() => !document.querySelector('#labels span')")
+
+
+def test_the_tip_follows_the_hand(page: Any, solution: Solution) -> None:
+    def middle() -> tuple[float, float]:
+        box = page.locator("#hand").bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    # A point that the robot can reach.
+    page.evaluate("window.robot.setInput('push.force', [1.4, 0, 0.5])")
+    aim = middle()
+    page.evaluate("window.robot.reset()")
+    start = middle()
+    assert abs(aim[0] - start[0]) > 40
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*aim, steps=3)
+    page.wait_for_function(
+        """([x, y]) => { const box = document.getElementById("hand").getBoundingClientRect();
+        return Math.hypot(box.x + box.width / 2 - x, box.y + box.height / 2 - y) < 0.5; }""",
+        arg=list(aim),
+        timeout=20_000,
+    )
+    page.mouse.up()
+    # It has moved what has bounds, and nothing else; what is drawn is the equilibrium at these inputs.
+    inputs, tip = page.evaluate("[window.robot.inputs, window.robot.tip()]")
+    assert inputs["front.tension"] == 1.5
+    force = [inputs[f"push.force.{axis}"] for axis in "xyz"]
+    assert max(abs(value - old) for value, old in zip(force, [0.3, 0.0, -0.2], strict=True)) > 0.05
+    expected = solve(solution.model, {"push.force": force}).tip().position[0]
+    assert_allclose(tip, expected, rtol=0, atol=1e-8)
+
+
+def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
+    page.set_viewport_size({"width": 360, "height": 740})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    picture = page.locator("#picture").bounding_box()
+    assert picture["width"] == 360
+    assert picture["height"] > 300
+    handle = page.get_by_label("push.force x, N", exact=True).bounding_box()
+    # A finger finds it.
+    assert handle["height"] >= 28
+    assert handle["width"] > 150

@@ -1,0 +1,55 @@
+"""``cosserat view``: a process that serves until it is stopped."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import urllib.request
+
+import pytest
+
+from tests.conftest import ROOT
+
+PROGRAM = [sys.executable, "-u", "-c", "from cosserat_casadi.cli.main import main; main()", "view"]
+STRIP = str(ROOT / "examples" / "planar_strip.toml")
+
+
+def test_it_serves_the_page_until_it_is_stopped() -> None:
+    command = [*PROGRAM, STRIP, "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            assert running.stdout is not None
+            line = running.stdout.readline()
+            address = re.search(r"http://127\.0\.0\.1:\d+/", line)
+            assert address is not None, line
+            with urllib.request.urlopen(address[0], timeout=30) as answer:
+                page = answer.read().decode()
+            running.send_signal(signal.SIGINT)
+            rest, _ = running.communicate(timeout=30)
+        finally:
+            running.kill()
+    assert "<title>Plastic strip" in page
+    assert "class ServerRobot" in page
+    assert "WebAssembly" not in page
+    assert "Ended." in rest
+    assert running.returncode == 130
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment", "code", "words"),
+    [
+        (["nowhere.toml"], {}, 2, "nowhere.toml"),
+        ([STRIP], {"CC": "no-such-cc"}, 2, "no-such-cc is not a program"),
+    ],
+)
+def test_what_cannot_be_viewed_is_refused(
+    arguments: list[str], environment: dict[str, str], code: int, words: str
+) -> None:
+    command = [*PROGRAM, *arguments, "--no-browser"]
+    everything = {**os.environ, **environment}
+    done = subprocess.run(command, env=everything, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == code
+    assert words in " ".join(done.stderr.split())
