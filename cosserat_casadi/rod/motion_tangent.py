@@ -208,13 +208,27 @@ class MotionTangent:
 
     @cached_property
     def _gram(self) -> FloatArray:
-        """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift."""
+        """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift.
+
+        In units of :attr:`_mass`: so it is the same for uniform rods of any length and density.
+        """
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
-        weighted = (rod.node_lengths * self.inertia.masses.mass)[:, None] * integrate
-        return np.asarray(integrate.T @ weighted) / self.unit
+        relative = self.inertia.masses.mass / self._largest_mass
+        weighted = (rod.grid.weights * relative)[:, None] * integrate
+        return np.asarray(integrate.T @ weighted)
+
+    @property
+    def _mass(self) -> float:
+        """Mass that the rod has if all of it is as its heaviest section, over the unit of the forces, kg/J."""
+        return self.tangent.rod.length * self._largest_mass / self.unit
+
+    @property
+    def _largest_mass(self) -> float:
+        """Of any node, kg/m; one for a rod without mass."""
+        return float(self.inertia.masses.mass.max()) or 1.0
 
     def _gram_of(self, rows: FloatArray, times: int = 1) -> ca.DM:
         """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
@@ -234,8 +248,8 @@ class MotionTangent:
 
     @cached_property
     def _levers(self) -> Matrix:
-        """Moments of forces on the tangents of the sections that turn."""
-        return hat_operator(self.motion.shape.tangent[:, self._nodes])
+        """Moments of forces on the tangents of the sections that turn, forces in units of :attr:`_mass`."""
+        return hat_operator(self._mass * self.motion.shape.tangent[:, self._nodes])
 
     @cached_property
     def _matrices(self) -> MotionMatrices:
@@ -270,14 +284,14 @@ class MotionTangent:
         """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._gram_of(self._gram[self._nodes]) @ self._stretch.mass
-        return self.inertia.ratio * pulled.T
+        return (self._mass * self.inertia.ratio) * pulled.T
 
     @cached_property
     def _others_on_others(self) -> Matrix:
         """The same, at accelerations of all nodes."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._gram_of(self._gram) @ self._stretch.mass
-        return self.inertia.ratio * pulled.T
+        return (self._mass * self.inertia.ratio) * pulled.T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
