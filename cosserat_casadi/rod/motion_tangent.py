@@ -209,16 +209,33 @@ class MotionTangent:
 
     @cached_property
     def _gram(self) -> Numbers:
-        """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift."""
+        """Sᵀ μ S of one component, where S integrates tangents, and with a floating base adds its shift.
+
+        In units of :attr:`_mass`: so it is the same for uniform rods of any length and density.
+        """
         rod = self.tangent.rod
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
         mass = self.inertia.masses.mass
         if is_symbolic(mass):
-            return self._symbolic_gram(integrate, mass) / self.unit
-        weighted = (rod.node_lengths * known(mass))[:, None] * integrate
-        return np.asarray(integrate.T @ weighted) / self.unit
+            return self._symbolic_gram(integrate, mass)
+        relative = known(mass) / self._largest_mass
+        weighted = (rod.grid.weights * relative)[:, None] * integrate
+        return np.asarray(integrate.T @ weighted)
+
+    @property
+    def _mass(self) -> float:
+        """Mass that the rod has if all of it is as its heaviest section, over the unit of the forces, kg/J."""
+        return self.tangent.rod.length * self._largest_mass / self.unit
+
+    @property
+    def _largest_mass(self) -> float:
+        """Of any node, kg/m; one for a rod without mass, and where masses are expressions."""
+        mass = self.inertia.masses.mass
+        if is_symbolic(mass):
+            return 1.0
+        return float(known(mass).max()) or 1.0
 
     def _gram_of(self, rows: list[int] | None, columns: list[int] | None, times: int = 1) -> Matrix:
         """Some rows and columns of the Gram matrix for all components, of several fields beneath each other."""
@@ -286,8 +303,8 @@ class MotionTangent:
 
     @cached_property
     def _levers(self) -> Matrix:
-        """Moments of forces on the tangents of the sections that turn."""
-        return hat_operator(self.motion.shape.tangent[:, self._nodes])
+        """Moments of forces on the tangents of the sections that turn, forces in units of :attr:`_mass`."""
+        return hat_operator(self._mass * self.motion.shape.tangent[:, self._nodes])
 
     @cached_property
     def _matrices(self) -> MotionMatrices:
@@ -322,14 +339,14 @@ class MotionTangent:
         """Rows of the other columns, as they pull at accelerations of the nodes that turn."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._gram_of(self._nodes, None) @ self._stretch.mass
-        return self.inertia.ratio * pulled.T
+        return (self._mass * self.inertia.ratio) * pulled.T
 
     @cached_property
     def _others_on_others(self) -> Matrix:
         """The same, at accelerations of all nodes."""
         assert self._stretch is not None, "asked for with other columns"
         pulled = self._gram_of(None, None) @ self._stretch.mass
-        return self.inertia.ratio * pulled.T
+        return (self._mass * self.inertia.ratio) * pulled.T
 
     def _ordered(self, matrix: Matrix) -> Matrix:
         """A matrix in the order of the coordinates: turns of the base follow all strains."""
@@ -376,7 +393,8 @@ class MotionTangent:
 
     def _symbolic_gram(self, integrate: FloatArray, mass: Matrix) -> Matrix:
         """Sᵀ μ S where the masses are expressions: linear in the mass of each node."""
-        weighted = self.tangent.rod.node_lengths[:, None, None] * integrate[:, :, None] * integrate[:, None, :]
+        weights = self.tangent.rod.grid.weights
+        weighted = weights[:, None, None] * integrate[:, :, None] * integrate[:, None, :]
         columns = integrate.shape[1]
         return ca.reshape(product(weighted.reshape(len(weighted), -1).T, mass), columns, columns)
 

@@ -224,8 +224,11 @@ class Tangent:
         # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
         passing = self._moment_variation() + stiffness @ self.interval_variation
         pulled = turning.T @ passing + second @ self.turn_matrix.unfolded
-        turns = self.turn_matrix / -unit
-        product = turns.unfolded.T @ pulled if self.in_loops else turns.T @ pulled
+        if self.in_loops:
+            # The constants are those of rods of any stiffness, that may share code.
+            product = (self.turn_matrix.unfolded.T @ pulled) / -unit
+        else:
+            product = (self.turn_matrix / -unit).T @ pulled
         matrix = ca.triu2symm(ca.triu(product))
         # The mirror lacks the skew part of couples: of dead ones below the diagonal, of followers above.
         dead = statics.couple_covector(follower=False)
