@@ -21,7 +21,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import Model, build, compiled_motion_stage, compiled_stage, read_scene, solve
+from cosserat_casadi import Model, build, compiled_motion_stage, compiled_stage, inverse, read_scene, solve
 from cosserat_casadi.control import Condensing, Horizon, motion_stage, radau
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.moving_inputs import MovingInputs
@@ -62,9 +62,6 @@ place at rest that the other controller makes up for. It takes swinging for such
 
 NEWTON = 3
 """Newton steps for the state at the next step, and for the tip at rest."""
-
-GUESS = np.array([8.0, 2.0, 9.0, 4.0])
-"""Tensions from which those of the start are found, N."""
 
 
 @dataclass(frozen=True)
@@ -368,35 +365,28 @@ def wanted_at(seconds: np.ndarray) -> np.ndarray:
     return START + smooth[:, None] * MOVE
 
 
-def known_model(modes: int = 2) -> Model:
+def known_model() -> Model:
     """What the controllers know: the robot without payload, and a force at its tip to make up for it."""
     inputs = f"inputs={[*TENSIONS, 'payload.force']}"
-    return build(
-        read_scene(SCENE, [inputs, DAMPING, "payload.force=[0, 0, 0]", f"accuracy={{modes={modes}, nodes=2}}"])
-    )
+    return build(read_scene(SCENE, [inputs, DAMPING, EMPTY, "accuracy={modes=2, nodes=2}"]))
 
 
 def moved_model(modes: int = 4) -> Model:
-    """What is moved: with more modes, and a payload."""
+    """What is moved: with more modes, and a payload; its tip is to be where the move begins."""
     body = f"bodies=[{{name='load', mass={PAYLOAD}, inertia=[1e-9, 1e-9, 1e-9]}}]"
     joint = "joints=[{body='load', rod='backbone', kind='fixed'}]"
     accuracy = f"accuracy={{modes={modes}, nodes=6}}"
-    changes = [f"inputs={TENSIONS}", DAMPING, EMPTY, accuracy, body, joint]
+    target = f"targets=[{{kind='position', rod='backbone', position={START.tolist()}}}]"
+    changes = [f"inputs={TENSIONS}", DAMPING, EMPTY, accuracy, body, joint, target]
     return build(read_scene(SCENE, changes), moving=True)
 
 
 def start_tensions(model: Model) -> np.ndarray:
-    """Tensions, close to a guess, that hold the tip where the move begins."""
-    tensions = GUESS
-    near = solve(model, dict(zip(TENSIONS, tensions, strict=True)), raise_on_failure=True)
-    for _ in range(6):
-        by_x, by_tensions = (block.full()[:3] for block in model.tip_jacobian["backbone"](near.x, tensions))
-        slopes = model.input_jacobian(near.x, tensions).full()
-        response = -np.linalg.solve(model.jacobian(near.x, tensions)[0].full(), slopes)
-        gap = START - near.tip().position[0]
-        tensions = tensions + np.linalg.lstsq(by_x @ response + by_tensions, gap, rcond=None)[0]
-        near = solve(model, dict(zip(TENSIONS, tensions, strict=True)), start=near, raise_on_failure=True)
-    return tensions
+    """Tensions that hold the tip where the move begins, N."""
+    found = inverse(model)
+    if not found.met:
+        raise RuntimeError(found.solution.message)
+    return np.array([float(found.values[name]) for name in TENSIONS])
 
 
 def controllers(known: Model, tensions: np.ndarray) -> dict[str, Controller]:

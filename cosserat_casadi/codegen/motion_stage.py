@@ -12,11 +12,13 @@ evaluate the equations of motion.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
@@ -102,7 +104,9 @@ def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.F
     blocks = []
     for slope in [*model.tip_jacobian.values(), *model.body_jacobian.values()]:
         by_x, by_inputs = slope(x, inputs)
-        blocks += [_by_state(stage, by_x, 0.0 * by_x), by_inputs]
+        by_position = by_x @ stage.places
+        # No pose reads a velocity.
+        blocks += [ca.horzcat(by_position, ca.DM(*by_position.shape)), by_inputs]
     slopes = written(jacobian_of(plain, [state, inputs], blocks), f"jac_{name}")
     return differentiated(plain, slopes, curvature)
 
@@ -150,12 +154,20 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
     """(x, v, a, inputs, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂inputs_rate of inverse dynamics at an instant."""
     plain = stage.model.inverse_dynamics
-    arguments = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
-    # Of scalars only what reads an input is differentiated: a matrix would be as a whole.
-    residual = ca.cse(plain(*arguments, ca.DM(stage.model.inputs.size, 1)))
+    scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
+    # Of scalars only what reads an input is differentiated, of matrices all.
+    straight = _by_inputs(stage, scalars, name)
+    if straight.n_instructions() <= STRAIGHT:
+        return straight
+    return written(_by_inputs(stage, plain.mx_in()[:-1], name), name)
+
+
+def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca.Function:
+    """The derivatives with inputs and their rates in given symbols."""
+    plain = stage.model.inverse_dynamics
+    residual = plain(*arguments, ca.DM(stage.model.inputs.size, 1))
     slopes = [ca.jacobian(residual, argument) for argument in arguments[-2:]]
-    words = ["by_inputs", "by_rate"]
-    return written(ca.Function(name, arguments, slopes, plain.name_in()[:-1], words), name)
+    return ca.Function(name, [*arguments], ca.cse(slopes), plain.name_in()[:-1], ["by_inputs", "by_rate"])
 
 
 def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:
@@ -164,8 +176,3 @@ def _columns(stage: MotionStage, differential: float, algebraic: float, stiffnes
         return float(differential) * stiffness
     weights: FloatArray = np.where(stage.differential, differential, algebraic)
     return stiffness @ ca.diag(ca.DM(weights))
-
-
-def _by_state(stage: MotionStage, by_x: Matrix, by_v: Matrix) -> Matrix:
-    """Derivatives with x and with h v as derivatives with the state."""
-    return ca.horzcat(by_x @ stage.places, by_v @ stage.places)

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, Model, build, compiled_motion_stage, scene_from_dict
 from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen import motion_stage as motion_stage_module
 from cosserat_casadi.codegen import stage as stage_module
 from cosserat_casadi.codegen.motion_stage import equations_functions, poses_functions
 from cosserat_casadi.control import MotionStage, motion_stage, radau
@@ -58,7 +59,8 @@ def slopes_of(function: ca.Function, at: list[FloatArray]) -> list[ca.DM]:
     ("make", "longest"), [(arm, STRAIGHT), (arm, 0), (held, STRAIGHT)], ids=["straight", "loops", "with constraint"]
 )
 def test_stage_vs_plain(make: Callable[[], Model], longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stage_module, "STRAIGHT", longest)
+    for module in (stage_module, motion_stage_module):
+        monkeypatch.setattr(module, "STRAIGHT", longest)
     stage = motion_stage(make(), 0.03)
     compiled = compiled_motion_stage(stage, f"moving_{make.__name__}")
     at = somewhere(stage)

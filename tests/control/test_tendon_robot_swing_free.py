@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from cosserat_casadi import CompiledMotionStage, solve
 from cosserat_casadi.codegen.motion_stage import poses_functions
@@ -51,6 +52,12 @@ def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     assert force is not None
     assert -6e-3 < force[2] < -2e-3  # N: the payload weighs 4 mN
     assert example.summary("motion", run).startswith("| motion | ")
+    # Where no plan is found, the tensions are held.
+    monkeypatch.setattr(controller, "change", lambda *_: None)
+    measured = example.Measured(run.tips[-1], near.x, 0.0 * near.x, tensions, np.zeros(example.COUNT))
+    held = controller.step(run.plans[-1], measured, np.tile(example.START, (example.STAGES, 1)))
+    assert not held.solved
+    assert_allclose(held.first, 0.0, rtol=0, atol=0)
 
 
 @needs_compiler
