@@ -201,8 +201,6 @@ def scene_value(record: Entry, field: str) -> FloatArray:
     if value is None:
         components = record.inputs[field].components
         return np.zeros((components, 1))
-    if isinstance(value, str):
-        value = dict(record.inputs[field].words)[value]
     if isinstance(value, int | float):
         return np.array([[float(value)]])
     return coefficients(value)

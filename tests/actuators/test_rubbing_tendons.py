@@ -246,7 +246,7 @@ def test_an_elastic_cable_may_go_slack() -> None:
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"friction": -0.1}, "friction: must be >= 0"),
-    ({"pull": "up"}, "pull: must be one of"),
+    ({"pull": "up"}, "pull: must be 'in' or 'out', or from -1 to 1, got 'up'"),
     ({"friction": 0.0, "pull": "in"}, "pull: stands without friction"),
     ({"axial_stiffness": 10.0}, "axial_stiffness: is for a tendon of given length"),
     ({"winch_stiffness": 10.0}, "winch_stiffness: is for a tendon of given length"),
