@@ -185,6 +185,7 @@ def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.Mo
     assert_allclose(tip, wanted, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no C compiler")
 def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cosserat(monkeypatch, "export", "finger.toml", "--output", "finger") == 0
