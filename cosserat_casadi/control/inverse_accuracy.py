@@ -11,7 +11,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.pose_change import rotation_angles
-from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
+from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
 from cosserat_casadi.control.inverse import (
     STARTS,
     Inverse,
@@ -27,9 +27,6 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.outcome import Outcome
-
-FINER_MODES = 4
-"""Modes that are added to those of the user to estimate their error."""
 
 Report = Callable[[str], None]
 """Told the discretisation."""

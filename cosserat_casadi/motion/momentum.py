@@ -17,11 +17,18 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import Step, stages_of
 
-CORRECTIONS = 2
-"""Corrections of the velocities; momentum is linear in them, and the second takes away rounding."""
+MOST_CORRECTIONS = 8
+"""Most corrections of the velocities after one step."""
+
+ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
+"""Momentum, relative to the largest entry, that is rounding and not missing."""
+
+CONTRACTING = 0.1
+"""What a correction may leave of the momentum that was missing before the derivatives it is made by count as old."""
 
 
 def flies_free(model: Model) -> bool:
@@ -42,20 +49,30 @@ class MomentumKeeper:
         self._loaded = bool(model.scene.loads)
         ((_, self._pose),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
         self._units = np.eye(model.size)[:, self._pose]
-        self._momentum, self._rate = _functions(model)
-        self._momenta = self._momentum.map(self._units.shape[1])
+        momentum, self._rate = _functions(model)
+        self._momentum = RepeatedCall(momentum)
+        self._momenta = momentum.map(self._units.shape[1])
+        self._inverse: FloatArray | None = None
 
     def settled(self, step: Step, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
         wanted = self._momentum_of(step.start, piece) + self._impulse(step, piece)
-        by_pose = self._by_pose(step.end, piece)
+        rounding = ROUNDING * np.abs(wanted).max()
+        before = 0.0
         end = step.end
-        for _ in range(CORRECTIONS):
+        for _ in range(MOST_CORRECTIONS):
             missing = wanted - self._momentum_of(end, piece)
-            # The least rates: none along the norm of the quaternion, which no momentum belongs to.
-            correction, *_ = np.linalg.lstsq(by_pose, missing, rcond=None)
+            largest = float(np.abs(missing).max())
+            if largest <= rounding:
+                break
+            inverse: FloatArray | None = self._inverse
+            if inverse is None or largest > CONTRACTING * before > 0.0:
+                # The least rates: none along the norm of the quaternion, which no momentum belongs to.
+                inverse = np.asarray(np.linalg.pinv(self._by_pose(end, piece)), dtype=np.float64)
+                self._inverse = inverse
+            before = largest
             v = end.v.copy()
-            v[self._pose] += correction
+            v[self._pose] += inverse @ missing
             end = replace(end, v=v)
         return end
 
@@ -72,7 +89,7 @@ class MomentumKeeper:
     def _momentum_of(self, instant: Instant, piece: Piece) -> FloatArray:
         """Momentum and angular momentum, shape (6,), N s and N m s."""
         inputs = piece.at(instant.time)
-        return np.asarray(self._momentum(instant.x, instant.v, inputs.value, inputs.rate).full()[:, 0])
+        return self._momentum(instant.x, instant.v, inputs.value, inputs.rate)
 
     def _by_pose(self, instant: Instant, piece: Piece) -> FloatArray:
         """Derivative of momentum, which is linear in velocities, with those of the base, shape (6, 7)."""
@@ -88,6 +105,6 @@ def _functions(model: Model) -> tuple[ca.Function, ca.Function]:
     directions = ((x, v), (v, a), (inputs, rate), (rate, acceleration))
     along = sum(ca.jtimes(momentum, argument, direction) for argument, direction in directions)
     return (
-        ca.Function("momentum", [x, v, inputs, rate], [momentum]),
+        ca.Function("momentum", [x, v, inputs, rate], [ca.densify(momentum)]),
         ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [along]),
     )

@@ -74,11 +74,15 @@ class _Level:
         simulator: that computed it.
         history: the motion.
         paths: what is compared, shape (T, points, 3).
+        rung: place of the modes on the ladder.
+        distance: of the paths from those of the level before; infinite for the first.
     """
 
     simulator: Simulator
     history: History
     paths: FloatArray
+    rung: int = 0
+    distance: float = float("inf")
 
 
 @dataclass
@@ -92,8 +96,6 @@ class _Search:
         tell: is told of every step.
         tolerance: of the paths, over the length.
         levels: the motions so far.
-        distances: between each and the next.
-        rungs: places of the levels on the ladder of modes.
         step_tolerance: of a step, over the length; nan for steps of given size.
         time_error: error of the steps on the first level.
     """
@@ -104,8 +106,6 @@ class _Search:
     tell: Tell | None
     tolerance: float
     levels: list[_Level] = field(default_factory=list)
-    distances: list[float] = field(default_factory=list)
-    rungs: list[int] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
 
@@ -117,20 +117,21 @@ class _Search:
     @property
     def ratio(self) -> float:
         """Share of the error that one rung of the ladder leaves, from the last two distances."""
-        if len(self.distances) < 2 or self.distances[-2] == 0.0:
+        if len(self.levels) < 3 or self.levels[-2].distance == 0.0:
             return UNKNOWN_RATIO
+        before, coarser, finer = self.levels[-3:]
         # The distance to a far better motion is the error of the worse one.
-        climbed = self.rungs[-2] - self.rungs[-3]
-        by_all = self.distances[-1] / self.distances[-2]
+        climbed = coarser.rung - before.rung
+        by_all = finer.distance / coarser.distance
         return float(np.clip(by_all ** (1.0 / climbed), FASTEST, SLOWEST))
 
     @property
     def space_error(self) -> float:
         """Error of the paths that the modes of the last level leave: the rest of a geometric series."""
-        if not self.distances:
+        if len(self.levels) < 2:
             return float("inf")
-        left = self.ratio ** (self.rungs[-1] - self.rungs[-2])
-        return SAFETY * self.distances[-1] * left / (1.0 - left)
+        left = self.ratio ** (self.last.rung - self.levels[-2].rung)
+        return SAFETY * self.last.distance * left / (1.0 - left)
 
     def climb(self, last: int) -> int | None:
         """The next rung: as far up as seems to be needed; None where the last one would not do.
@@ -138,10 +139,10 @@ class _Search:
         Args:
             last: the highest rung.
         """
-        rung = self.rungs[-1]
+        rung = self.last.rung
         if rung == last:
             return None
-        if len(self.distances) < 2:
+        if len(self.levels) < 3:
             return rung + 1
         wanted = SPACE_SHARE * self.tolerance
         if self.space_error * self.ratio ** (last - rung) > self.tolerance:
@@ -230,11 +231,9 @@ def _with_tolerance(search: _Search) -> Motion:
             raise KeyboardInterrupt
         if not history.completed:
             return ended_early(simulator, history)
-        level = _Level(simulator, history, simulator.paths(history))
-        if search.levels:
-            search.distances.append(path_distance(search.last.paths, level.paths))
-        search.levels.append(level)
-        search.rungs.append(rung)
+        found = simulator.paths(history)
+        distance = path_distance(search.last.paths, found) if search.levels else float("inf")
+        search.levels.append(_Level(simulator, history, found, rung, distance))
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Motion, build, simulate, solve
+from cosserat_casadi import Motion, MotionOutcome, build, simulate, solve
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import path_distance
 from cosserat_casadi.motion.simulate import Simulator, started
@@ -211,3 +211,12 @@ def test_given_steps_end_at_impacts_too() -> None:
     times = motion.times[np.flatnonzero(np.diff(motion.energy.impacts))]
     assert len(times) == 1
     assert 0.4 < times[0] < 1.0
+
+
+def test_cable_that_never_stays_slack_or_taut_ends_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Changes in next to no time are counted; here two in the whole motion are too many."""
+    monkeypatch.setattr("cosserat_casadi.motion.history.MOST_AT_ONCE", 1)
+    monkeypatch.setattr("cosserat_casadi.motion.history.AT_ONCE", 2.0)
+    motion = attempted(pushed_cable("kirchhoff", 0.02, 3.0, 1.0), 1.0, tolerance=1e-3)
+    assert motion.outcome is MotionOutcome.SNAPPED
+    assert "the cable is cable" in motion.message

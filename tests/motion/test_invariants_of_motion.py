@@ -78,11 +78,10 @@ def momenta(model: Model, states: list[MotionState]) -> FloatArray:
     return np.array(rows)
 
 
-@pytest.mark.parametrize("method", [radau(3), gauss(3)], ids=lambda method: method.name)
-def test_momentum_of_a_free_rod_is_kept_to_rounding(method: Collocation) -> None:
+def test_momentum_of_a_free_rod_is_kept_to_rounding() -> None:
     """Over a thousand steps, which alone would miss it by 1e-9 and more."""
     model, x, v = spinning()
-    found = momenta(model, step_ends(stepped(model, method, 2e-3, 2.0, x, v)))
+    found = momenta(model, step_ends(stepped(model, radau(3), 2e-3, 2.0, x, v)))
     assert_allclose(found, np.tile(found[0], (1001, 1)), rtol=0, atol=1e-12 * np.abs(found[0]).max())
 
 
