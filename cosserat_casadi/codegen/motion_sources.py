@@ -95,6 +95,23 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
     }
 
 
+def motion_entry(model: Model) -> dict[str, Any]:
+    """What the manifest says of motions.
+
+    Returns:
+        the method and its tolerance, which unknowns are coordinates with rates and accelerations, and the energies, J,
+        that entries of the residual are multiplied by.
+    """
+    unknowns = model.discrete.unknowns
+    return {
+        "method": radau(STAGES).name,
+        "order": radau(STAGES).order,
+        "tolerance": STEP_TOLERANCE,
+        "differential": [bool(flag) for flag in unknowns.differential],
+        "residual_units": unknowns.units.tolist(),
+    }
+
+
 def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     """Numbers that the workspace has for motions."""
     size, room = model.size, words["input_room"]
