@@ -114,6 +114,7 @@ CONCEPTS = (
             "load",
             "Compiled",
             "StepState",
+            "StepMemory",
             "StepOptions",
             "CompiledStep",
             "StepSensitivity",

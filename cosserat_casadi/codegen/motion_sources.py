@@ -119,7 +119,7 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
     vectors = 12 * size + 7 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
-    rooms = 8 * (words["front_room"] + words["interface_room"] + size)
+    rooms = 8 * (words["front_room"] + words["interface_room"] + 2 * size)
     return int(entries + matrices + vectors + remembered + rooms)
 
 
