@@ -14,6 +14,7 @@ from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_motion import (
     CompiledStep,
     LinearMotion,
+    StepMemory,
     StepOptions,
     StepSensitivity,
     StepState,
@@ -74,6 +75,7 @@ __all__ = [
     "SceneError",
     "Solution",
     "SolveError",
+    "StepMemory",
     "StepOptions",
     "StepSensitivity",
     "StepState",

@@ -126,8 +126,20 @@ CONCEPTS = (
         "Export and load",
         "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md). "
         "A solution as a page for [a browser](../view.md).",
-        ("export", "load", "Compiled", "export_page", "ExportError"),
-        ("StepState", "StepOptions", "CompiledStep", "StepSensitivity", "LinearMotion", "MotionStatus"),
+        (
+            "export",
+            "load",
+            "Compiled",
+            "StepState",
+            "StepMemory",
+            "StepOptions",
+            "CompiledStep",
+            "StepSensitivity",
+            "LinearMotion",
+            "MotionStatus",
+            "export_page",
+            "ExportError",
+        ),
     ),
     Concept(
         "results",

@@ -109,6 +109,19 @@ class StepOptions:
     parts: int = STEP_PARTS
 
 
+@dataclass(frozen=True)
+class StepMemory:
+    """What steps of one motion keep and work in; its attributes are for the functions in C alone.
+
+    Attributes:
+        kept: from one step to the next.
+        workspace: means nothing between two steps.
+    """
+
+    kept: Any
+    workspace: Any
+
+
 class _Options(ctypes.Structure):
     _fields_ = (("tolerance", ctypes.c_double), ("iterations", ctypes.c_int), ("parts", ctypes.c_int))
 
@@ -146,9 +159,9 @@ class CompiledMotion(ABC):
     @abstractmethod
     def _workspace(self) -> Any: ...
 
-    def step_memory(self) -> Any:
-        """What steps keep from one to the next: one for each motion, new for a new one."""
-        return _room(self._motion_function("step_memory_size")())
+    def step_memory(self) -> StepMemory:
+        """What steps keep from one to the next, and work in: one for each motion, new for a new one."""
+        return StepMemory(_room(self._motion_function("step_memory_size")()), self._workspace())
 
     def rest(self, inputs: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None) -> StepState | None:
         """A state at rest; None where supports, joints or cables are not closed there.
@@ -170,7 +183,7 @@ class CompiledMotion(ABC):
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None = None,
         *,
-        memory: Any = None,
+        memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> CompiledStep:
         """One step of a motion by Radau IIA with two stages.
@@ -193,7 +206,7 @@ class CompiledMotion(ABC):
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None = None,
         *,
-        memory: Any = None,
+        memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
         """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
@@ -235,7 +248,7 @@ class CompiledMotion(ABC):
         dt: float,
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None,
-        memory: Any,
+        memory: StepMemory | None,
         options: StepOptions | None,
         results: Sequence[FloatArray],
     ) -> tuple[CompiledStep, MotionStatus]:
@@ -244,16 +257,16 @@ class CompiledMotion(ABC):
         budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts)
         packed = self._packed(state)
         info = _Info()
-        kept = self.step_memory() if memory is None else memory
+        room = memory or self.step_memory()
         status = self._motion_function(word)(
             pointer(self._vector(inputs)),
             self._given(inputs_rate),
             ctypes.c_double(dt),
             pointer(packed),
-            kept,
+            room.kept,
             ctypes.byref(budget),
             *map(pointer, results),
-            self._workspace(),
+            room.workspace,
             ctypes.byref(info),
         )
         end = CompiledStep(

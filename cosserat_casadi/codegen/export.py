@@ -14,6 +14,7 @@ from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
 from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
+from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names
 from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
@@ -114,6 +115,8 @@ def folder_files(
     if derivatives:
         files |= _derivative_source(model, names)
     described = manifest(model, names, functions, error_estimate)
+    if motion is not None:
+        described["motion"] = motion_entry(model)
     described["files"] = sorted([*files, MANIFEST])
     files[MANIFEST] = json.dumps(described, indent=1, ensure_ascii=False) + "\n"
     return files

@@ -95,6 +95,23 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
     }
 
 
+def motion_entry(model: Model) -> dict[str, Any]:
+    """What the manifest says of motions.
+
+    Returns:
+        the method and its tolerance, which unknowns are coordinates with rates and accelerations, and the energies, J,
+        that entries of the residual are multiplied by.
+    """
+    unknowns = model.discrete.unknowns
+    return {
+        "method": radau(STAGES).name,
+        "order": radau(STAGES).order,
+        "tolerance": STEP_TOLERANCE,
+        "differential": [bool(flag) for flag in unknowns.differential],
+        "residual_units": unknowns.units.tolist(),
+    }
+
+
 def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     """Numbers that the workspace has for motions."""
     size, room = model.size, words["input_room"]
@@ -102,7 +119,7 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
     vectors = 12 * size + 7 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
-    rooms = 8 * (words["front_room"] + words["interface_room"] + size)
+    rooms = 8 * (words["front_room"] + words["interface_room"] + 2 * size)
     return int(entries + matrices + vectors + remembered + rooms)
 
 

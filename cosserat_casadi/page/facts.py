@@ -12,6 +12,7 @@ from cosserat_casadi.actuators.routing import offset_at
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.arrow import UNITS
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -96,7 +97,7 @@ def _runs_inside(actuator: Any, rod: dict[str, Any]) -> bool:
     if not hasattr(actuator, "offset") or "shape" not in rod:
         return False
     offset, _ = offset_at(actuator, SECTIONS)
-    return bool(np.all(np.abs(offset) < np.array([rod["x"], rod["y"]])))
+    return bool(np.all(np.abs(known(offset)) < np.array([rod["x"], rod["y"]])))
 
 
 def _along(size: Any) -> list[float]:

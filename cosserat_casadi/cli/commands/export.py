@@ -41,7 +41,7 @@ def export(
     ] = None,
     fmu: Annotated[
         Path | None,
-        typer.Option(help="File to write for other simulators, ending in .fmu: the motion by FMI 3.0.", show_default=False),
+        typer.Option(help="File to write for other simulators: the motion by FMI 3.0, .fmu.", show_default=False),
     ] = None,
     name: Annotated[str | None, typer.Option(help="What every C symbol begins with; else the scene file's.")] = None,
     derivatives: Annotated[

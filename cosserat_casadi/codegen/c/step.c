@@ -88,7 +88,8 @@ static real weighted_length(const real *change, int count) {
   real largest = 0;
   for (int i = 0; i < count; i++) {
     const real size = ABSOLUTE(change[i]) * DISPLACEMENTS[i % N];
-    if (!(size <= largest)) largest = size;
+    if (!isfinite(size)) return size;
+    largest = larger(largest, size);
   }
   return largest;
 }
@@ -184,9 +185,23 @@ static newton_course course_of(real length, real longest, real contraction, real
   const real expected = larger(contraction, LEAST_CONTRACTION);
   *left = contraction > 0 && contraction < 1 ? length * expected / (1 - expected) : length;
   if (length <= allowed) return CONVERGES;
-  if (length >= DIVERGING * longest) return DIVERGES;
+  if (contraction > 0 && length >= DIVERGING * longest) return DIVERGES;
   if (contraction > 0 && contraction < 1 && *left <= allowed) return CONVERGES;
   return ITERATES;
+}
+
+/* Residuals of all stages. Returns the largest entry, or one that is not finite. */
+static real residuals_of_stages(const step_start *start, const real *unknowns, real *residuals, workspace *work) {
+  real largest = 0;
+  for (int stage = 0; stage < STAGES; stage++) {
+    stage_at(start, stage, unknowns, &work->at);
+    motion_residual_at(&work->at, residuals + stage * N, work);
+  }
+  for (int i = 0; i < STAGED; i++) {
+    if (!isfinite(residuals[i])) return residuals[i];
+    largest = larger(largest, ABSOLUTE(residuals[i]));
+  }
+  return largest;
 }
 
 /* Newton's method from a guess of the unknowns of the stages, which it moves on. */
@@ -195,30 +210,26 @@ static solver_motion_status solve_stages(const step_start *start, const stage_fa
                                          solver_step_info *info) {
   const real rounding = STAGE_ROUNDING * weighted_length(start->x, N);
   const real allowed = larger(options->tolerance, rounding);
-  real *residuals = work->stage_residuals;
+  const real to_acceleration = 1 / (start->size * start->size);
   real *corrections = work->stage_corrections;
   real *changes = work->stage_changes;
-  real length_before = 0, longest = 0, contraction = 0;
+  real length_before = 0;
+  real longest = 0;
   for (int count = 0; count < options->max_iterations; count++) {
     info->iterations++;
-    info->residual = 0;
-    for (int stage = 0; stage < STAGES; stage++) {
-      stage_at(start, stage, unknowns, &work->at);
-      motion_residual_at(&work->at, residuals + stage * N, work);
-    }
-    for (int i = 0; i < STAGED; i++) {
-      if (!(ABSOLUTE(residuals[i]) <= info->residual)) info->residual = ABSOLUTE(residuals[i]);
-    }
-    corrections_of(factors, residuals, corrections, work);
+    info->residual = residuals_of_stages(start, unknowns, work->stage_residuals, work);
+    if (!isfinite(info->residual)) return SOLVER_MOTION_NOT_FINITE;
+    corrections_of(factors, work->stage_residuals, corrections, work);
     apply_updates(count, corrections, work);
     velocity_changes(corrections, changes);
     const real length = weighted_length(changes, STAGED);
-    if (!isfinite(length) || !isfinite(info->residual) || !all_finite(corrections, STAGED)) return SOLVER_MOTION_NOT_FINITE;
-    for (int i = 0; i < STAGED; i++) unknowns[i] += IS_SHAPE[i % N] ? corrections[i] / (start->size * start->size) : corrections[i];
-    if (count > 0) contraction = length / length_before;
-    const newton_course course = course_of(length, count > 0 ? longest : length, count > 0 ? contraction : 0, allowed, &info->error_left);
+    if (!isfinite(length) || !all_finite(corrections, STAGED)) return SOLVER_MOTION_NOT_FINITE;
+    for (int i = 0; i < STAGED; i++) unknowns[i] += corrections[i] * (IS_SHAPE[i % N] ? to_acceleration : 1);
+    /* At first nothing is foretold. */
+    const real contraction = count > 0 ? length / length_before : 0;
+    const newton_course course = course_of(length, longest, contraction, allowed, &info->error_left);
     if (course == CONVERGES) return SOLVER_MOTION_DONE;
-    if (count > 0 && course == DIVERGES) return SOLVER_MOTION_NOT_SOLVED;
+    if (course == DIVERGES) return SOLVER_MOTION_NOT_SOLVED;
     take_correction(count, corrections, changes, work);
     length_before = length;
     longest = larger(longest, length);

@@ -65,6 +65,27 @@ static void change_by_input(real size, int column, real *stages, const workspace
   }
 }
 
+/* Solves for both stages in place. Rods that are eliminated on their own have no pivots among those of others, and leave
+   errors far above rounding: one step of refinement takes them away. */
+static void solve_stage_columns(const stage_factors *factors, real *columns, workspace *work) {
+  real *left = work->left_of_columns;
+  memcpy(left, columns, sizeof work->left_of_columns);
+  solve_system(matrix_of_stages(), FOUR, factors, columns, work);
+  if (BY_FRONTS.front_count == 1 || *factors->as_a_whole) return;
+  for (int lane = 0; lane < FOUR; lane++) {
+    for (int s = 0; s < STAGES; s++) {
+      real *rows = left + lane * STAGED + s * N;
+      for (int t = 0; t < STAGES; t++) {
+        const real *block = work->stage_values + (s * STAGES + t) * STAGE_ENTRIES;
+        const real *solved = columns + lane * STAGED + t * N;
+        for (int k = 0; k < STAGE_ENTRIES; k++) rows[ENTRY_ROWS[k]] -= block[k] * solved[ENTRY_COLUMNS[k]];
+      }
+    }
+  }
+  solve_system(matrix_of_stages(), FOUR, factors, left, work);
+  for (int i = 0; i < FOUR * STAGED; i++) columns[i] += left[i];
+}
+
 /* Some columns of a derivative, four at a time. */
 static void differentiate_columns(void (*change)(real, int, real *, const workspace *), real size, int first, int last,
                                   const stage_factors *factors, real *columns, workspace *work) {
@@ -72,7 +93,7 @@ static void differentiate_columns(void (*change)(real, int, real *, const worksp
   for (int j = first; j < last; j += FOUR) {
     memset(stages, 0, FOUR * STAGED * sizeof *stages);
     for (int lane = 0; lane < FOUR && j + lane < last; lane++) change(size, j + lane, stages + lane * STAGED, work);
-    solve_system(matrix_of_stages(), FOUR, factors, stages, work);
+    solve_stage_columns(factors, stages, work);
     for (int lane = 0; lane < FOUR && j + lane < last; lane++) {
       end_changes(size, stages + lane * STAGED, columns + (j + lane - first) * 2 * N);
     }
