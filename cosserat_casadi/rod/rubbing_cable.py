@@ -85,13 +85,13 @@ class RubbingCable(RoutedCable):
     @cached_property
     def turn(self) -> Matrix:
         """Angle φ that the cable has turned through since its base, 1×k, rad."""
-        turned = self.turn_rate @ self._interval_weights.T
+        turned = self.turn_slope @ self._interval_weights.T
         # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
         sections = ca.cumsum(ca.densify(ca.horzcat(ca.DM(1, 1), turned)), 1)
         return sections[:, self._sections]
 
     @cached_property
-    def turn_rate(self) -> Matrix:
+    def turn_slope(self) -> Matrix:
         """|dt/dX| at points between the nodes, 1×f, rad: √(u·u + ε²) with u = t' + ℓ K × t."""
         squares = added(*[product(row, row) for row in self._turning_between])
         if squares is None:
@@ -181,7 +181,7 @@ class RubbingCable(RoutedCable):
     @property
     def _interval_turn_gradient(self) -> Matrix:
         """Derivative with q of the angle that each interval between nodes turns through, Σ w (u/|u|)·∂u/∂q, I×n."""
-        units = [None if row is None else row / self.turn_rate for row in self._turning_between]
+        units = [None if row is None else row / self.turn_slope for row in self._turning_between]
         # From values at the nodes to the angles of the intervals: few rows, which all strains share.
         to_angles = [
             None if unit is None else self._interval_weights @ (ca.diag(unit) @ self._between) for unit in units
