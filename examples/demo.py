@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 
 from cosserat_casadi.cli.main import app, run
+from cosserat_casadi.errors import ExportError
+from cosserat_casadi.page.webassembly import find_wasm_compiler
 
 SCENES = (
     "planar_strip",
@@ -47,6 +49,10 @@ SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}
 """Of the motions that an animation is drawn of too: drawing one takes longer than computing its motion."""
 
 
+PAGES = ("nitinol_wire", "two_section_robot", "six_rod_platform")
+"""Of which a page is written too, that solves them in a browser, where there is a compiler for it."""
+
+
 def arguments_of(name: str, folder: Path) -> list[str]:
     """The command line of a scene, whose files go to a folder."""
     command = "solve"
@@ -61,14 +67,32 @@ def arguments_of(name: str, folder: Path) -> list[str]:
     return arguments
 
 
+def page_arguments(name: str, folder: Path) -> list[str]:
+    """The command line that writes the page of a scene."""
+    scene = Path(__file__).with_name(f"{name}.toml")
+    return ["export", str(scene), "--page", str(folder / f"{name}.html")]
+
+
+def can_write_pages() -> bool:
+    """Whether there is a compiler for WebAssembly here."""
+    try:
+        find_wasm_compiler()
+    except ExportError as error:
+        print(f"No pages are written: {error}")
+        return False
+    return True
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=Path("out"), help="folder for results and figures")
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     worst = 0
-    for name in (*SCENES, *MOTIONS):
-        arguments = arguments_of(name, folder)
+    lines = [arguments_of(name, folder) for name in (*SCENES, *MOTIONS)]
+    if can_write_pages():
+        lines += [page_arguments(name, folder) for name in PAGES]
+    for arguments in lines:
         worst = max(worst, run(lambda arguments=arguments, **options: app(arguments, **options)))
         print()
     print(f"Results and figures are in {folder.resolve()}.")

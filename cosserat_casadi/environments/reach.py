@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_motion import StepState
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
-from cosserat_casadi.control.decision_variables import decision_variables
+from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -104,8 +104,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         described = scene if isinstance(scene, Scene) else read_scene(Path(scene))
         self.rod = _rod_name(described, rod)
         self.model = build(described, solve_scene(described).model.discretisation, moving=True)
-        self._acting = decision_variables(self.model)
-        _refuse_open_ranges(self.model, self._acting.indices, self._acting.lower, self._acting.upper)
+        self._acting = _acting_inputs(self.model)
         self.library = _compiled(self.model)
         self._outputs = motion_outputs(self.model)
         self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
@@ -221,20 +220,23 @@ def _seen_entries(names: list[str], rod: str) -> list[int]:
     return [names.index(name) for name in wanted]
 
 
-def _refuse_open_ranges(model: Model, indices: npt.NDArray[np.int64], lower: FloatArray, upper: FloatArray) -> None:
-    """Refuse inputs that act without a range: an action is a share of it.
+def _acting_inputs(model: Model) -> DecisionVariables:
+    """The inputs that an action moves: what the scene bounds, but for entries that it holds at one value.
 
     Raises:
-        SceneError: with all of them.
+        SceneError: an input has no range; an action is a share of it.
     """
-    open_entries = indices[~(np.isfinite(lower) & np.isfinite(upper) & (upper > lower))]
+    bounded = decision_variables(model)
+    without_range = bounded.indices[~(np.isfinite(bounded.lower) & np.isfinite(bounded.upper))]
     problems = []
     for entry, entries in model.inputs:
-        if np.any((open_entries >= entries.start) & (open_entries < entries.stop)):
+        if np.any((without_range >= entries.start) & (without_range < entries.stop)):
             problem = f"{entry.name} has no range between two bounds"
             problems.append(Problem("bounds", problem, "give lower and upper; what shall not act needs no bounds"))
     if problems:
         raise SceneError(*problems)
+    moves = bounded.upper > bounded.lower
+    return DecisionVariables(bounded.indices[moves], bounded.lower[moves], bounded.upper[moves])
 
 
 def _compiled(model: Model) -> Compiled:

@@ -13,7 +13,7 @@ from typing import Any
 from PIL import Image
 
 from cosserat_casadi.cli.main import app, run
-from examples.demo import MOTIONS, SCENES, arguments_of
+from examples.demo import MOTIONS, PAGES, SCENES, arguments_of, can_write_pages, page_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
@@ -74,18 +74,20 @@ def draw_examples(runs: Path) -> None:
         picture = runs / f"{name}.png"
         newest = max(sources, (EXAMPLES / f"{name}.toml").stat().st_mtime)
         if not picture.exists() or picture.stat().st_mtime < newest:
-            run_example(name, runs)
+            run_example(arguments_of(name, runs))
+            if name in PAGES and can_write_pages():
+                run_example(page_arguments(name, runs))
 
 
-def run_example(name: str, runs: Path) -> None:
-    """Run an example of ``make demo``: its result file and its pictures go to a folder.
+def run_example(arguments: list[str]) -> None:
+    """Run one command line of ``make demo``.
 
     Raises:
         ExampleError: it ends with an exit code other than 0.
     """
-    exit_code = run(lambda **options: app(arguments_of(name, runs), **options))
+    exit_code = run(lambda **options: app(arguments, **options))
     if exit_code != 0:
-        raise ExampleError(f"examples/{name}.toml ended with exit code {exit_code}")
+        raise ExampleError(f"cosserat {' '.join(arguments)} ended with exit code {exit_code}")
 
 
 def write_gallery(folder: Path, runs: Path, examples: tuple[str, ...] | None = None) -> list[Any]:
