@@ -25,6 +25,11 @@ SCENES = (
     "soft_arm",
     "branching_rod",
     "six_rod_platform",
+    "magnet_catheter",
+    "soft_magnet",
+    "needle_in_tissue",
+    "rod_in_stream",
+    "rubbing_tendon",
 )
 
 WITH_TARGETS = ("finger_to_point",)
@@ -35,6 +40,7 @@ MOTIONS = (
     "shaken_platform",
     "thrown_rod",
     "snapping_arch",
+    "seaweed",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

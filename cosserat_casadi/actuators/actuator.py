@@ -7,10 +7,13 @@ gives that quantity on the grid of a rod; residual, Jacobian, energy and outputs
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from cosserat_casadi.actuators.routing import span_ends
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Scalar
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Quantity
 from cosserat_casadi.scene.actuators import ActuatorRecord
 from cosserat_casadi.scene.families import word_of
@@ -53,6 +56,18 @@ class Actuator(ABC, Generic[RecordType]):
     @abstractmethod
     def quantity(self, actuator: RecordType, grid: Grid) -> Quantity:
         """The conjugate quantity on the grid of the rod."""
+
+    def worked_on(self, actuator: RecordType, grid: Grid, values: Mapping[str, Matrix]) -> Quantity:
+        """The conjugate quantity for these inputs, 1×1 each; by default it does not depend on them."""
+        return self.quantity(actuator, grid)
+
+    def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
+        """Extension of what is prescribed by a unit of effort: 1/EA of each metre, and 1/k; zero of what is rigid."""
+        return 0.0, 0.0
+
+    def resting_effort(self, actuator: RecordType) -> Scalar:
+        """Effort at which an elastic actuator has the conjugate that is prescribed."""
+        return 0.0
 
     def acts_on(self, actuator: RecordType, rod: str) -> bool:
         """Whether the actuator acts on the rod of this name."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.maths.grid import Grid, Indices
+from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_vector, is_symbolic, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.cable import Routing
@@ -17,7 +17,7 @@ from cosserat_casadi.rod.cable import Routing
 
 def routing(actuator: Any, grid: Grid) -> Routing:
     """Routing of a tendon or a chamber through the nodes of its span."""
-    nodes = _nodes_in(actuator.span, grid)
+    nodes = grid.nodes_in(*actuator.span)
     offset, slope = offset_at(actuator, grid.nodes[nodes])
     return Routing(nodes, offset, slope)
 
@@ -34,17 +34,6 @@ def span_ends(actuator: Any) -> tuple[float, ...]:
     """Where an actuator begins and ends: the stress jumps there."""
     start, end = actuator.span
     return (float(start), float(end))
-
-
-def _nodes_in(span: tuple[float, float], grid: Grid) -> Indices:
-    """Nodes of the elements inside a span, each side of a break with its own."""
-    start, end = span
-    # A span ends at breaks, so an element is inside as a whole or not at all.
-    nodes_of_elements = grid.nodes.reshape(grid.elements, -1)
-    middles = nodes_of_elements.mean(axis=1)
-    inside = (middles > start) & (middles < end)
-    of_nodes = np.repeat(inside, grid.intervals + 1)
-    return np.flatnonzero(of_nodes)
 
 
 def _polynomial(offset: Any, X: FloatArray) -> tuple[Numbers, Numbers]:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import final
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Scalar, is_zero
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.cable import Routing
+from cosserat_casadi.rod.rubbing_cable import RubbingRouting
 
 
 @final
@@ -25,6 +29,25 @@ class TendonActuator(Actuator[scenes.Tendon]):
     def quantity(self, actuator: scenes.Tendon, grid: Grid) -> Routing:
         """The routing, whose length the tension works on."""
         return routing(actuator, grid)
+
+    def worked_on(self, actuator: scenes.Tendon, grid: Grid, values: Mapping[str, Matrix]) -> Routing | RubbingRouting:
+        """The routing, on which a cable with friction rubs."""
+        course = routing(actuator, grid)
+        friction = actuator.friction * values["pull"]
+        if is_zero(friction) or is_zero(actuator.friction):
+            return course
+        return RubbingRouting(course, friction)
+
+    def compliance(self, actuator: scenes.Tendon) -> tuple[Scalar, Scalar]:
+        """1/EA, 1/N, and 1/k, m/N."""
+        by_length: Scalar = 0.0 if actuator.axial_stiffness is None else 1 / actuator.axial_stiffness
+        at_base: Scalar = 0.0 if actuator.winch_stiffness is None else 1 / actuator.winch_stiffness
+        return by_length, at_base
+
+    def resting_effort(self, actuator: scenes.Tendon) -> Scalar:
+        """The pretension, N."""
+        pretension: Scalar = actuator.pretension
+        return pretension
 
     def prescribes_conjugate(self, actuator: scenes.Tendon) -> bool:
         """Where the scene gives a length."""

@@ -1,5 +1,7 @@
 """A cable of given length, whose tension is unknown: docs/theory.md, section 8.
 
+An elastic cable is longer than given by (T − T₁)(length/EA + 1/k), with T₁ the tension at which it has the length.
+
 Where the cable may go slack, the smooth complementarity a τ + s − √((a τ)² + s² + ε²) = 0 of tension τ and sag s
 holds both at zero or above and one of them at zero, up to a τ s = ε²/2: A. Fischer, *Optimization* 24 (1992) 269–284,
 with C. Kanzow's smoothing. The softness a of the rod makes a length of the tension, so that the two compare.
@@ -12,6 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi.maths.numbers import Scalar, is_zero
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.cable import RoutedCable
 
@@ -20,11 +23,32 @@ SMOOTHING = 1e-10
 
 
 @dataclass(frozen=True)
+class Elasticity:
+    """How a cable of given length, and the winch that holds it, stretch: c = length/EA + 1/k by a unit of tension.
+
+    Attributes:
+        by_length: 1/EA, 1/N; zero of a cable that does not stretch.
+        at_base: 1/k of the winch, m/N; zero of a rigid one.
+        resting: tension at which the cable has the given length, N.
+    """
+
+    by_length: Scalar
+    at_base: Scalar
+    resting: Scalar
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the cable keeps its length."""
+        return is_zero(self.by_length) and is_zero(self.at_base)
+
+
+@dataclass(frozen=True)
 class CableLength:
     """The equation of one cable of given length.
 
     Attributes:
         cable: the cable on its routing.
+        elasticity: how it stretches.
         wanted: its length, 1×1, m.
         tension: the unknown, 1×1, in units of EI/ℓ².
         slack: whether it may sag.
@@ -33,6 +57,7 @@ class CableLength:
     """
 
     cable: RoutedCable
+    elasticity: Elasticity
     wanted: Matrix
     tension: Matrix
     slack: bool
@@ -46,13 +71,16 @@ class CableLength:
 
     @cached_property
     def pull(self) -> Matrix:
-        """Derivative of the rod's residual with respect to the tension, n×1: ∂L/∂q / ℓ."""
-        return self.cable.gradient / self._rod_length
+        """Derivative of the rod's residual with respect to the tension, n×1: the generalised force of it, over ℓ."""
+        return self.cable.pull / self._rod_length
 
     @cached_property
     def sag(self) -> Matrix:
         """What the wanted length exceeds that of the cable by, relative to the rod's length, 1×1."""
-        return (self.wanted - self.cable.value) / self._rod_length
+        length = self.wanted
+        if not self.elasticity.rigid:
+            length = length + self._compliance * self._stretching
+        return (length - self.cable.value) / self._rod_length
 
     @cached_property
     def residual(self) -> Matrix:
@@ -62,12 +90,36 @@ class CableLength:
     @cached_property
     def strain_columns(self) -> Matrix:
         """Derivative of the residual with the strain coordinates, 1×n."""
-        return -(self._results[1] * self.pull).T
+        by_strain = self.cable.gradient / self._rod_length
+        if self.cable.mean_share_gradient is not None and not is_zero(self.elasticity.by_length):
+            stretched = self.elasticity.by_length * self.wanted * self._stretching
+            by_strain = by_strain - stretched / self._rod_length * self.cable.mean_share_gradient
+        return -(self._results[1] * by_strain).T
 
     @cached_property
     def tension_column(self) -> Matrix:
         """Derivative of the residual with the tension, 1×1."""
-        return self._results[2]
+        _, by_sag, by_tension = self._results
+        if self.elasticity.rigid:
+            return by_tension
+        return by_tension + by_sag * (self._compliance * self._tension_unit / self._rod_length)
+
+    @property
+    def _stretching(self) -> Matrix:
+        """Tension beyond the one at which the cable has the wanted length, 1×1, N."""
+        return self._tension_unit * self.tension - self.elasticity.resting
+
+    @property
+    def _compliance(self) -> Matrix:
+        """Extension by a unit of tension at the base, 1×1, m/N: where the cable rubs its mean tension stretches it."""
+        share = self.cable.mean_share
+        stretched = self.wanted if share is None else self.wanted * share
+        return self.elasticity.by_length * stretched + self.elasticity.at_base
+
+    @property
+    def _tension_unit(self) -> float:
+        """EI/ℓ², N."""
+        return self.cable.shape.rod.energy_unit / self._rod_length
 
     @cached_property
     def _results(self) -> tuple[Matrix, Matrix, Matrix]:

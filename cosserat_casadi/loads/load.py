@@ -9,7 +9,7 @@ other is evaluated section by section and differentiated by CasADi. Whether it h
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Generic, Literal, TypeVar
@@ -18,6 +18,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, is_zero
@@ -34,6 +35,10 @@ Poses = tuple[FloatArray, FloatArray]
 """World positions (3, k) in m and rotation matrices world_R_section (k, 3, 3) of k sections."""
 
 
+AT_REST = ca.DM(3, 1)
+"""Rate of what does not move."""
+
+
 @dataclass(frozen=True)
 class Section:
     """The section of a rod, or the point of a body, that a load acts on.
@@ -42,11 +47,19 @@ class Section:
         position: 3×1, world axes, m.
         rotation: 3×3, world_R_section, or world_R_body.
         data: the numbers that :meth:`Load.data` gives for this section, d×1.
+        velocity: of its centre in the world, 3×1, m/s; at rest zeros that store nothing, as all that follow.
+        angular_velocity: 3×1, rad/s.
+        acceleration: of its centre, 3×1, m/s².
+        angular_acceleration: 3×1, rad/s².
     """
 
     position: Matrix
     rotation: Matrix
     data: Matrix
+    velocity: Matrix = AT_REST
+    angular_velocity: Matrix = AT_REST
+    acceleration: Matrix = AT_REST
+    angular_acceleration: Matrix = AT_REST
 
 
 @dataclass(frozen=True)
@@ -140,13 +153,21 @@ class Load(ABC, Generic[RecordType]):
         """How the load acts on a rigid body of the scene; None where it does not."""
         return None
 
+    def span(self, load: RecordType) -> tuple[float, float]:
+        """Abscissae X between which a load per length acts; the whole rod by default."""
+        return (0.0, 1.0)
+
     def breaks(self, load: RecordType) -> tuple[float, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
-        # Under a point load strain and internal force jump; what acts per length leaves them smooth.
+        # Under a point load strain and internal force jump, where a load per length begins their derivatives do.
         at = self.abscissa(load)
         if at is None:
-            return ()
+            return self.span(load)
         return (at,)
+
+    def faults(self, load: RecordType, site: Site) -> Iterator[Problem]:
+        """What is wrong with a load on an unloaded rod, at many sections of it; nothing by default."""
+        yield from ()
 
     def profiles(self, load: RecordType, rod: RodProperties, X: FloatArray, columns: int) -> Numbers:
         """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
@@ -155,7 +176,7 @@ class Load(ABC, Generic[RecordType]):
         """
         return np.asarray(legendre_polynomials(columns, X).T)
 
-    def data(self, load: RecordType, site: Site) -> FloatArray:
+    def data(self, load: RecordType, site: Site) -> Numbers:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
         return np.zeros((0, len(site.X)))
 
@@ -163,6 +184,8 @@ class Load(ABC, Generic[RecordType]):
         self, load: RecordType, label: str, position: FloatArray, force: FloatArray, moment: FloatArray
     ) -> list[Arrow]:
         """How the load is drawn on a rod: at its section force and moment, along the rod the force per length.
+
+        A load per length that has no force is drawn by its moment.
 
         Args:
             load: the load as the scene has it.
@@ -173,12 +196,17 @@ class Load(ABC, Generic[RecordType]):
         """
         if self.abscissa(load) is not None:
             return self.point_arrows(label, position, force, moment)
-        largest = float(np.linalg.norm(force, axis=0).max())
-        legend = f"{label}: up to {largest:.3g} {UNITS['line']}" if label else ""
+        sort: Sort = "line"
+        drawn, unit = force, UNITS[sort]
+        if not np.any(force):
+            sort = "moment"
+            drawn, unit = moment, "N m/m"
+        largest = float(np.linalg.norm(drawn, axis=0).max())
+        legend = f"{label}: up to {largest:.3g} {unit}" if label else ""
         arrows = []
-        for start, vector in zip(position.T, force.T, strict=True):
+        for start, vector in zip(position.T, drawn.T, strict=True):
             if np.any(vector):
-                arrows.append(Arrow(start, vector, "line", legend))
+                arrows.append(Arrow(start, vector, sort, legend))
             # One entry in the legend is enough.
             legend = ""
         return arrows

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
@@ -13,9 +14,12 @@ from cosserat_casadi.loads.expressions import expressions_in, with_expressions
 from cosserat_casadi.loads.load import Load, Section, Site
 from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_symbolic, known, repeated
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.rod.section_kernel import SectionKernel
+from cosserat_casadi.rod.section_kernel import RATES, SectionKernel
 
 KERNEL_ARGUMENTS = ["position", "rotation", "parameters", "data"]
+
+NO_RATES: Mapping[str, Matrix] = MappingProxyType({})
+"""Of a kernel at rest."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,9 @@ class TracedLoad:
     Attributes:
         member: the kind of load.
         load: the load as the scene has it.
-        kernel: its wrench in world axes; data are the profiles of force and moment, then those of :meth:`Load.data`.
+        kernel: its wrench at rest in world axes; data are the profiles of force and moment, then those of
+            :meth:`Load.data`.
+        moving: its wrench in motion, where it depends on rates; None for one that does not know of motion.
         columns: number of profiles of the force and of the moment.
         pose_free: whether force and moment, in the load's axes, are the same whatever the pose and the data.
         fixed: whether they are the same whatever the pose, though they may differ from section to section.
@@ -34,6 +40,7 @@ class TracedLoad:
     member: Load[Any]
     load: Any
     kernel: SectionKernel
+    moving: SectionKernel | None
     columns: tuple[int, int]
     pose_free: bool
     fixed: bool
@@ -43,16 +50,26 @@ class TracedLoad:
         """Whether a wrench that is free of the pose turns with its section."""
         return self.member.axes(self.load) == "section"
 
+    @property
+    def _data_size(self) -> int:
+        """Numbers of :meth:`Load.data` at a section."""
+        return int(self.kernel.world_wrench.size1_in(3)) - sum(self.columns)
+
     def coefficients(self, values: Mapping[str, Matrix]) -> tuple[Matrix | None, Matrix | None]:
         """Force and moment of a load that is free of the pose, in its axes, 3×k each; None for one that is zero."""
         # No number would be right for the pose: should it be read after all, the result is not a number.
         nowhere = Section(
             position=ca.DM.nan(3, 1),
             rotation=ca.DM.nan(3, 3),
-            data=ca.DM.nan(0, 1),
+            data=ca.DM.nan(self._data_size, 1),
         )
         force, moment = self.member.wrench(self.load, nowhere, values)
-        return _unless_zero(force), _unless_zero(moment)
+        # What vanishes by what it is multiplied with is read nevertheless: the symbols have found it to be zero.
+        wrench = self.kernel.world_wrench
+        return (
+            _unless_zero(force) if wrench.nnz_out(0) else None,
+            _unless_zero(moment) if wrench.nnz_out(1) else None,
+        )
 
     def data(self, site: Site) -> Numbers:
         """What the kernel takes as data at the sections of a rod, shape (d, k)."""
@@ -102,19 +119,43 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
         moment = section.rotation @ moment
     columns = force.shape[1], moment.shape[1]
     kernel = _kernel(section, stored(symbols), force, moment, energy)
-    return TracedLoad(member, load, kernel, columns, pose_free, fixed)
+    moving = _moving_kernel(member, written, section, symbols)
+    return TracedLoad(member, load, kernel, moving, columns, pose_free, fixed)
 
 
-def _kernel(section: Section, parameters: Matrix, force: ca.SX, moment: ca.SX, energy: Matrix | None) -> SectionKernel:
+def _moving_kernel(
+    member: Load[Any], load: Any, section: Section, symbols: Mapping[str, Matrix]
+) -> SectionKernel | None:
+    """The kernel of a load in motion; None for one that does not depend on rates."""
+    rates = {name: ca.SX.sym(name, 3) for name in RATES}
+    moving_section = replace(section, **rates)
+    force, moment = (ca.sparsify(ca.SX(part)) for part in member.wrench(load, moving_section, symbols))
+    read = [name for name, rate in rates.items() if ca.depends_on(_entries(force, moment), rate)]
+    if not read:
+        return None
+    if member.axes(load) == "section":
+        force = section.rotation @ force
+        moment = section.rotation @ moment
+    return _kernel(section, stored(symbols), force, moment, None, {name: rates[name] for name in read})
+
+
+def _kernel(
+    section: Section,
+    parameters: Matrix,
+    force: ca.SX,
+    moment: ca.SX,
+    energy: Matrix | None,
+    rates: Mapping[str, Matrix] = NO_RATES,
+) -> SectionKernel:
     """The kernel of a wrench, 3×k each, or an energy in the symbols of a section and of the inputs."""
     force_profiles = ca.SX.sym("force_profiles", force.shape[1])
     moment_profiles = ca.SX.sym("moment_profiles", moment.shape[1])
     data = ca.vertcat(force_profiles, moment_profiles, section.data)
-    arguments = [section.position, section.rotation, parameters, data]
+    arguments = [section.position, section.rotation, parameters, data, *rates.values()]
     results = [force @ force_profiles, moment @ moment_profiles]
-    wrench = ca.Function("wrench", arguments, results, KERNEL_ARGUMENTS, ["force", "moment"])
+    wrench = ca.Function("wrench", arguments, results, [*KERNEL_ARGUMENTS, *rates], ["force", "moment"])
     if energy is None:
-        return SectionKernel(wrench)
+        return SectionKernel(wrench, rates=tuple(rates))
     # The wrench is the derivative of the energy times its one profile, and so the energy has the profile too.
     density = energy * force_profiles[0]
     return SectionKernel(wrench, ca.Function("energy", arguments, [density], KERNEL_ARGUMENTS, ["energy"]))

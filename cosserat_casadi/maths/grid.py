@@ -107,6 +107,13 @@ class Grid:
         elements_before = self.breaks.index(abscissa)
         return elements_before * self._nodes_per_element - 1
 
+    def nodes_in(self, start: float, end: float) -> Indices:
+        """Indices of the nodes of the elements between two breaks, each side of a break with its own."""
+        # An element is inside as a whole or not at all.
+        middles = self._nodes_by_element.mean(axis=1)
+        inside = (middles > start) & (middles < end)
+        return np.flatnonzero(np.repeat(inside, self._nodes_per_element))
+
     def element_of(self, X: FloatArray) -> Indices:
         """Element in which each abscissa lies; a break belongs to the element it ends."""
         inner = np.asarray(self.breaks[1:-1])

@@ -15,7 +15,8 @@ from cosserat_casadi.model import functions
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_assembly import loads_have_potential
+from cosserat_casadi.model.load_assembly import actuators_have_potential, loads_have_potential
+from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
@@ -128,8 +129,11 @@ class Model(functions.ModelFunctions, MotionFunctions):
         return 1.0 if ratio is None else float(ca.evalf(ca.MX(ratio)))
 
     def has_potential(self, inputs: FloatArray) -> bool:
-        """Whether the loads derive from a potential at these inputs, so that stability has a meaning."""
-        return loads_have_potential(self.at().discrete, inputs)
+        """Whether loads and actuators derive from a potential at these inputs, so that stability has a meaning."""
+        discrete = self.at().discrete
+        if not loads_have_potential(discrete, inputs):
+            return False
+        return actuators_have_potential(discrete, inputs)
 
     def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
         """The stacked inputs from the scene's values and new ones by name."""
@@ -155,11 +159,12 @@ def build(
         moving: whether it is for a motion, in which bodies may turn freely.
 
     Raises:
-        SceneError: joints over-constrain; or, at rest, leave a body free to turn.
+        SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load cannot be where it is.
     """
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     nominal = discrete_scene(scene, input_layout(scene), chosen)
+    check_loads(nominal)
     parameters = parameter_layout(scene)
     if not parameters.size:
         return Model(nominal)

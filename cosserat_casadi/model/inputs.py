@@ -126,10 +126,15 @@ class InputLayout(StackedLayout[Input]):
 
 def scene_value(record: Entry, field: str) -> Numbers:
     """An input of a load or an actuator as the scene has it, shape (1, 1) or (3, k); zero where it is left out."""
-    value: Any = getattr(record, field, None)
+    value: Any = record
+    # The name of a field in an inner table has dots.
+    for key in field.split("."):
+        value = getattr(value, key, None)
     if value is None:
         components = record.inputs[field].components
         return np.zeros((components, 1))
+    if isinstance(value, str):
+        value = dict(record.inputs[field].words)[value]
     if isinstance(value, int | float):
         return np.array([[float(value)]])
     if is_symbolic(value):
@@ -168,6 +173,8 @@ def _axes(free: scenes.FreeInput) -> str:
     """Axes of an input: those of the record's ``frame`` where the field is declared to follow it."""
     if free.declared.components == 1:
         return "none"
+    if free.declared.axes == "section":
+        return "section"
     if free.declared.axes != "frame":
         return "world"
     frame = getattr(free.record, "frame", "world")

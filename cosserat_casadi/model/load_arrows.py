@@ -21,7 +21,7 @@ from cosserat_casadi.model.load_assembly import unloaded_poses
 from cosserat_casadi.model.registry import EFFECTS
 
 DRAWN_SECTIONS = np.linspace(0.05, 0.95, 8)
-"""Abscissae at which a load per length is drawn."""
+"""Where a load per length is drawn, as shares of its span."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,8 @@ class LoadArrows:
     def _on_rods(self, load: scenes.Load, values: Mapping[str, ca.DM]) -> list[Arrow]:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
-        X = DRAWN_SECTIONS
+        start, end = member.span(load)
+        X = start + (end - start) * DRAWN_SECTIONS
         if at is not None:
             X = np.array([at])
         arrows: list[Arrow] = []
@@ -62,7 +63,7 @@ class LoadArrows:
                 continue
             to_sections = discrete_rod.grid.interpolation_matrix(X)
             site = Site(discrete_rod.properties, X, partial(unloaded_poses, self.discrete, rod, to_sections))
-            data_size = len(member.data(load, site))
+            data_size = member.data(load, site).shape[0]
             kernel = traced(member, load, values, data_size)
             poses = self.rod_poses(rod, X)
             force, moment = _wrench(kernel, values, poses, known(kernel.data(site)))

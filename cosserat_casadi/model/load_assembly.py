@@ -14,7 +14,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.expressions import expressions_in
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
-from cosserat_casadi.maths.numbers import Scalar, as_matrix, as_vector, is_zero
+from cosserat_casadi.maths.numbers import Scalar, among, as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -23,6 +23,7 @@ from cosserat_casadi.model.inputs import InputLayout, load_values, scene_value
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.kinematics import shape
+from cosserat_casadi.rod.motion import RodMotion
 from cosserat_casadi.rod.strain import Ratio, per_reference_length
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, RodLoad
 
@@ -56,6 +57,7 @@ class RodLoads:
         base: pose of its base.
         inputs: stacked inputs.
         ratio: length of the rod relative to the scene's, where that is free.
+        motion: of the rod; None at rest.
     """
 
     discrete: DiscreteScene
@@ -63,6 +65,7 @@ class RodLoads:
     base: RodBase
     inputs: Matrix
     ratio: Ratio
+    motion: RodMotion | None = None
 
     def all(self) -> list[RodLoad]:
         """What all loads do to the rod, in the axes of its base."""
@@ -78,9 +81,9 @@ class RodLoads:
             return []
         values = input_values(self.discrete.layout, load, self.inputs)
         site = _site(self.discrete, self.rod, load)
-        data_size = len(member.data(load, site))
+        data_size = member.data(load, site).shape[0]
         kernel = traced(member, load, values, data_size)
-        if not kernel.pose_free:
+        if not kernel.pose_free or self._feels_motion(kernel):
             return [self._pose_wrench(kernel, site)]
         # Free of the pose, the load is constant coefficients times profiles: it costs a rotation, not a kernel a node.
         given_force, given_moment = kernel.coefficients(values)
@@ -103,7 +106,11 @@ class RodLoads:
             coefficients = moment
         if coefficients is None:
             return None
-        profiles = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
+        grid = self.discrete.rods[self.rod].grid
+        # Zero outside the span.
+        nodes = grid.nodes_in(*kernel.member.span(kernel.load))
+        within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
+        profiles = among(within, nodes, grid.size)
         if is_zero(profiles):
             return None
         scaled = per_reference_length(coefficients, self.ratio)
@@ -115,28 +122,42 @@ class RodLoads:
         """A load that depends on the pose of its sections: its kernel, evaluated at each of them."""
         at = kernel.member.abscissa(kernel.load)
         values = input_values(self.discrete.layout, kernel.load, self.inputs)
+        section_kernel = kernel.kernel
+        motion = None
+        if self._feels_motion(kernel):
+            assert kernel.moving is not None
+            section_kernel = kernel.moving
+            motion = self.motion
         # A load per length of a rod whose length is free acts on that length; a load at a point does not.
         scale: Matrix | float = 1.0
         if at is None and self.ratio is not None:
             scale = self.ratio
         return PoseWrench(
             at=at,
-            kernel=kernel.kernel,
+            span=kernel.member.span(kernel.load),
+            kernel=section_kernel,
             base_position=self.base.position,
             base_rotation=self.base.base_R_world.T,
             parameters=stored(values),
             data=kernel.data(site),
             scale=scale,
+            motion=motion,
         )
+
+    def _feels_motion(self, kernel: TracedLoad) -> bool:
+        """Whether the rod moves and the load depends on how."""
+        return self.motion is not None and kernel.moving is not None
 
 
 def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
-    """Sections of a rod that a load acts on: one, or those of all nodes."""
+    """Sections of a rod that a load acts on: one, or those of the nodes of its span."""
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
-    at = EFFECTS[load.kind].abscissa(load)
-    nodes = np.arange(grid.size)
-    if at is not None:
+    member = EFFECTS[load.kind]
+    at = member.abscissa(load)
+    if at is None:
+        nodes = grid.nodes_in(*member.span(load))
+    else:
         nodes = np.array([grid.node_at(at)])
     at_nodes = np.eye(grid.size)[nodes]
     # A function: few loads ask for the unloaded poses, which take a walk along all carriers.
@@ -176,9 +197,12 @@ def _numbers(field: Matrix) -> FloatArray:
 
 
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
-    """Indices of the inputs of loads that depend on poses: the equations need not be linear in them."""
+    """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
     indices: list[int] = []
+    for entry, span in layout:
+        if entry.declared.nonlinear:
+            indices.extend(range(span.start, span.stop))
     # What depends on a pose does so whatever its numbers are.
     discrete = discrete.nominal
     for load in discrete.scene.loads:
@@ -201,7 +225,7 @@ def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Ma
     for rod in discrete.rods:
         if member.acts_on(load, rod):
             site = _site(discrete, rod, load)
-            data_sizes.append(len(member.data(load, site)))
+            data_sizes.append(member.data(load, site).shape[0])
     # A body has no data that differ from section to section.
     data_sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
     return [traced(member, load, values, size) for size in data_sizes]
@@ -408,7 +432,7 @@ def _has_potential_on_rod(
     if not EFFECTS[load.kind].acts_on(load, rod):
         return True
     member = EFFECTS[load.kind]
-    data_size = len(member.data(load, _site(discrete, rod, load)))
+    data_size = member.data(load, _site(discrete, rod, load)).shape[0]
     return has_potential(member, load, values, data_size, one_axis=_turns_about_one_axis(discrete, rod))
 
 
@@ -427,13 +451,30 @@ def is_dead_force(discrete: DiscreteScene, load: scenes.Load) -> bool:
 
 
 def _is_dead_force(kernel: TracedLoad, values: Mapping[str, Matrix]) -> bool:
-    if kernel.follower or not kernel.pose_free:
+    # What depends on rates may be nothing at rest, and do work in motion.
+    if kernel.follower or not kernel.pose_free or kernel.moving is not None:
         return False
     _, moment = kernel.coefficients(values)
     return moment is None
 
 
 # Actuators
+
+
+def actuators_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
+    """Whether the forces of all actuators of a scene are gradients at these inputs."""
+    values = load_values(discrete.scene, discrete.layout, inputs)
+    for actuator in discrete.scene.actuators:
+        member = EFFECTS[actuator.kind]
+        # Inputs that are zero leave no entry: a direction of friction that is zero rubs nowhere.
+        numbers = {name: ca.sparsify(ca.DM(value)) for name, value in values[actuator.name].items()}
+        without_effort = not member.prescribes_conjugate(actuator) and not numbers[member.effort].nnz()
+        rod = discrete.rods[actuator.rod]
+        quantity = member.worked_on(actuator, rod.grid, numbers)
+        unloaded = shape(rod, ca.DM.zeros(rod.size))
+        if not without_effort and not quantity.on(unloaded).conservative:
+            return False
+    return True
 
 
 def rod_actuation(discrete: DiscreteScene, rod: str, inputs: Matrix) -> list[Actuation]:
@@ -446,6 +487,7 @@ def rod_actuation(discrete: DiscreteScene, rod: str, inputs: Matrix) -> list[Act
             continue
         effort = input_value(discrete.layout, actuator, member.effort, inputs)
         if effort is not None:
-            quantity = member.quantity(actuator, discrete.rods[rod].grid)
+            values = input_values(discrete.layout, actuator, inputs)
+            quantity = member.worked_on(actuator, discrete.rods[rod].grid, values)
             actuation.append(Actuation(quantity, member.energy_sign * effort))
     return actuation

@@ -78,11 +78,15 @@ class MotionEnergy:
 
     @cached_property
     def actuator_powers(self) -> Matrix:
-        """Power of each actuator, (actuators)×1, W: minus its effort times the rate of what it does work on."""
+        """Power of each actuator on its rod, (actuators)×1, W: minus its effort times the rate of what it works on.
+
+        Where a cable rubs, what it loses on the way does not arrive.
+        """
         powers = []
         for actuator in self.system.discrete.scene.actuators:
-            effort, conjugate, gradient = self.system.actuator(actuator.name)
-            rate = gradient @ self._motion.v + self._by_inputs(conjugate)
+            effort, _, _ = self.system.actuator(actuator.name)
+            _, conjugate = self.system.conjugate(actuator.name)
+            rate = self.system.pull(actuator.name).T @ self._motion.v + conjugate.rate(self._by_inputs)
             sign = EFFECTS[actuator.kind].energy_sign
             powers.append(-sign * effort * rate)
         stacked: Matrix = ca.vertcat(*powers)
@@ -134,7 +138,7 @@ class MotionEnergy:
     def _by_inputs(self, value: Matrix) -> Matrix:
         """Rate of a value with the inputs, at fixed unknowns."""
         if not self.system.discrete.layout.geometry:
-            return ca.DM(1, 1)
+            return ca.DM(*value.shape)
         rate: Matrix = ca.jtimes(value, self.system.arguments.inputs, self._motion.inputs_rate)
         return rate
 
@@ -220,7 +224,7 @@ class MotionEnergy:
         powers = [self._by_inputs(igm.energy)]
         powers += [-self._wrench_power(motion, wrench) for wrench in igm.statics.wrenches]
         for effort, conjugate in igm.efforts:
-            powers.append(effort * self._by_inputs(conjugate.value))
+            powers.append(effort * conjugate.rate(self._by_inputs))
         viscosity = self.system.viscosities.get(rod)
         if viscosity is not None:
             powers.append(viscosity.shrinking_power)

@@ -17,6 +17,7 @@ from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.motion_load import motion_matrices
 from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
 
 
@@ -51,7 +52,7 @@ class MotionEquations:
         stiffness = self._blocks()
         damping = self._blocks()
         mass = self._blocks()
-        for rod in self.system.inertias:
+        for rod in self._rods_with_rates:
             for rows, columns, part in self._rod_blocks(rod):
                 stiffness.add(rows, columns, part.stiffness)
                 damping.add(rows, columns, part.damping)
@@ -79,20 +80,31 @@ class MotionEquations:
             mass=mass.matrix(),
         )
 
+    @property
+    def _rods_with_rates(self) -> list[str]:
+        """Rods whose equations depend on the rates of their fields: by their mass, or by a load."""
+        rods = []
+        for name in self.system.motions:
+            loads = self.system.rods[name].statics.pose_loads
+            if name in self.system.inertias or any(load.load.kernel.rates for load in loads):
+                rods.append(name)
+        return rods
+
     def _blocks(self) -> Blocks:
         ends = [entries.stop for entries in self.system.discrete.unknowns.slices.values()]
         return Blocks(ends)
 
     def _rod_blocks(self, rod: str) -> list[tuple[slice, slice, MotionMatrices]]:
-        """What the inertia of a rod adds to the rows of its strains and of its base, if that floats."""
+        """What inertia of a rod and loads of its motion add to the rows of its strains, and of a base that floats."""
         discrete = self.system.discrete
         base = discrete.unloaded.floating_base(rod)
-        tangent = MotionTangent(self.system.tangents[rod], self.system.inertias[rod], floating=base is not None)
+        tangent = MotionTangent(self.system.tangents[rod], self.system.inertia_of(rod), floating=base is not None)
+        matrices = motion_matrices(tangent, self.system.rods[rod].statics.pose_loads)
         unit = discrete.rods[rod].energy_unit
         strains = discrete.unknowns.strain(rod)
         if base is None:
-            return [(strains, strains, _divided(tangent.matrices, unit))]
-        whole = tangent.matrices.along(self._to_unknowns(rod, base))
+            return [(strains, strains, _divided(matrices, unit))]
+        whole = matrices.along(self._to_unknowns(rod, base))
         deviation = discrete.deviation(base)
         count = discrete.rods[rod].size
         ranges = {"strain": slice(0, count), "base": slice(count, None)}

@@ -9,8 +9,11 @@ from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
 from cosserat_casadi.loads.distributed_wrench import DistributedWrenchLoad
+from cosserat_casadi.loads.flow import FlowLoad
+from cosserat_casadi.loads.foundation import FoundationLoad
 from cosserat_casadi.loads.gravity import GravityLoad
 from cosserat_casadi.loads.load import Load
+from cosserat_casadi.loads.magnet import MagnetLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
 from cosserat_casadi.scene.actuators import ACTUATORS
@@ -45,6 +48,9 @@ for shipped in (
     PointWrenchLoad,
     DistributedWrenchLoad,
     BodyWrenchLoad,
+    MagnetLoad,
+    FoundationLoad,
+    FlowLoad,
     TendonActuator,
     ChamberActuator,
 ):

@@ -55,6 +55,8 @@ def rod_properties(rod: scenes.Rod, nominal: RodProperties | None = None) -> Rod
         linear_density=_linear_density(rod),
         rotary_inertia=_rotary_inertia(rod),
         damping=_damping(rod, hooke),
+        area=_area(rod),
+        diameter=_diameter(rod),
         plane_sections=rod.rotary_inertia is None,
         ratio=None if nominal is None else _ratio(rod.length, nominal.length),
         nominal=nominal,
@@ -229,6 +231,25 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
     density = rod.material.density
     shape = _section_shape(rod.section)
     return _shared(lambda X: density * shape(X).second_moments, *_sizes(rod.section))
+
+
+def _area(rod: scenes.Rod) -> Field | None:
+    """Area of the sections (k,); None of a rod that is given by its stiffness."""
+    if rod.section is None:
+        return None
+    shape = _section_shape(rod.section)
+    return lambda X: shape(X).area
+
+
+def _diameter(rod: scenes.Rod) -> Field | None:
+    """Outer diameter of round sections (k,); None of others."""
+    if isinstance(rod.section, scenes.Circle):
+        radius = _linear(rod.section.radius)
+    elif isinstance(rod.section, scenes.Annulus):
+        radius = _linear(rod.section.outer_radius)
+    else:
+        return None
+    return lambda X: 2 * _along(radius, X)
 
 
 def _damping(rod: scenes.Rod, hooke: Field) -> Field | None:

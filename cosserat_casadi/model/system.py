@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength
+from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength, Elasticity
 from cosserat_casadi.constraints.section_constraint import Poses
 from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.pose import IDENTITY, Pose
@@ -25,12 +25,13 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, rod_actuation
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, input_values, rod_actuation
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import written_base_pose
-from cosserat_casadi.rod.actuation import Actuation
+from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
+from cosserat_casadi.rod.cable import RoutedCable
 from cosserat_casadi.rod.igm import InverseGeometricModel
-from cosserat_casadi.rod.inertia import RodInertia, section_masses
+from cosserat_casadi.rod.inertia import RodInertia, SectionMasses, section_masses
 from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
@@ -136,6 +137,13 @@ class System:
                 inertias[name] = RodInertia(motion, masses)
         return inertias
 
+    def inertia_of(self, rod: str) -> RodInertia:
+        """Inertia of a rod in motion, be it that of a rod without mass, which stores nothing."""
+        if rod in self.inertias:
+            return self.inertias[rod]
+        motion = self.motions[rod]
+        return RodInertia(motion, SectionMasses(np.zeros(motion.rod.grid.size), {}))
+
     @cached_property
     def viscosities(self) -> dict[str, Viscosity]:
         """Viscous stress of the rods in motion that have any."""
@@ -240,17 +248,31 @@ class System:
 
     def actuator(self, name: str) -> tuple[Matrix, Matrix, Matrix]:
         """Effort of an actuator, the length or volume that it works on, and the derivative of that with x."""
-        actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
+        actuator, conjugate = self.conjugate(name)
         member = EFFECTS[actuator.kind]
-        grid = self.discrete.rods[actuator.rod].grid
-        quantity = member.quantity(actuator, grid)
-        conjugate = quantity.on(self.rods[actuator.rod].shape)
         effort = self._effort(actuator)
         # The smooth complementarity leaves a slack cable a tension of either sign, as small as its smoothing.
         if member.may_go_slack(actuator):
             effort = ca.fmax(effort, 0.0)
         gradient = self._among_unknowns(actuator.rod, conjugate.gradient)
         return effort, conjugate.value, gradient.T
+
+    def conjugate(self, name: str) -> tuple[scenes.Actuator, Conjugate]:
+        """An actuator, and what it works on."""
+        actuator = next(actuator for actuator in self.discrete.scene.actuators if actuator.name == name)
+        return actuator, self._quantity(actuator).on(self.shapes[actuator.rod])
+
+    def pull(self, name: str) -> Matrix:
+        """Generalised force of a unit of an actuator's effort on the unknowns, size×1."""
+        actuator, conjugate = self.conjugate(name)
+        return self._among_unknowns(actuator.rod, conjugate.pull)
+
+    def _quantity(self, actuator: scenes.Actuator) -> Quantity:
+        """What an actuator works on, for the inputs."""
+        values = input_values(self.discrete.layout, actuator, self.arguments.inputs)
+        grid = self.discrete.rods[actuator.rod].grid
+        quantity: Quantity = EFFECTS[actuator.kind].worked_on(actuator, grid, values)
+        return quantity
 
     def _effort(self, actuator: scenes.Actuator) -> Matrix:
         """Effort of an actuator: an input, or unknown where the scene gives what it works on."""
@@ -368,7 +390,7 @@ class System:
     def _rod_loads(self, rod: str) -> RodLoads:
         base = RodBase(self.base(rod).position, self._base_R_world(rod))
         ratio = ratio_of(self.discrete, rod, self.arguments)
-        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio)
+        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, self.motions.get(rod))
 
     @cached_property
     def cable_lengths(self) -> dict[str, CableLength]:
@@ -380,12 +402,16 @@ class System:
         wanted = input_value(self.discrete.layout, tendon, "length", self.arguments.inputs)
         # The scene's rules let no tendon of given length have the length zero.
         assert wanted is not None
-        routed = cable.routing.on(self.rods[tendon.rod].shape)
+        member = EFFECTS[tendon.kind]
+        by_length, at_base = member.compliance(tendon)
+        _, routed = self.conjugate(tendon.name)
+        assert isinstance(routed, RoutedCable), "only cables have a length"
         return CableLength(
             cable=routed,
+            elasticity=Elasticity(by_length, at_base, member.resting_effort(tendon)),
             wanted=wanted,
             tension=self.arguments.x[self.discrete.tension(cable)],
-            slack=EFFECTS[tendon.kind].may_go_slack(tendon),
+            slack=member.may_go_slack(tendon),
             softness=cable.softness,
             smoothing=smoothing_at(CORNER, SMOOTHING, self.arguments.load_factor),
         )
@@ -414,7 +440,7 @@ class System:
             # An unknown tension is what its length asks for at this load factor: it is not scaled.
             if cable.tendon.rod == rod:
                 tension = self._unknown_tension(cable)
-                efforts.append(Actuation(cable.routing, tension))
+                efforts.append(Actuation(self._quantity(cable.tendon), tension))
         return tuple(efforts)
 
     def _constraint_wrench(self, placed: PlacedConstraint) -> PointWrench:

@@ -7,7 +7,7 @@ words of report (2.15), (2.16) the stress against the elastic one is Λ_ad = τ 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -32,8 +32,46 @@ class Conjugate(Protocol):
     def gradient(self) -> Matrix:
         """∂L/∂q, n×1."""
 
+    @property
+    def pull(self) -> Matrix:
+        """Generalised force of a unit of effort, n×1: ∂L/∂q but for what is lost on the way."""
+
     def curvature(self, a: int, b: int) -> Matrix | None:
         """∂²(ℓ w g)/∂ξ_a∂ξ_b at the nodes, 1×M; None where it vanishes whatever the rod does."""
+
+    @property
+    def further_stiffness(self) -> Matrix | None:
+        """What is not in the curvature of ∂ pull/∂q, n×n; None where that is all."""
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the pull is the gradient of L."""
+
+    def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
+        """Rate of what a unit of effort works on, from the rate of any value, 1×1."""
+
+
+class Lossless:
+    """What is the same for all quantities whose effort reaches every section: the pull is the gradient."""
+
+    @property
+    def pull(self: Conjugate) -> Matrix:
+        """Generalised force of a unit of effort, n×1."""
+        return self.gradient
+
+    @property
+    def further_stiffness(self) -> Matrix | None:
+        """What is not in the curvature: nothing."""
+        return None
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the pull is a gradient."""
+        return True
+
+    def rate(self: Conjugate, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
+        """Rate of the quantity from the rate of any value, 1×1."""
+        return rate_of(self.value)
 
 
 class Quantity(Protocol):
@@ -77,7 +115,7 @@ class StrainSum:
 
 
 @dataclass(frozen=True)
-class StrainSumOnRod:
+class StrainSumOnRod(Lossless):
     """A quantity that is linear in the strains, on a rod: its gradient is constant.
 
     Attributes:

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_zero, known, rows_of
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_zero, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
 
 Row = Matrix | None
@@ -50,7 +50,7 @@ class Routing:
 
 
 @dataclass(frozen=True)
-class RoutedCable:
+class RoutedCable(Lossless):
     """A cable on its routing through a deformed rod.
 
     Attributes:
@@ -70,9 +70,9 @@ class RoutedCable:
         length = self.shape.rod.length
         slope_x, slope_y = (_constant(row / length) for row in rows_of(self.routing.slope))
         return (
-            _sum(gx, _negative(_product(kz, dy)), slope_x),
-            _sum(gy, _product(kz, dx), slope_y),
-            _sum(gz, _product(kx, dy), _negative(_product(ky, dx))),
+            added(gx, negative(product(kz, dy)), slope_x),
+            added(gy, product(kz, dx), slope_y),
+            added(gz, product(kx, dy), negative(product(ky, dx))),
         )
 
     @cached_property
@@ -81,7 +81,7 @@ class RoutedCable:
         x, y, z = self.tangent
         if x is None and y is None and z is not None:
             return z
-        squares = _sum(*[_product(row, row) for row in self.tangent])
+        squares = added(*[product(row, row) for row in self.tangent])
         assert squares is not None, "a cable has a tangent"
         return ca.sqrt(squares)
 
@@ -105,9 +105,9 @@ class RoutedCable:
         x, y, z = self.direction
         dx, dy = self._offset
         levers = {
-            0: _product(z, dy),
-            1: _negative(_product(z, dx)),
-            2: _sum(_product(y, dx), _negative(_product(x, dy))),
+            0: product(z, dy),
+            1: negative(product(z, dx)),
+            2: added(product(y, dx), negative(product(x, dy))),
             3: x,
             4: y,
             5: z,
@@ -133,6 +133,16 @@ class RoutedCable:
                 parts.append(weighted.T @ lever.T)
         return ca.vertcat(*parts)
 
+    @property
+    def mean_share(self) -> Matrix | None:
+        """Mean of the tension along the course relative to that at its base, 1×1; None where it is the same."""
+        return None
+
+    @property
+    def mean_share_gradient(self) -> Matrix | None:
+        """Its derivative with q, n×1; None where it is the same."""
+        return None
+
     def curvature(self, a: int, b: int) -> Row:
         """∂²(ℓ w |T|)/∂ξ_a∂ξ_b at the nodes of the whole rod, 1×M, m; None where it vanishes.
 
@@ -142,9 +152,9 @@ class RoutedCable:
         x, y, _ = self.tangent
         if x is None and y is None:
             return None
-        metric = _constant(self._metric(a, b))
-        along = _negative(_product(self.lever[a], self.lever[b]))
-        across = _sum(metric, along)
+        metric = self._metric(a, b)
+        along = negative(product(self.lever[a], self.lever[b]))
+        across = added(metric, along)
         if across is None:
             return None
         row = across / self.stretch * ca.DM(self._node_lengths).T
@@ -165,34 +175,26 @@ class RoutedCable:
         dx, dy = rows_of(self.routing.offset)
         return _constant(dx), _constant(dy)
 
-    def _metric(self, a: int, b: int) -> Numbers:
-        """Scalar product of the rates of T with two strains, shape (k,)."""
-        dx, dy = rows_of(self.routing.offset)
-        if any_symbolic([dx, dy]):
-            return self._symbolic_metric(a, b)
-        dx, dy = known(dx), known(dy)
-        zero = np.zeros_like(dx)
-        unit = np.ones_like(dx)
-        rates = [
-            np.array([zero, zero, dy]),
-            np.array([zero, zero, -dx]),
-            np.array([-dy, dx, zero]),
-            np.array([unit, zero, zero]),
-            np.array([zero, unit, zero]),
-            np.array([zero, zero, unit]),
+    @property
+    def tangent_rates(self) -> list[tuple[Row, Row, Row]]:
+        """∂T/∂ξ_c of the six strains, three rows each."""
+        dx, dy = self._offset
+        unit = ca.DM.ones(1, len(self.routing.nodes))
+        return [
+            (None, None, dy),
+            (None, None, negative(dx)),
+            (negative(dy), dx, None),
+            (unit, None, None),
+            (None, unit, None),
+            (None, None, unit),
         ]
-        product = rates[a] * rates[b]
-        return np.asarray(product.sum(axis=0))
 
-    def _symbolic_metric(self, a: int, b: int) -> Matrix:
-        """The same where the offset is an expression."""
-        dx, dy = (as_matrix(row) for row in rows_of(self.routing.offset))
-        unit = ca.DM.ones(*dx.shape)
-        rates: list[dict[int, Matrix]] = [{2: dy}, {2: -dx}, {0: -dy, 1: dx}, {0: unit}, {1: unit}, {2: unit}]
-        total: Matrix = ca.DM(*dx.shape)
-        for axis in rates[a].keys() & rates[b].keys():
-            total = total + rates[a][axis] * rates[b][axis]
-        return total
+    def _metric(self, a: int, b: int) -> Row:
+        """Scalar product of the rates of T with two strains, 1×k."""
+        pairs = zip(self.tangent_rates[a], self.tangent_rates[b], strict=True)
+        metric = added(*[product(one, other) for one, other in pairs])
+        # A zero without sign, whichever factor it comes from.
+        return None if metric is None else metric + 0.0
 
     @property
     def _node_lengths(self) -> FloatArray:
@@ -207,14 +209,16 @@ def _constant(row: Numbers) -> Row:
     return as_matrix(row).T
 
 
-def _sum(*rows: Row) -> Row:
+def added(*rows: Row) -> Row:
+    """Sum of fields."""
     present = [row for row in rows if row is not None]
     if not present:
         return None
     return sum(present[1:], present[0])
 
 
-def _product(a: Row, b: Row) -> Row:
+def product(a: Row, b: Row) -> Row:
+    """Product of two fields, node by node."""
     if a is None or b is None:
         return None
     return a * b
@@ -226,7 +230,8 @@ def _quotient(a: Row, b: Matrix) -> Row:
     return a / b
 
 
-def _negative(row: Row) -> Row:
+def negative(row: Row) -> Row:
+    """A field of the other sign."""
     if row is None:
         return None
     return -row

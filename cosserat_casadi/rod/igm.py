@@ -66,7 +66,7 @@ class InverseGeometricModel:
             return None
         forces = []
         for effort, conjugate in self.efforts:
-            forces.append(effort / self.rod.energy_unit * conjugate.gradient)
+            forces.append(effort / self.rod.energy_unit * conjugate.pull)
         return sum(forces[1:], forces[0])
 
     @cached_property
@@ -89,8 +89,8 @@ class InverseGeometricModel:
     def potential(self) -> Matrix | None:
         """Elastic energy less the work of loads and actuators, 1×1, J.
 
-        None unless every load is a dead force or has an energy. With r = S t and n̂ = Sᵀ f the work of the dead forces
-        is Σ n̂_k·t_k, so the residual is its exact gradient.
+        None unless every load is a dead force or has an energy, and the pull of every effort is a gradient. With
+        r = S t and n̂ = Sᵀ f the work of the dead forces is Σ n̂_k·t_k, so the residual is its exact gradient.
         """
         # A dead moment may have a potential, but none that is a function of q written here.
         if any(w.follower or w.moment is not None for w in self.statics.fixed_wrenches):
@@ -98,6 +98,8 @@ class InverseGeometricModel:
         if any(load.energy is None for load in self.statics.pose_loads):
             return None
         covector = self.statics.fixed_force_covector
+        if not all(conjugate.conservative for _, conjugate in self.efforts):
+            return None
         total = self.energy
         if covector is not None:
             total = total - ca.dot(covector, self.shape.tangent)

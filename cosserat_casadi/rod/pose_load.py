@@ -37,26 +37,33 @@ class LoadedSections:
 
     @cached_property
     def nodes(self) -> list[int]:
-        """Nodes of the loaded sections: one, or all."""
+        """Nodes of the loaded sections: one, or those of the span."""
         grid = self.shape.rod.grid
         at = self.load.at
         if at is None:
-            return list(range(grid.size))
+            return list(map(int, grid.nodes_in(*self.load.span)))
         return [grid.node_at(at)]
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether all nodes of the rod are loaded."""
+        return len(self.nodes) == self.shape.rod.grid.size
 
     @cached_property
     def weights(self) -> FloatArray:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
-        return self.shape.rod.node_lengths
+        return self.shape.rod.node_lengths[self.nodes]
 
     @cached_property
     def position(self) -> Matrix:
         """Positions of the sections, 3×k, m."""
-        if self.load.at is None:
+        if self.load.at is not None:
+            return self.shape.position_at(self.nodes[0])
+        if self.everywhere:
             return self.shape.position
-        return self.shape.position_at(self.nodes[0])
+        return self.shape.position[:, self.nodes]
 
     @cached_property
     def force(self) -> Matrix | None:
@@ -91,6 +98,15 @@ class LoadedSections:
         (blocks,) = self._mapped(function)
         operator = block_diagonal(blocks, function.sparsity_out(0))
         return self.load.scale * operator
+
+    @cached_property
+    def with_rates(self) -> dict[str, Matrix]:
+        """Operators from the variation of each rate of the sections, 3k×1, to [δf; δc], 6k×3k."""
+        function = self.load.kernel.with_rates
+        operators = {}
+        for number, (rate, blocks) in enumerate(zip(self.load.kernel.rates, self._mapped(function), strict=True)):
+            operators[rate] = self.load.scale * block_diagonal(blocks, function.sparsity_out(number))
+        return operators
 
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
@@ -131,13 +147,28 @@ class LoadedSections:
     def _dead(self, force: Matrix | None, moment: Matrix | None) -> Wrench:
         """A dead wrench on the loaded sections from its values there, 3×k each."""
         at = self.load.at
-        if at is None:
-            return LineWrench(force, moment, None, follower=False)
-        return PointWrench(at, force, moment, follower=False)
+        if at is not None:
+            return PointWrench(at, force, moment, follower=False)
+        return LineWrench(self._at_all_nodes(force), self._at_all_nodes(moment), None, follower=False)
+
+    def _at_all_nodes(self, part: Matrix | None) -> Matrix | None:
+        """A field of the loaded sections at all nodes of the rod: nothing is stored where nothing acts."""
+        if part is None or self.everywhere:
+            return part
+        size = self.shape.rod.grid.size
+        places = ca.Sparsity.triplet(len(self.nodes), size, list(range(len(self.nodes))), self.nodes)
+        return part @ ca.DM(places, 1.0)
 
     @cached_property
     def _wrench(self) -> Sequence[Matrix]:
         return self._mapped(self.load.kernel.wrench)
+
+    @property
+    def _rates(self) -> list[Matrix]:
+        """The rates that the kernel depends on at the loaded sections, 3×k each, axes of the base."""
+        if self.load.motion is None:
+            return []
+        return [getattr(self.load.motion, rate)[:, self.nodes] for rate in self.load.kernel.rates]
 
     def _scaled(self, part: Matrix) -> Matrix | None:
         if not part.nnz():
@@ -151,6 +182,6 @@ class LoadedSections:
         rotations = self.shape.rotations_at(self.nodes)
         alike = [self.load.base_position, self.load.base_rotation, self.load.parameters]
         repeated = [ca.repmat(value, 1, count) for value in alike]
-        given = [self.position, rotations, *repeated, as_matrix(self.load.data)]
+        given = [self.position, rotations, *repeated, as_matrix(self.load.data), *self._rates]
         results = function.map(count).call(given)
         return list(results)

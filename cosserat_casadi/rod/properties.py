@@ -42,6 +42,8 @@ class RodProperties:
         plane_sections: whether rotary inertia is that of plane sections, the polar moment the sum of the other two.
         ratio: length of the rod relative to ``length``, 1×1; None where it is 1 for good.
         nominal: the rod with the numbers that scale the equations; None where these are its own.
+        area: abscissae (k,) ↦ area of the sections (k,), m²; None where the rod is given by its stiffness.
+        diameter: abscissae (k,) ↦ outer diameter of round sections (k,), m; None where they are not round or not known.
     """
 
     name: str
@@ -56,6 +58,8 @@ class RodProperties:
     plane_sections: bool = False
     ratio: Matrix | None = None
     nominal: RodProperties | None = None
+    area: Callable[[Array], Numbers] | None = None
+    diameter: Callable[[Array], Numbers] | None = None
 
     def intrinsic_strain(self, X: Array) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""

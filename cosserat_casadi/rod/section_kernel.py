@@ -16,6 +16,9 @@ import casadi as ca
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 
+RATES = ("velocity", "angular_velocity", "acceleration", "angular_acceleration")
+"""What a kernel may know of the motion of its section: those of its centre in m/s and m/s², the angular in rad."""
+
 ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "parameters", "data"]
 
 
@@ -23,23 +26,31 @@ ARGUMENTS = ["position", "rotation", "base_position", "base_rotation", "paramete
 class SectionKernel:
     """A small function of one section, its derivative, and its energy where it has one.
 
-    All three functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in
+    All functions have the arguments :data:`ARGUMENTS`: position (3×1, m) and rotation (3×3) of the section in
     the axes of the base, those of the base in the world, the run-time parameters and the numbers of this section.
 
     Attributes:
         world_wrench: (position, rotation, parameters, data) ↦ (force, moment), world axes, 3×1 each.
         world_energy: the same arguments ↦ energy, J or J/m; None for a wrench that is no derivative of an energy.
+        rates: those of :data:`RATES` that follow as arguments, 3×1 each, in the motion of a section that the wrench
+            depends on.
     """
 
     world_wrench: ca.Function
     world_energy: ca.Function | None = None
+    rates: tuple[str, ...] = ()
+
+    @property
+    def arguments(self) -> list[str]:
+        """Names of the arguments of all functions."""
+        return [*ARGUMENTS, *self.rates]
 
     @cached_property
     def wrench(self) -> ca.Function:
         """Force and moment in the axes of the base, 3×1 each."""
         symbols = self._symbols()
         results = self._in_base(symbols)
-        return ca.Function("wrench", symbols, results, ARGUMENTS, ["force", "moment"])
+        return ca.Function("wrench", symbols, results, self.arguments, ["force", "moment"])
 
     @cached_property
     def stiffness(self) -> ca.Function:
@@ -52,7 +63,16 @@ class SectionKernel:
         with_position = ca.jacobian(wrench, position)
         with_rotation = ca.jacobian(wrench, ca.vec(rotation)) @ ca.horzcat(*columns)
         stiffness = ca.cse(ca.horzcat(with_position, with_rotation))
-        return ca.Function("stiffness", symbols, [ca.sparsify(stiffness)], ARGUMENTS, ["stiffness"])
+        return ca.Function("stiffness", symbols, [ca.sparsify(stiffness)], self.arguments, ["stiffness"])
+
+    @cached_property
+    def with_rates(self) -> ca.Function:
+        """6×3 derivatives of [force; moment] with each of the rates, in their order, in the axes of the base."""
+        symbols = self._symbols()
+        wrench = ca.vertcat(*self._in_base(symbols))
+        derivatives = [ca.jacobian(wrench, rate) for rate in symbols[len(ARGUMENTS) :]]
+        results = [ca.sparsify(derivative) for derivative in ca.cse(derivatives)]
+        return ca.Function("with_rates", symbols, results, self.arguments, [f"with_{rate}" for rate in self.rates])
 
     @cached_property
     def energy(self) -> ca.Function | None:
@@ -61,7 +81,7 @@ class SectionKernel:
             return None
         symbols = self._symbols()
         energy = self.world_energy(*self._in_world(symbols))
-        return ca.Function("energy", symbols, [energy], ARGUMENTS, ["energy"])
+        return ca.Function("energy", symbols, [energy], self.arguments, ["energy"])
 
     def _symbols(self) -> list[ca.SX]:
         parameter_count = self.world_wrench.size1_in(2)
@@ -73,13 +93,15 @@ class SectionKernel:
             ca.SX.sym("base_rotation", 3, 3),
             ca.SX.sym("parameters", parameter_count),
             ca.SX.sym("data", data_count),
+            *(ca.SX.sym(rate, 3) for rate in self.rates),
         ]
 
     def _in_world(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
-        position, rotation, base_position, base_rotation, parameters, data = symbols
+        position, rotation, base_position, base_rotation, parameters, data, *rates = symbols
         world_position = base_position + base_rotation @ position
         world_rotation = base_rotation @ rotation
-        return [world_position, world_rotation, parameters, data]
+        world_rates = [base_rotation @ rate for rate in rates]
+        return [world_position, world_rotation, parameters, data, *world_rates]
 
     def _in_base(self, symbols: Sequence[ca.SX]) -> list[ca.SX]:
         base_rotation = symbols[3]

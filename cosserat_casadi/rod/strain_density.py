@@ -14,6 +14,7 @@ import casadi as ca
 
 from cosserat_casadi.maths.grid import Indices
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
 
 Density = Callable[[Matrix, Matrix], Matrix]
@@ -40,7 +41,7 @@ class StrainDensity:
 
 
 @dataclass(frozen=True)
-class StrainDensityOnRod:
+class StrainDensityOnRod(Lossless):
     """A quantity given by its density, on a rod.
 
     Attributes:

@@ -165,9 +165,12 @@ class Tangent:
             node = load.nodes[0]
             return ca.vertcat(self.position(node), self.rotation_of(node))
         grid = self.rod.grid
-        integrate = ca.DM(grid.integration_matrix)
+        integrate = ca.DM(grid.integration_matrix[load.nodes])
         moved = [integrate @ component for component in ca.vertsplit(self.tangent, grid.size)]
-        return ca.vertcat(*moved, self._with_linear_columns(self.rotation))
+        turned = self.rotation
+        if not load.everywhere:
+            turned = ca.vertcat(*[component[load.nodes, :] for component in ca.vertsplit(turned, grid.size)])
+        return ca.vertcat(*moved, self._with_linear_columns(turned))
 
     def wrench_variation(self, load: LoadedSections) -> Matrix:
         """[δf; δc] of a load that depends on the poses of its sections, 6k×n, times the weights of the sections."""
@@ -312,6 +315,20 @@ class Tangent:
         return sum(parts[1:], parts[0]) / -self.rod.energy_unit
 
     def _actuation_stiffness(self) -> Matrix | None:
+        """Σ τ ∂ pull/∂q / (EI/ℓ) of all efforts, n×n; None where it vanishes."""
+        parts = []
+        curved = self._curvature_stiffness()
+        if curved is not None:
+            parts.append(curved)
+        for effort, conjugate in self.igm.efforts:
+            further = conjugate.further_stiffness
+            if further is not None:
+                parts.append(effort / self.rod.energy_unit * further)
+        if not parts:
+            return None
+        return sum(parts[1:], parts[0])
+
+    def _curvature_stiffness(self) -> Matrix | None:
         """Σ τ ∂²L/∂q∂qᵀ / (EI/ℓ) of all efforts, n×n: sums over the nodes of rows that they share."""
         admitted = self.rod.admitted
         blocks = {}

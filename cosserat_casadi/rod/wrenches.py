@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from cosserat_casadi.maths.numbers import Numbers
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.motion import RodMotion
 from cosserat_casadi.rod.section_kernel import SectionKernel
 
 
@@ -65,21 +66,25 @@ class PoseWrench:
 
     Attributes:
         at: abscissa X of the section, a break of the rod's grid; None for a wrench per metre of undeformed length.
+        span: abscissae X between which a wrench per metre acts, breaks of the grid.
         kernel: force and moment as a function of a section's pose.
         base_position: world position of the rod's base, 3×1, m.
         base_rotation: world_R_base, 3×3.
         parameters: what the kernel depends on at run time, p×1.
-        data: what it depends on along the rod, shape (d, M); (d, 1) on one section.
+        data: what it depends on at its sections, shape (d, k).
         scale: factor on force, moment and energy.
+        motion: of the rod; None at rest, and for a kernel that does not depend on rates.
     """
 
     at: float | None
+    span: tuple[float, float]
     kernel: SectionKernel
     base_position: Matrix
     base_rotation: Matrix
     parameters: Matrix
     data: Numbers
     scale: Matrix | float
+    motion: RodMotion | None = None
 
     def __post_init__(self) -> None:
         check_shape("base_position", self.base_position, 3, 1)

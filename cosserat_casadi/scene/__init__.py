@@ -22,17 +22,20 @@ from cosserat_casadi.scene.constraints import (
     SupportRecord,
 )
 from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.flow import Flow
+from cosserat_casadi.scene.foundation import Foundation
 from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.loads import (
     LOADS,
     BodyWrench,
     DistributedWrench,
     Gravity,
-    Load,
     LoadRecord,
     PointWrench,
     TipWrench,
 )
+from cosserat_casadi.scene.magnet import Dipole, Magnet
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
@@ -70,9 +73,12 @@ __all__ = [
     "ClampedSupport",
     "CurveTarget",
     "Damping",
+    "Dipole",
     "DistributedWrench",
     "Family",
     "FixedJoint",
+    "Flow",
+    "Foundation",
     "FreeInput",
     "Gravity",
     "Helix",
@@ -83,6 +89,7 @@ __all__ = [
     "JointRecord",
     "Load",
     "LoadRecord",
+    "Magnet",
     "Material",
     "NamedNumbers",
     "PinnedSupport",

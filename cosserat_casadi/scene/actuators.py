@@ -58,7 +58,7 @@ helix = { radius = 1.5e-3, turns = 1.0 }
 
 @ACTUATORS.register
 class Tendon(ActuatorRecord):
-    """A cable without friction, led through the sections and anchored at the end of its span."""
+    """A cable led through the sections and anchored at the end of its span."""
 
     example: ClassVar[str] = """\
 [[actuators]]
@@ -72,6 +72,7 @@ offset = [1.5e-3, 0.0]
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1, lower=0.0),
         "length": InputField("m", 1, positive=True, continuous=True),
+        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True, words=(("in", 1.0), ("out", -1.0))),
     }
 
     kind: Literal["tendon"] = Field(description="cable led along the rod")
@@ -82,6 +83,23 @@ offset = [1.5e-3, 0.0]
     )
     slack: StrictBool = Field(
         False, description="whether a cable of given length may go slack, so that it never pushes"
+    )
+    friction: NotNegative = Field(
+        0.0, description="coefficient μ of friction along the course, without unit: T(X) = T₀ exp(−μ ∫ |turning|)"
+    )
+    pull: Literal["in", "out"] = Field(
+        "in",
+        description="direction of the last pull at the base: 'in' loses tension along the course, 'out' gains it; "
+        "as an input 1 and −1",
+    )
+    axial_stiffness: Positive | None = Field(
+        None, description="stiffness EA of the cable, N; one of given length does not stretch where it is left out"
+    )
+    winch_stiffness: Positive | None = Field(
+        None, description="stiffness of what holds a cable of given length at its base, N/m; rigid where it is left out"
+    )
+    pretension: NotNegative = Field(
+        0.0, description="tension at which an elastic cable has the given length, N; length is that at rest without it"
     )
     offset: Offset | None = Field(
         None, description="place in the section, x and y, m; a component may list polynomial coefficients in X"
@@ -97,11 +115,22 @@ offset = [1.5e-3, 0.0]
         # Only an unknown tension can be held at zero from below.
         if given.get("slack") is True and "length" not in given:
             yield Fault(("slack",), "is for a tendon of given length", "leave it out: a given tension is what it is")
+        for key in ("axial_stiffness", "winch_stiffness", "pretension"):
+            if key in given and "length" not in given:
+                yield Fault((key,), "is for a tendon of given length", "leave it out: a given tension is what it is")
+        elastic = "axial_stiffness" in given or "winch_stiffness" in given
+        if "pretension" in given and not elastic:
+            remedy = "give axial_stiffness or winch_stiffness: the tension of a rigid cable follows from its length"
+            yield Fault(("pretension",), "is for an elastic cable", remedy)
+        if "pull" in given and not given.get("friction"):
+            yield Fault(("pull",), "stands without friction", "the direction of the last pull is that of friction")
 
     @classmethod
     def free_fields(cls, given: Table) -> tuple[str, ...]:
-        """Tension or length, whichever is given: the other is an unknown or a result."""
-        fields = [field for field in cls.inputs if field in given]
+        """Tension or length, whichever is given: the other is an unknown or a result; the direction of friction."""
+        fields = [field for field in ("tension", "length") if field in given]
+        if given.get("friction"):
+            fields.append("pull")
         # Where neither is given the table has a fault already; both are known names.
         if not fields:
             return tuple(cls.inputs)

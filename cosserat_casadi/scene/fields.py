@@ -12,10 +12,15 @@ from cosserat_casadi.scene.values import Varying
 
 UNITS = (
     "without unit",
+    "A m²",
+    "A/m",
+    "T/m",
+    "T",
     "N m/m",
     "N m² s",
     "N m²",
     "N m",
+    "N/m²",
     "N/m",
     "N s",
     "N",
@@ -25,6 +30,7 @@ UNITS = (
     "kg m",
     "kg",
     "m/s²",
+    "m/s",
     "m²",
     "m",
     "1/m",

@@ -123,8 +123,8 @@ def _magnitudes(scene: SceneTables) -> list[str]:
         f"{name}.{field}"
         for name, (record, table) in _causes(scene).items()
         if record is not None
-        for field in record.inputs
-        if field in table
+        for field, declared in record.inputs.items()
+        if field in table and not declared.on_request
     ]
 
 

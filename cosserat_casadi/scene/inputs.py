@@ -22,11 +22,14 @@ class InputField:
         positive: whether each number must be > 0.
         nonzero: whether not all numbers may be zero.
         lower: least value that each number can have by what it is; None where there is none.
-        axes: axes of the components: "none" of a number, those of the world, or "frame" for those that the record's
-            own ``frame`` names.
+        axes: axes of the components: "none" of a number, those of the world or of the section, or "frame" for those
+            that the record's own ``frame`` names.
         geometry: whether it moves rods or their bases, so that the equations are not linear in it; its path in a motion
             must have a velocity.
         continuous: whether its path in a motion must not jump: it prescribes a length.
+        on_request: whether it stays free only where the scene lists it: it is no magnitude.
+        nonlinear: whether the equations are not linear in it.
+        words: words that the field is given in, each with the number that it stands for.
     """
 
     unit: str
@@ -35,9 +38,12 @@ class InputField:
     positive: bool = False
     nonzero: bool = False
     lower: float | None = None
-    axes: Literal["none", "world", "frame"] = "none"
+    axes: Literal["none", "world", "section", "frame"] = "none"
     geometry: bool = False
     continuous: bool = False
+    on_request: bool = False
+    nonlinear: bool = False
+    words: tuple[tuple[str, float], ...] = ()
 
     def entry_count(self, value: Any) -> int:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""

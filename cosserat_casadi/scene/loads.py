@@ -1,6 +1,6 @@
 """Loads: gravity, and wrenches on sections, along rods and on bodies.
 
-A new kind is a record of its own, registered with `LOADS`.
+A new kind is a record of its own, registered with `LOADS`; load_kinds.py lists those that ship.
 """
 
 from __future__ import annotations
@@ -201,7 +201,3 @@ position = [0.05, 0, 0]
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A wrench has a force or a moment."""
         yield from force_or_moment(given)
-
-
-# The type checker knows the kinds that ship; a scene may hold any that is registered.
-Load = Annotated[Gravity | TipWrench | PointWrench | DistributedWrench | BodyWrench, LOADS]

@@ -13,7 +13,7 @@ from cosserat_casadi.scene.actuators import Actuator
 from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
-from cosserat_casadi.scene.loads import Load
+from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
 from cosserat_casadi.scene.records import Record, refusal
@@ -108,7 +108,7 @@ inputs = ["push.force", "cable.tension"]
             FreeInput(record, field, declared)
             for record in self.causes
             for field, declared in record.inputs.items()
-            if field in record.model_fields_set
+            if field in record.model_fields_set and not declared.on_request
         )
 
     def input_names(self) -> tuple[str, ...]:

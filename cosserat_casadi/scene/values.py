@@ -267,6 +267,7 @@ Whole = Annotated[int, Field(strict=True)]
 
 Vector = Annotated[tuple[Number, Number, Number], listed(3, "3 numbers")]
 Direction = Annotated[Vector, AfterValidator(_direction)]
+Matrix3 = Annotated[tuple[Vector, Vector, Vector], listed(3, "3 rows of 3 numbers")]
 Quaternion = Annotated[tuple[Number, Number, Number, Number], listed(4, "4 numbers"), AfterValidator(_unit_quaternion)]
 
 Size = Annotated[

@@ -126,8 +126,8 @@ class _LineKeys(LoadRecord):
     strength: float
 
 
-class FoundationRecord(_LineKeys):
-    kind: Literal["foundation"]
+class BedRecord(_LineKeys):
+    kind: Literal["bed"]
 
 
 class WhirlRecord(_LineKeys):
@@ -138,10 +138,10 @@ class FlagRecord(_LineKeys):
     kind: Literal["flag"]
 
 
-class Foundation(Load[Any]):
+class Bed(Load[Any]):
     """An elastic foundation: every section is drawn to where it was, and turned back, as an energy per length."""
 
-    record = FoundationRecord
+    record = BedRecord
 
     def energy(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         apart = section.position - section.data[:3]
@@ -173,7 +173,7 @@ class Flag(Load[Any]):
         return values["strength"] * ca.DM([1.0, 0.0, 0.0]), ca.DM(3, 1)
 
 
-KINDS: tuple[type[Load[Any]], ...] = (Spring, ElasticSpring, Dipole, Torque, Foundation, Whirl, Flag)
+KINDS: tuple[type[Load[Any]], ...] = (Spring, ElasticSpring, Dipole, Torque, Bed, Whirl, Flag)
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from cosserat_casadi import Solution, build, solve
 from cosserat_casadi.loads.arrow import Arrow
 from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.model.load_arrows import DRAWN_SECTIONS, LoadArrows
-from tests.loads.kinds import DipoleRecord, ElasticSpringRecord, FoundationRecord, registered, with_loads
+from tests.loads.kinds import BedRecord, DipoleRecord, ElasticSpringRecord, registered, with_loads
 from tests.scenes import HOOK, STIFFNESS, WEIGHT, WIND, push, rod, scene
 
 FEW = {"modes": 3, "nodes": 8}
@@ -97,7 +97,7 @@ def test_weight_of_rods_and_bodies() -> None:
 def test_loads_that_depend_on_poses_are_drawn_as_they_are_where_the_rod_is() -> None:
     spring = ElasticSpringRecord(name="spring", kind="elastic_spring", rod="rod", stiffness=2.0, anchor=(0.5, 0.1, 0.6))
     dipole = DipoleRecord(name="magnet", kind="dipole", rod="rod", dipole=(0.0, 0.1, 0.2), field=(1.0, 0.0, 0.5))
-    bed = FoundationRecord(name="bed", kind="foundation", rod="rod", strength=0.5)
+    bed = BedRecord(name="bed", kind="bed", rod="rod", strength=0.5)
     solution = solve(build(with_loads({"schema": 1, "accuracy": FEW, "rods": [rod()]}, spring, dipole, bed)))
     assert solution.converged
     tip = solution.tip()

@@ -18,10 +18,10 @@ from cosserat_casadi.loads.load import Load
 from cosserat_casadi.model.registry import EFFECTS, register
 from cosserat_casadi.scene.records import Record
 from tests.loads.kinds import (
+    BedRecord,
     DipoleRecord,
     ElasticSpringRecord,
     FlagRecord,
-    FoundationRecord,
     SpringRecord,
     TorqueRecord,
     WhirlRecord,
@@ -85,7 +85,7 @@ LOADS: dict[str, Record] = {
     "elastic spring": ElasticSpringRecord(kind="elastic_spring", rod="rod", **SPRING),
     "dipole": DipoleRecord(kind="dipole", rod="rod", gradient=0.7, **DIPOLE),
     "torque": TorqueRecord(kind="torque", rod="rod", **DIPOLE),
-    "foundation": FoundationRecord(name="load", kind="foundation", rod="rod", strength=2.0),
+    "bed": BedRecord(name="load", kind="bed", rod="rod", strength=2.0),
     "whirl": WhirlRecord(name="load", kind="whirl", rod="rod", strength=2.0),
     "whirl in the sections": WhirlRecord(name="load", kind="whirl", rod="rod", strength=2.0, frame="body"),
 }
@@ -195,7 +195,7 @@ def test_residual_vs_gradient_of_the_energy_on_a_body(load: str) -> None:
 @pytest.mark.parametrize("scene", SCENES)
 def test_residual_vs_gradient_of_the_energy_of_a_foundation(scene: str) -> None:
     """The energy summed over the nodes, from the poses that the model shows and those of the unloaded scene."""
-    model = made(scene, "foundation")
+    model = made(scene, "bed")
     discrete_rod = model.discrete.rods["rod"]
     weights = discrete_rod.properties.length * discrete_rod.grid.weights
     position, quaternion, *_ = model.fields["rod"](np.zeros(model.size), model.pack())
@@ -222,7 +222,7 @@ def test_spring_as_wrench_vs_as_energy(scene: str) -> None:
     assert_allclose(one.jacobian(x, one.pack())[0].full(), expected, rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.parametrize("load", ["elastic spring", "dipole", "foundation"])
+@pytest.mark.parametrize("load", ["elastic spring", "dipole", "bed"])
 @pytest.mark.parametrize("scene", ["planar", "odd strains"])
 def test_potential_vs_residual(scene: str, load: str) -> None:
     """Where an energy can be written the residual is its gradient and the Jacobian its Hessian, symmetric."""
@@ -262,7 +262,7 @@ def test_rod_of_free_length_and_base(load: str) -> None:
     point = anywhere(free)
     matrix = free.jacobian(point, u)[0].full()
     assert_allclose(matrix, automatic(point, u).full(), rtol=0, atol=1e-12 * np.abs(matrix).max())
-    if load == "foundation":
+    if load == "bed":
         # It draws to where the rod of its own scene was: another place here.
         return
     solution, expected = solve(free, values), solve(fixed)
@@ -316,7 +316,7 @@ def test_planar_rod_on_a_spring_vs_shooting() -> None:
 
 
 @pytest.mark.parametrize("scene", ["carried", "platform"])
-@pytest.mark.parametrize("load", ["spring", "dipole", "foundation"])
+@pytest.mark.parametrize("load", ["spring", "dipole", "bed"])
 def test_assemblies_are_solved(scene: str, load: str) -> None:
     solution = solve(made(scene, load))
     assert solution.converged
@@ -344,7 +344,7 @@ def test_wrench_that_leaves_the_pose_alone_costs_what_a_dead_load_costs() -> Non
         ("dipole", "kirchhoff", True),
         ("torque", "kirchhoff", False),
         ("torque", "planar", False),
-        ("foundation", "reissner", True),
+        ("bed", "reissner", True),
         ("whirl", "reissner", False),
         ("whirl in the sections", "reissner", False),
     ],

@@ -52,6 +52,15 @@ def of_section(shape: str, **sizes: float) -> dict[str, Any]:
     return tables(material=MATERIAL, section={"shape": shape, **sizes})
 
 
+MAGNET = {"name": "load", "kind": "magnet", "rod": "rod", "magnetisation": [0, 1.0, 1.0], "field": [0, 0, 1.0]}
+TISSUE = {"name": "load", "kind": "foundation", "rod": "rod", "stiffness": [1.0, 1.0, 1.0], "curve": [0, 0, 0]}
+WATER = {"name": "load", "kind": "flow", "density": 1000.0, "diameter": 1.0}
+
+
+def with_load(load: dict[str, Any]) -> dict[str, Any]:
+    return {**tables(), "loads": [load]}
+
+
 PLACES: list[tuple[str, dict[str, Any], tuple[Any, ...], Notation]] = [
     ("radius", of_section("circle", radius=1.0), ("rods", 0, "section", "radius"), Notation.ENDS),
     (
@@ -80,6 +89,9 @@ PLACES: list[tuple[str, dict[str, Any], tuple[Any, ...], Notation]] = [
         for key in ("force", "moment")
         for i in range(3)
     ),
+    *(("magnetisation", with_load(MAGNET), ("loads", 0, "magnetisation", i), Notation.LEGENDRE) for i in range(3)),
+    *(("curve", with_load(TISSUE), ("loads", 0, "curve", i), Notation.LEGENDRE) for i in range(3)),
+    ("diameter", with_load(WATER), ("loads", 0, "diameter"), Notation.ENDS),
     *(("offset", tables(), ("actuators", k, "offset", i), Notation.POWERS) for k in range(2) for i in range(2)),
 ]  # fmt: skip
 

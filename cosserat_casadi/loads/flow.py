@@ -1,0 +1,102 @@
+"""A fluid round a rod: drag, buoyancy and added mass per length.
+
+Drag is Taylor's for long bodies in a stream at any angle, −½ ρ d (C_n |v_n| v_n + π C_t |v| v_t) with the velocity v of
+the section relative to the stream and its parts across and along the tangent: G. I. Taylor, Proc. R. Soc. A 214 (1952)
+158. A speed is √(v·v + ε²), so that its derivatives are finite where nothing moves.
+
+Fluid that moves along has the kinetic energy ½ m_a |ṙ − (t·ṙ) t|² per length, that of slender bodies in a fluid at
+rest: H. Lamb, *Hydrodynamics*, 6th ed., § 124. Its force and moment are those of Lagrange's equations, so that the
+energy of a motion is kept: with P = 1 − t tᵀ
+
+    f = −m_a d(P ṙ)/dt = −m_a (P r̈ − (ṫ·ṙ) t − (t·ṙ) ṫ),    c = −m_a (t·ṙ) t × ṙ.
+
+At rest they vanish, in a stream too: as in Morison's equation the stream enters the drag alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, is_zero, repeated, stacked_rows
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+STILL = 1e-8
+"""ε, m/s: faster than a few times this, drag is exact to rounding; slower, it is smaller than any other force."""
+
+
+@final
+class FlowLoad(Load[scenes.Flow]):
+    """A fluid of a density (kg/m³) that streams at a velocity (m/s)."""
+
+    record = scenes.Flow
+
+    def acts_on(self, load: scenes.Flow, rod: str) -> bool:
+        """Every rod, unless the load names some."""
+        return load.acts_on_rod(rod)
+
+    def wrench(self, load: scenes.Flow, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force (N/m) and moment (N m/m) in world axes; the moment is that of the added mass in motion."""
+        force: Matrix = ca.DM(3, 1)
+        moment: Matrix = ca.DM(3, 1)
+        if not (is_zero(load.normal) and is_zero(load.tangential)):
+            diameter = section.data[0]
+            force = -load.density / 2 * diameter * self._drag(load, section, values["velocity"])
+        if load.gravity is not None:
+            force = force - load.density * section.data[1] * ca.vertcat(*load.gravity)
+        # At rest nothing is accelerated.
+        if section.acceleration.nnz() and not is_zero(load.added_mass):
+            added = load.added_mass * load.density * section.data[1]
+            inertia, turning = _added_mass(section)
+            force = force - added * inertia
+            moment = -added * turning
+        return force, moment
+
+    def profiles(self, load: scenes.Flow, rod: object, X: FloatArray, columns: int) -> FloatArray:
+        """One all along the rod: its sizes are data of the sections."""
+        return np.ones((columns, len(X)))
+
+    def data(self, load: scenes.Flow, site: Site) -> Numbers:
+        """Diameter, m, and area of fluid displaced, m², at the sections."""
+        if load.diameter is not None:
+            ends = load.diameter if isinstance(load.diameter, tuple) else (load.diameter, load.diameter)
+            diameter: Numbers = ends[0] + (ends[1] - ends[0]) * site.X
+        else:
+            assert site.rod.diameter is not None, "the rules of the scene ask for one"
+            diameter = site.rod.diameter(site.X)
+        displaced = np.pi / 4 * diameter**2
+        # A tube displaces what a solid rod would, a rod that is not round its own area.
+        if site.rod.diameter is None and site.rod.area is not None:
+            displaced = site.rod.area(site.X)
+        return stacked_rows([repeated(diameter, len(site.X)), repeated(displaced, len(site.X))])
+
+    @staticmethod
+    def _drag(load: scenes.Flow, section: Section, stream: Matrix) -> Matrix:
+        """C_n |v_n| v_n + π C_t |v| v_t, m²/s², 3×1."""
+        tangent = section.rotation[:, 2]
+        velocity = section.velocity - stream
+        along = ca.dot(velocity, tangent) * tangent
+        across = velocity - along
+        of_normal = load.normal * _speed(across) * across
+        of_tangential = np.pi * load.tangential * _speed(velocity) * along
+        return of_normal + of_tangential
+
+
+def _speed(velocity: Matrix) -> Matrix:
+    """|v|, m/s, with finite derivatives at zero."""
+    return ca.sqrt(ca.sumsqr(velocity) + STILL**2)
+
+
+def _added_mass(section: Section) -> tuple[Matrix, Matrix]:
+    """Force and moment of the fluid that moves along, 3×1 each, over minus its mass per length."""
+    tangent = section.rotation[:, 2]
+    turning = ca.cross(section.angular_velocity, tangent)
+    along = ca.dot(tangent, section.velocity)
+    across = section.acceleration - ca.dot(tangent, section.acceleration) * tangent
+    turned = ca.dot(turning, section.velocity) * tangent + along * turning
+    return across - turned, along * ca.cross(tangent, section.velocity)

@@ -1,0 +1,54 @@
+"""Springs per length, energy ½ Σ k_i d_i² with d the displacement of the section.
+
+M. Hetényi, *Beams on Elastic Foundation*, University of Michigan Press 1946, for springs along three axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.load import Load, Section, Site, coefficients
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+
+@final
+class FoundationLoad(Load[scenes.Foundation]):
+    """Stiffnesses (N/m²) along the axes of the world, or of the sections of the unloaded rod."""
+
+    record = scenes.Foundation
+
+    def span(self, load: scenes.Foundation) -> tuple[float, float]:
+        """The part of the rod that lies in the foundation."""
+        start, end = load.span
+        return float(start), float(end)
+
+    def energy(self, load: scenes.Foundation, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """½ Σ k_i d_i², J/m."""
+        displacement = section.position - section.data[:3]
+        if load.frame == "body":
+            unloaded = ca.reshape(section.data[3:], 3, 3)
+            displacement = unloaded.T @ displacement
+        return ca.dot(values["stiffness"], displacement**2) / 2
+
+    def profiles(self, load: scenes.Foundation, rod: object, X: FloatArray, columns: int) -> FloatArray:
+        """One all along the span."""
+        return np.ones((columns, len(X)))
+
+    def data(self, load: scenes.Foundation, site: Site) -> Numbers:
+        """Where the springs are tied to, m, and in the axes of sections their rotation, column after column."""
+        if load.curve is None:
+            tied_to: Numbers = site.unloaded_position
+        else:
+            series = coefficients(load.curve)
+            tied_to = series @ legendre_polynomials(series.shape[1], site.X).T
+        if load.frame == "world":
+            return tied_to
+        columns = np.transpose(site.unloaded_rotation, (2, 1, 0)).reshape(9, -1)
+        return stacked_rows([*rows_of(tied_to), *columns])

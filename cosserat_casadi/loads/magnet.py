@@ -1,0 +1,105 @@
+"""Magnetised rods and dipoles in a field: energy −m·B, of which moment m × B and force ∇(m·B) are the derivatives.
+
+The field is that of three sources, which add up: uniform, linear in the place, and of a dipole. J. D. Jackson,
+*Classical Electrodynamics*, 3rd ed., (5.56), (5.72). What the magnets of a scene do to each other is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import Numbers, columns_times, is_zero, known
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+
+MU_0_OVER_4_PI = 1e-7
+"""μ₀/4π, T m/A: exact to nine digits in today's SI."""
+
+
+@final
+class MagnetLoad(Load[scenes.Magnet]):
+    """A moment per length (A m) all along a rod, or a moment (A m²) at a section or in a body."""
+
+    record = scenes.Magnet
+
+    def abscissa(self, load: scenes.Magnet) -> float | None:
+        """The section that holds a dipole; None of a magnetised rod."""
+        if load.moment is None:
+            return None
+        return float(load.at)
+
+    def on_body(self, load: scenes.Magnet, body: scenes.Body) -> BodyPoint | None:
+        """The point of the body that holds the dipole."""
+        if load.body != body.name:
+            return None
+        return BodyPoint(load.position)
+
+    def energy(self, load: scenes.Magnet, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """−m·B, J or J/m."""
+        field = values["field"]
+        if load.gradient is not None:
+            field = field + values["gradient"] @ section.position
+        if load.dipole is not None:
+            field = field + _dipole_field(section.position, values["dipole.position"], values["dipole.moment"])
+        return -ca.dot(self._moment(load, section, values), field)
+
+    def profiles(self, load: scenes.Magnet, rod: object, X: FloatArray, columns: int) -> FloatArray:
+        """One: what varies along the rod is its magnetisation."""
+        return np.ones((columns, len(X)))
+
+    def data(self, load: scenes.Magnet, site: Site) -> Numbers:
+        """Moment per length in section axes at the sections of a magnetised rod, A m, but for zero components."""
+        if load.magnetisation is None:
+            return np.zeros((0, len(site.X)))
+        series = coefficients(load.magnetisation)[_components(load), :]
+        magnetisation = series @ legendre_polynomials(series.shape[1], site.X).T
+        # The magnetisation of a rod that has no section is its moment per length already.
+        if site.rod.area is None:
+            return magnetisation
+        return columns_times(magnetisation, site.rod.area(site.X))
+
+    def faults(self, load: scenes.Magnet, site: Site) -> Iterator[Problem]:
+        """The source of the field is inside the rod, where a dipole has no field."""
+        if load.dipole is None:
+            return
+        source = np.asarray(load.dipole.position)[:, None]
+        distances = np.linalg.norm(site.unloaded_position - source, axis=0)
+        reach = np.full(len(site.X), ON_THE_AXIS * site.rod.length)
+        if site.rod.diameter is not None:
+            reach = known(site.rod.diameter(site.X)) / 2
+        if np.any(distances <= reach):
+            problem = f"lies inside the unloaded rod {site.rod.name!r}"
+            yield Problem(f"{load.name}.dipole.position", problem, "move the source away from the rod")
+
+    def _moment(self, load: scenes.Magnet, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """Moment, A m², or moment per length, A m, in world axes."""
+        if load.magnetisation is None:
+            return section.rotation @ values["moment"]
+        return section.rotation[:, _components(load)] @ section.data
+
+
+ON_THE_AXIS = 1e-9
+"""Distance, relative to its length, within which a rod that is given by its stiffness is touched."""
+
+
+def _components(load: scenes.Magnet) -> list[int]:
+    """Axes of the section along which the rod is magnetised."""
+    assert load.magnetisation is not None
+    rows = coefficients(load.magnetisation)
+    return [axis for axis in range(3) if not is_zero(rows[axis, :])]
+
+
+def _dipole_field(position: Matrix, source: Matrix, moment: Matrix) -> Matrix:
+    """Field of a dipole, T, 3×1."""
+    apart = position - source
+    square = ca.sumsqr(apart)
+    distance = ca.sqrt(square)
+    along = 3 * ca.dot(apart, moment) / square * apart
+    return MU_0_OVER_4_PI * (along - moment) / (square * distance)

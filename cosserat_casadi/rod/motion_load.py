@@ -1,0 +1,109 @@
+"""Loads that depend on the motion of their sections: what they add to the derivatives K, C and M of a rod in motion.
+
+A force f and a moment c that depend on ṙ, ω, r̈ and ω̇ of their section do the work −Σ [δr; δθ]ᵀ [f; c] in the residual.
+Their derivative with the pose of the section at fixed rates is in tangent.py; what is left are the variations of the
+rates. With δr = Y δq and δθ = Θ δq, and the rates of the fields Y and Θ as in motion_tangent.py,
+
+    δṙ = Ẏ δq + Y δq̇                δω = (Θ̇ − ω^ Θ) δq + Θ δq̇
+    δr̈ = Ÿ δq + 2 Ẏ δq̇ + Y δq̈       δω̇ = (Θ̈ − ω̇^ Θ − ω^ Θ̇) δq + (2 Θ̇ − ω^ Θ) δq̇ + Θ δq̈,
+
+the second column since δω = d(δθ)/dt − ω × δθ, and the second row from its time derivative. See docs/theory.md,
+section 11.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+
+from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.rod.motion_tangent import Jet, MotionMatrices, MotionTangent
+from cosserat_casadi.rod.pose_load import LoadedSections
+
+Variation = tuple[Matrix | None, Matrix | None, Matrix | None]
+"""Derivatives of a rate with z, ż and z̈, 3k×columns each; None for one that is zero."""
+
+
+def motion_matrices(tangent: MotionTangent, loads: Sequence[LoadedSections]) -> MotionMatrices:
+    """What inertia and loads that depend on rates add to ∂/∂z, ∂/∂ż and ∂/∂z̈ of the forces on z, in J."""
+    total = tangent.matrices
+    for load in loads:
+        if load.load.kernel.rates:
+            added = MotionLoad(tangent, load).matrices
+            total = MotionMatrices(
+                stiffness=total.stiffness + added.stiffness,
+                damping=total.damping + added.damping,
+                mass=total.mass + added.mass,
+            )
+    return total
+
+
+@dataclass(frozen=True)
+class MotionLoad:
+    """A load that depends on rates, on a rod in motion.
+
+    Attributes:
+        tangent: variations of the rod's fields with their rates.
+        load: the loaded sections.
+    """
+
+    tangent: MotionTangent
+    load: LoadedSections
+
+    @cached_property
+    def matrices(self) -> MotionMatrices:
+        """−Σ [Y; Θ]ᵀ (∂[f; c]/∂rates) (variations of the rates), in J."""
+        pulled = -ca.vertcat(self.position.value, self.rotation.value).T
+        columns = self.position.value.shape[1]
+        totals: list[Matrix] = [ca.DM(columns, columns)] * 3
+        for rate, operator in self.load.with_rates.items():
+            for order, variation in enumerate(self._variation_of(rate)):
+                if variation is not None:
+                    changed = self.load.weighted(operator @ variation)
+                    totals[order] = totals[order] + pulled @ changed
+        stiffness, damping, mass = totals
+        return MotionMatrices(stiffness, damping, mass)
+
+    @cached_property
+    def position(self) -> Jet:
+        """δr of the loaded sections with its rates, 3k×columns, m."""
+        grid = self.tangent.tangent.rod.grid
+        integrate = ca.DM(grid.integration_matrix[self.load.nodes])
+        orders = []
+        for matrix in self.tangent.tangent_jet.orders:
+            components = [integrate @ component for component in ca.vertsplit(matrix, grid.size)]
+            orders.append(ca.vertcat(*components))
+        if self.tangent.floating:
+            # A shift of the base moves all sections alike.
+            alike = ca.kron(ca.DM.eye(3), ca.DM.ones(len(self.load.nodes), 1))
+            before = ca.DM(alike.shape[0], orders[0].shape[1] - 3)
+            orders[0] = orders[0] + ca.horzcat(before, alike)
+        return Jet(*orders)
+
+    @cached_property
+    def rotation(self) -> Jet:
+        """δθ of the loaded sections with its rates, 3k×columns, rad."""
+        size = self.tangent.tangent.rod.grid.size
+        orders = []
+        for matrix in self.tangent.rotation.orders:
+            components = [component[self.load.nodes, :] for component in ca.vertsplit(matrix, size)]
+            orders.append(ca.vertcat(*components))
+        return Jet(*orders)
+
+    def _variation_of(self, rate: str) -> Variation:
+        r = self.position
+        theta = self.rotation
+        if rate == "velocity":
+            return r.rate, r.value, None
+        if rate == "acceleration":
+            return r.acceleration, 2 * r.rate, r.value
+        spin = hat_operator(self.tangent.motion.angular_velocity[:, self.load.nodes])
+        if rate == "angular_velocity":
+            return theta.rate - spin @ theta.value, theta.value, None
+        spin_rate = hat_operator(self.tangent.motion.angular_acceleration[:, self.load.nodes])
+        by_position = theta.acceleration - spin_rate @ theta.value - spin @ theta.rate
+        return by_position, 2 * theta.rate - spin @ theta.value, theta.value

@@ -1,0 +1,302 @@
+"""A cable that rubs on its course: its tension falls, or grows, by the angle that it turns through.
+
+By Euler's and Eytelwein's law of the capstan dT = ∓μ T dφ along a cable that is about to slip, so that its tension is
+
+    T(X) = T₀ exp(−μ p φ(X)),    φ(X) = ∫ |dt/dX| dX
+
+with p = 1 where it was last pulled in at its base, p = −1 where it was let out, and t the direction of the cable in the
+world: in the axes of the section |dt/dX| = |t' + ℓ K × t|. Contact with the rod does no work where the cable does not
+slip: a virtual change of strain meets the tension of its place, and the generalised force of T₀ is
+
+    Σ ℓ w exp(−μ p φ) ∂|T|/∂q
+
+over the nodes. It is no gradient, so that a rod with such a cable has no potential. See docs/theory.md, section 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.blocks import cumulative_sum
+from cosserat_casadi.maths.shapes import check_shape
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.rod.cable import RoutedCable, Routing, Row, added, negative, product
+from cosserat_casadi.rod.kinematics import Shape
+
+Rows = tuple[Row, Row, Row]
+"""A vector field in the axes of the sections."""
+
+BETWEEN = 4
+"""Gauss points between neighbouring nodes: |dt/dX| has a kink where the cable straightens, which needs many."""
+
+STRAIGHT = 1e-6
+"""Turn of a whole rod, rad, below which a cable's turn is smooth: its derivative is finite where it is straight."""
+
+
+@dataclass(frozen=True)
+class RubbingRouting:
+    """A routing on which a cable rubs.
+
+    Attributes:
+        routing: where the cable runs.
+        friction: μ p, coefficient of friction times the direction of slip, 1×1.
+    """
+
+    routing: Routing
+    friction: Matrix
+
+    def __post_init__(self) -> None:
+        check_shape("friction", self.friction, 1, 1)
+
+    def on(self, shape: Shape) -> RubbingCable:
+        """The cable on a rod of this shape: the quantity is its length."""
+        return RubbingCable(shape, self.routing, self.friction)
+
+
+@dataclass(frozen=True)
+class RubbingCable(RoutedCable):
+    """A cable that rubs on its routing through a deformed rod.
+
+    Attributes:
+        friction: μ p, coefficient of friction times the direction of slip, 1×1.
+    """
+
+    friction: Matrix
+
+    @property
+    def conservative(self) -> bool:
+        """Its force is no gradient."""
+        return False
+
+    @cached_property
+    def shares(self) -> Matrix:
+        """Tension along the course relative to that at its base, exp(−μ p φ), 1×k."""
+        shares: Matrix = ca.exp(-self.friction * self.turn)
+        return shares
+
+    @cached_property
+    def turn(self) -> Matrix:
+        """Angle φ that the cable has turned through since its base, 1×k, rad."""
+        turned = self.turn_rate @ self._interval_weights.T
+        # Made dense first: CasADi 3.8.2 sums a sparse MX wrongly.
+        sections = ca.cumsum(ca.densify(ca.horzcat(ca.DM(1, 1), turned)), 1)
+        return sections[:, self._sections]
+
+    @cached_property
+    def turn_rate(self) -> Matrix:
+        """|dt/dX| at points between the nodes, 1×f, rad: √(u·u + ε²) with u = t' + ℓ K × t."""
+        squares = added(*[product(row, row) for row in self._turning_between])
+        if squares is None:
+            return ca.DM.ones(1, self._interval_weights.shape[1]) * STRAIGHT
+        return ca.sqrt(squares + STRAIGHT**2)
+
+    @cached_property
+    def pull(self) -> Matrix:
+        """Generalised force of a unit of tension at the base, Σ ℓ w exp(−μ p φ) ∂|T|/∂q, n×1, m."""
+        parts: list[Matrix] = []
+        for c, lever in self.lever.items():
+            weighted = ca.DM(self._phi(c) * self._node_lengths[:, None])
+            if lever is None:
+                parts.append(ca.DM(weighted.shape[1], 1))
+            else:
+                parts.append(weighted.T @ (lever * self.shares).T)
+        return ca.vertcat(*parts)
+
+    def curvature(self, a: int, b: int) -> Row:
+        """What the lever's change adds to ∂ pull/∂q, as of a cable that does not rub times its share, 1×M, m."""
+        row = super().curvature(a, b)
+        if row is None:
+            return None
+        nodes = self.routing.nodes.tolist()
+        whole = type(self.shares)(*row.shape)
+        whole[nodes] = row[nodes] * self.shares
+        return whole
+
+    @cached_property
+    def further_stiffness(self) -> Matrix:
+        """What the change of the shares adds to ∂ pull/∂q, n×n, m: not symmetric."""
+        rows: list[Matrix] = []
+        for c, lever in self.lever.items():
+            phi = ca.DM(self._phi(c))
+            if lever is None:
+                rows.append(ca.DM(phi.shape[1], self.shape.rod.size))
+            else:
+                rows.append(phi.T @ (ca.diag(lever) @ self._weighted_change))
+        return ca.vertcat(*rows)
+
+    @cached_property
+    def mean_share(self) -> Matrix:
+        """Mean of the tension along the course relative to that at its base, 1×1."""
+        return (self.stretch * self.shares) @ ca.DM(self._node_lengths) / self.value
+
+    @cached_property
+    def mean_share_gradient(self) -> Matrix:
+        """∂ mean share/∂q, n×1."""
+        by_shares = (self.stretch @ self._weighted_change).T
+        return (self.pull + by_shares - self.mean_share * self.gradient) / self.value
+
+    def rate(self, rate_of: Callable[[Matrix], Matrix]) -> Matrix:
+        """Rate of the length that the tension at the base works on, from the rate of each part of the length, 1×1."""
+        return rate_of(self.stretch) @ (self.shares.T * ca.DM(self._node_lengths))
+
+    @cached_property
+    def _weighted_change(self) -> Matrix:
+        """Derivative of the shares with q times the lengths of the nodes, k×n, m."""
+        by_turn = -self.friction * (self.shares * ca.DM(self._node_lengths).T)
+        passed = cumulative_sum(self._interval_turn_gradient, self._interval_weights.shape[0])
+        turned = ca.vertcat(ca.DM(1, passed.shape[1]), passed)[self._sections, :]
+        return ca.diag(by_turn) @ turned
+
+    @cached_property
+    def _turning(self) -> Rows:
+        """U = t' + ℓ K × t in the sections' frames, three rows, rad."""
+        x, y, z = self.direction
+        kx, ky, kz = self._curvature
+        return (
+            added(self._along(x), product(ky, z), negative(product(kz, y))),
+            added(self._along(y), product(kz, x), negative(product(kx, z))),
+            added(self._along(z), product(kx, y), negative(product(ky, x))),
+        )
+
+    @cached_property
+    def _curvature(self) -> Rows:
+        """ℓ K, three rows, rad."""
+        length = self.shape.rod.length
+        x, y, z = (None if row is None else length * row for row in self._strain[:3])
+        return x, y, z
+
+    @cached_property
+    def _turning_between(self) -> list[Row]:
+        """U at the points between the nodes, three rows, rad."""
+        return [None if row is None else row @ self._between.T for row in self._turning]
+
+    @property
+    def _interval_turn_gradient(self) -> Matrix:
+        """Derivative with q of the angle that each interval between nodes turns through, Σ w (u/|u|)·∂u/∂q, I×n."""
+        units = [None if row is None else row / self.turn_rate for row in self._turning_between]
+        # From values at the nodes to the angles of the intervals: few rows, which all strains share.
+        to_angles = [
+            None if unit is None else self._interval_weights @ (ca.diag(unit) @ self._between) for unit in units
+        ]
+        columns = []
+        for c in self.shape.rod.admitted:
+            phi = ca.DM(self._phi(c))
+            total: Matrix = ca.DM(self._interval_weights.shape[0], phi.shape[1])
+            for to_angle, by_slope, by_value in zip(to_angles, *self._turning_rates(c), strict=True):
+                if to_angle is None:
+                    continue
+                if by_slope is not None:
+                    total = total + (to_angle @ self._differentiate) @ (ca.diag(by_slope) @ phi)
+                if by_value is not None:
+                    total = total + to_angle @ (ca.diag(by_value) @ phi)
+            columns.append(total)
+        return ca.horzcat(*columns)
+
+    def _turning_rates(self, c: int) -> tuple[Rows, Rows]:
+        """∂u/∂ξ_c = (∂t/∂ξ_c)' + ℓ K × ∂t/∂ξ_c + ℓ ∂K/∂ξ_c × t: what is differentiated, and what is not."""
+        direction_rate = self._direction_rate(c)
+        turned = _crossed(self._curvature, direction_rate)
+        if c >= 3:
+            return direction_rate, turned
+        axis: list[Row] = [None, None, None]
+        axis[c] = self.shape.rod.length * ca.DM.ones(1, len(self.routing.nodes))
+        x, y, z = axis
+        about = _crossed((x, y, z), self.direction)
+        x, y, z = (added(first, second) for first, second in zip(turned, about, strict=True))
+        return direction_rate, (x, y, z)
+
+    def _direction_rate(self, c: int) -> Rows:
+        """∂t/∂ξ_c = (∂T/∂ξ_c − t ∂|T|/∂ξ_c) / |T|, three rows; None for one that vanishes."""
+        # A cable parallel to the rod stays so.
+        if self.direction[0] is None and self.direction[1] is None:
+            return None, None, None
+        stretched = self.lever[c]
+        rows: list[Row] = []
+        for rate, component in zip(self.tangent_rates[c], self.direction, strict=True):
+            turned = added(rate, negative(product(component, stretched)))
+            rows.append(None if turned is None else turned / self.stretch)
+        x, y, z = rows
+        return x, y, z
+
+    def _along(self, row: Row) -> Row:
+        """Derivative of a field with X, 1×k; a constant has none."""
+        if row is None:
+            return None
+        if isinstance(row, ca.DM) and float(ca.mmax(row)) == float(ca.mmin(row)):
+            return None
+        return row @ self._differentiate.T
+
+    def _phi(self, c: int) -> FloatArray:
+        """Φ of a strain at the nodes of the routing, shape (k, n_c)."""
+        return np.asarray(self.shape.rod.at_nodes[c][self.routing.nodes])
+
+    @property
+    def _elements(self) -> FloatArray:
+        """Widths of the elements that the cable passes, shape (E,)."""
+        grid = self.shape.rod.grid
+        nodes = self.routing.nodes
+        first = nodes[:: grid.intervals + 1]
+        last = nodes[grid.intervals :: grid.intervals + 1]
+        return np.asarray(grid.nodes[last] - grid.nodes[first])
+
+    @property
+    def _sections(self) -> list[int]:
+        """Index of each node among the distinct sections of the course."""
+        intervals = self.shape.rod.grid.intervals
+        local = np.arange(intervals + 1)
+        starts = intervals * np.arange(len(self._elements))
+        return list(map(int, (starts[:, None] + local).ravel()))
+
+    @cached_property
+    def _between(self) -> ca.DM:
+        """Matrix from values at the nodes to those at the points between them, f×k."""
+        places, _ = _gauss_points(self.shape.rod.grid.intervals)
+        local = chebyshev.interpolation_matrix(self.shape.rod.grid.intervals, places.ravel())
+        return _sparse(np.kron(np.eye(len(self._elements)), local))
+
+    @cached_property
+    def _interval_weights(self) -> ca.DM:
+        """Weights of the integral over X of each interval between nodes, I×f."""
+        _, weights = _gauss_points(self.shape.rod.grid.intervals)
+        shares = np.zeros((len(weights), weights.size))
+        for interval, row in enumerate(weights):
+            shares[interval, interval * BETWEEN : (interval + 1) * BETWEEN] = row
+        return _sparse(np.kron(np.diag(self._elements), shares))
+
+    @cached_property
+    def _differentiate(self) -> ca.DM:
+        """Matrix of the derivative with X inside each element, k×k."""
+        local = chebyshev.differentiation_matrix(self.shape.rod.grid.intervals)
+        return _sparse(np.kron(np.diag(1 / self._elements), local))
+
+
+def _gauss_points(intervals: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss points between the nodes of an element of width one and their weights, shape (intervals, points) each."""
+    nodes = chebyshev.nodes(intervals)
+    points, weights = map(np.asarray, np.polynomial.legendre.leggauss(BETWEEN))
+    widths = np.diff(nodes)[:, None]
+    return nodes[:-1, None] + widths * (points + 1) / 2, widths * weights / 2
+
+
+def _sparse(matrix: npt.NDArray[Any]) -> ca.DM:
+    """A matrix without its zeros."""
+    return ca.sparsify(ca.DM(matrix))
+
+
+def _crossed(a: Rows, b: Rows) -> Rows:
+    """Cross product of fields that are three rows each."""
+    ax, ay, az = a
+    bx, by, bz = b
+    return (
+        added(product(ay, bz), negative(product(az, by))),
+        added(product(az, bx), negative(product(ax, bz))),
+        added(product(ax, by), negative(product(ay, bx))),
+    )
