@@ -12,10 +12,11 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
+from cosserat_casadi.model.actuator_assembly import actuators_have_potential
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_assembly import actuators_have_potential, loads_have_potential
+from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout

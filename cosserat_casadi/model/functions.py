@@ -13,11 +13,12 @@ from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs, rod_actuation
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 from cosserat_casadi.rod import kinematics

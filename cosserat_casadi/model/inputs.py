@@ -133,8 +133,6 @@ def scene_value(record: Entry, field: str) -> Numbers:
     if value is None:
         components = record.inputs[field].components
         return np.zeros((components, 1))
-    if isinstance(value, str):
-        value = dict(record.inputs[field].words)[value]
     if isinstance(value, int | float):
         return np.array([[float(value)]])
     if is_symbolic(value):

@@ -19,13 +19,14 @@ from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.constraints import PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, input_values, rod_actuation
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, input_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import written_base_pose
 from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity

@@ -6,12 +6,12 @@ A new kind is a record of its own, registered with `ACTUATORS`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Field, StrictBool
+from pydantic import AfterValidator, BeforeValidator, Field, StrictBool, WithJsonSchema
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.records import Entry, Record, refusal
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, PowerComponent, Share, listed
@@ -44,6 +44,29 @@ Offset = Annotated[tuple[PowerComponent, PowerComponent], listed(2, "2 component
 Span = Annotated[tuple[Share, Share], listed(2, "2 abscissae"), AfterValidator(_base_side_first)]
 
 
+PULLS = {"in": 1.0, "out": -1.0}
+"""Directions of the last pull, with the sign of the friction in it."""
+
+
+def _direction_of_pull(value: Any) -> Any:
+    if isinstance(value, str) and value in PULLS:
+        return PULLS[value]
+    # Truth values are integers in Python.
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not -1.0 <= value <= 1.0:
+        raise refusal([Fault((), f"must be 'in' or 'out', or from -1 to 1, got {shown(value)}")])
+    return float(value)
+
+
+Pull = Annotated[
+    float,
+    BeforeValidator(_direction_of_pull),
+    WithJsonSchema(
+        {"anyOf": [{"enum": list(PULLS), "type": "string"}, {"type": "number", "minimum": -1, "maximum": 1}]}
+    ),
+]
+
+
 class Helix(Record):
     """A tendon that winds round the rod: offset = radius (cos, sin)(2π turns X + phase)."""
 
@@ -72,7 +95,7 @@ offset = [1.5e-3, 0.0]
     inputs: ClassVar[Mapping[str, InputField]] = {
         "tension": InputField("N", 1, lower=0.0),
         "length": InputField("m", 1, positive=True, continuous=True),
-        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True, words=(("in", 1.0), ("out", -1.0))),
+        "pull": InputField("1", 1, lower=-1.0, on_request=True, nonlinear=True),
     }
 
     kind: Literal["tendon"] = Field(description="cable led along the rod")
@@ -85,12 +108,12 @@ offset = [1.5e-3, 0.0]
         False, description="whether a cable of given length may go slack, so that it never pushes"
     )
     friction: NotNegative = Field(
-        0.0, description="coefficient μ of friction along the course, without unit: T(X) = T₀ exp(−μ ∫ |turning|)"
+        0.0, description="coefficient μ of friction along the course, without unit; T(X) = T₀ exp(−μ ∫ |turning|)"
     )
-    pull: Literal["in", "out"] = Field(
-        "in",
+    pull: Pull = Field(
+        1.0,
         description="direction of the last pull at the base: 'in' loses tension along the course, 'out' gains it; "
-        "as an input 1 and −1",
+        "1 and −1 are the same, without unit; between them it turns round",
     )
     axial_stiffness: Positive | None = Field(
         None, description="stiffness EA of the cable, N; one of given length does not stretch where it is left out"

@@ -29,7 +29,6 @@ class InputField:
         continuous: whether its path in a motion must not jump: it prescribes a length.
         on_request: whether it stays free only where the scene lists it: it is no magnitude.
         nonlinear: whether the equations are not linear in it.
-        words: words that the field is given in, each with the number that it stands for.
     """
 
     unit: str
@@ -43,7 +42,6 @@ class InputField:
     continuous: bool = False
     on_request: bool = False
     nonlinear: bool = False
-    words: tuple[tuple[str, float], ...] = ()
 
     def entry_count(self, value: Any) -> int:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""

@@ -101,7 +101,7 @@ def model_of(name: str, strain: str, **changes: Any) -> Model:
     return build(scene(push(), HOOK, strain=strain, accuracy={"modes": 2, "nodes": 5}, actuators=[table], **changes))
 
 
-@pytest.mark.parametrize("strain", ["planar", "kirchhoff", "reissner"])
+@pytest.mark.parametrize("strain", ["planar", "reissner"])
 @pytest.mark.parametrize("name", COURSES)
 def test_jacobian_vs_automatic_differentiation(name: str, strain: str) -> None:
     model = model_of(name, strain)
@@ -246,7 +246,7 @@ def test_an_elastic_cable_may_go_slack() -> None:
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"friction": -0.1}, "friction: must be >= 0"),
-    ({"pull": "up"}, "pull: must be one of"),
+    ({"pull": "up"}, "pull: must be 'in' or 'out', or from -1 to 1, got 'up'"),
     ({"friction": 0.0, "pull": "in"}, "pull: stands without friction"),
     ({"axial_stiffness": 10.0}, "axial_stiffness: is for a tendon of given length"),
     ({"winch_stiffness": 10.0}, "winch_stiffness: is for a tendon of given length"),

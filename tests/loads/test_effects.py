@@ -24,8 +24,15 @@ LENGTHS = {"foundation": 0.8, "flow_bending": 0.4, "tendon_friction": 0.3}
 SCENE = """
 schema = 1
 title = "A finger in water and tissue, with a magnet and a tendon that rubs"
-inputs = ["magnet.dipole.position", "magnet.dipole.moment", "tissue.stiffness", "water.velocity", "cable.tension", "cable.pull"]
-accuracy = { modes = 3, nodes = 8 }
+inputs = [
+    "magnet.dipole.position",
+    "magnet.dipole.moment",
+    "tissue.stiffness",
+    "water.velocity",
+    "cable.tension",
+    "cable.pull",
+]
+accuracy = { modes = 3, nodes = 8, tolerance = 1e-3 }
 [[rods]]
 name = "finger"
 length = 0.2
@@ -166,18 +173,19 @@ def test_a_cycle_of_pulls_as_paths(folder: Path) -> None:
 
 def test_inverse_finds_where_the_source_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     moved = solve_scene(read_scene(folder / "finger.toml"), {"magnet.dipole.position": [0.11, 0.03, 0.24]})
-    inputs = SCENE.replace(
-        '"magnet.dipole.moment", "tissue.stiffness", "water.velocity", "cable.tension", "cable.pull"', ""
-    )
+    # What is looked for alone is free.
+    listed = SCENE[SCENE.index("inputs") : SCENE.index("accuracy")]
+    alone = SCENE.replace(listed, 'inputs = ["magnet.dipole.position"]\n')
     wanted = moved.tip().position[0].tolist()
     target = f'[[targets]]\nkind = "position"\nrod = "finger"\nposition = {wanted}\n'
     bound = '[[bounds]]\ninput = "magnet.dipole.position"\nlower = [0.08, 0.0, 0.22]\nupper = [0.2, 0.2, 0.4]\n'
-    (folder / "wanted.toml").write_text(inputs.replace(", ]", "]") + target + bound)
+    (folder / "wanted.toml").write_text(alone + target + bound)
     assert cosserat(monkeypatch, "inverse", "wanted.toml", "--output", "found.json") == 0
     tip = json.loads((folder / "found.json").read_text())["rods"]["finger"]["tip"]["position"]
     assert_allclose(tip, wanted, rtol=0, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no C compiler")
 def test_export_load_and_sweep(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cosserat(monkeypatch, "export", "finger.toml", "--output", "finger") == 0

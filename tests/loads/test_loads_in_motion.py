@@ -12,7 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, scene_from_dict
-from cosserat_casadi.loads.load import Load, Section
+from cosserat_casadi.loads.load import BodyPoint, Load, Section
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
 from cosserat_casadi.scene.inputs import InputField
@@ -41,6 +41,7 @@ class _OneNumber(LoadRecord):
     rod: str
     at: float = 1.0
     strength: float
+    body: str | None = None
 
 
 class ShakerRecord(_OneNumber):
@@ -58,6 +59,9 @@ class Shaker(Load[Any]):
 
     def abscissa(self, load: Any) -> float:
         return float(load.at)
+
+    def on_body(self, load: Any, body: Any) -> BodyPoint | None:
+        return BodyPoint() if load.body == body.name else None
 
     def wrench(self, load: Any, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         slow = values["strength"] * (section.velocity + ca.cross(section.angular_velocity, section.position))
@@ -186,3 +190,12 @@ def test_added_mass_vs_the_kinetic_energy_of_the_fluid(family: str) -> None:
     units = np.asarray(model.discrete.unknowns.units)
     reference = expected(*state.all).full().ravel()
     assert_allclose(units * added.ravel(), reference, rtol=0, atol=1e-12 * np.abs(reference).max())
+
+
+def test_on_a_body_rates_are_not_known() -> None:
+    tables = FAMILIES["fixed joint"]()
+    shaken = {**SHAKER, "rod": "nothing", "body": "plate"}
+    given = scene_from_dict({**tables, "loads": [*tables["loads"], SHAKER]})
+    on_body = given.loads[-1].model_copy(update=shaken)
+    with pytest.raises(ValueError, match="loads on bodies do not know them"):
+        build(given.model_copy(update={"loads": (*given.loads[:-1], on_body)})).residual  # noqa: B018

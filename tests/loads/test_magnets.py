@@ -10,7 +10,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi.loads.load import Poses
 from cosserat_casadi.loads.trace import traced
+from cosserat_casadi.model.load_arrows import DRAWN_SECTIONS, LoadArrows
 from cosserat_casadi.model.registry import EFFECTS
 from tests.scenes import rod, scene
 
@@ -208,6 +210,23 @@ def test_what_a_field_does_not_have_costs_nothing() -> None:
     stiffness = np.array(ca.DM(trace.kernel.stiffness.sparsity_out(0), 1.0))
     assert np.count_nonzero(stiffness) == np.count_nonzero(stiffness[3:, 3:]) > 0
     assert trace.moving is None
+
+
+def test_a_couple_all_along_is_drawn() -> None:
+    """Without force along the rod its moment is drawn, where it is."""
+    solution = solve(build(scene(magnet(field=[0.1, 0.05, -0.1]), accuracy=FEW)))
+
+    def rod_poses(name: str, X: np.ndarray) -> Poses:
+        pose = solution.pose(X, name)
+        return pose.position.T, pose.rotation
+
+    found = LoadArrows(solution.model.discrete, solution.inputs, rod_poses, lambda name: rod_poses(name, X)).all()
+    X = DRAWN_SECTIONS
+    expected = np.cross(6.0 * solution.pose(X).rotation[:, :, 2], [0.1, 0.05, -0.1])
+    assert {arrow.sort for arrow in found} == {"moment"}
+    assert_allclose([arrow.vector for arrow in found], expected, rtol=0, atol=1e-12)
+    largest = np.linalg.norm(expected, axis=1).max()
+    assert found[0].label == f"magnet: up to {largest:.3g} N m/m"
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
