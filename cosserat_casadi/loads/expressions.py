@@ -14,9 +14,12 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.scene.records import Entry, Record
 
 
-def expressions_in(record: Entry) -> dict[str, Matrix]:
+def expressions_in(record: Any) -> dict[str, Matrix]:
     """Expressions in a record by their paths, but for those of its inputs."""
     found: dict[str, Matrix] = {}
+    # What stands for a record in another program has none.
+    if not isinstance(record, Entry):
+        return found
     for key in type(record).model_fields:
         if key not in record.inputs:
             _collect(getattr(record, key), key, found)
