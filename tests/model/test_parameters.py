@@ -61,7 +61,7 @@ PLATE: dict[str, Any] = {
     "length": 0.5,
     "strain": "reissner",
     "material": {"youngs_modulus": 2.0e9, "shear_modulus": 7e8, "density": 1200.0},
-    "section": {"shape": "rectangle", "width": [0.02, 0.01], "height": 0.004, "shear_correction": 0.85},
+    "section": {"shape": "rectangle", "width": [0.02, 0.01], "height": 0.011, "shear_correction": 0.85},
 }
 
 CABLES = [
@@ -136,7 +136,7 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "tip radius": (tables(WIRE), {"wire.section.outer_radius.tip": 0.0085}),
     "rectangle": (
         tables(PLATE),
-        {"wire.section.width": [0.018, 0.012], "wire.section.height": 0.005, "wire.section.shear_correction": 0.8},
+        {"wire.section.width": [0.018, 0.012], "wire.section.height": 0.0125, "wire.section.shear_correction": 0.8},
     ),
     "shear modulus": (tables(PLATE), {"wire.material.shear_modulus": 6e8}),
     "stiffness": (
