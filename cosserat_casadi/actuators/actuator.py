@@ -12,6 +12,7 @@ from typing import Any, ClassVar, Generic, Literal, TypeVar
 
 from cosserat_casadi.actuators.routing import span_ends
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Quantity
 from cosserat_casadi.scene.actuators import ActuatorRecord
@@ -60,11 +61,11 @@ class Actuator(ABC, Generic[RecordType]):
         """The conjugate quantity for these inputs, 1×1 each; by default it does not depend on them."""
         return self.quantity(actuator, grid)
 
-    def compliance(self, actuator: RecordType) -> tuple[float, float]:
+    def compliance(self, actuator: RecordType) -> tuple[Scalar, Scalar]:
         """Extension of what is prescribed by a unit of effort: 1/EA of each metre, and 1/k; zero of what is rigid."""
         return 0.0, 0.0
 
-    def resting_effort(self, actuator: RecordType) -> float:
+    def resting_effort(self, actuator: RecordType) -> Scalar:
         """Effort at which an elastic actuator has the conjugate that is prescribed."""
         return 0.0
 

@@ -9,6 +9,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import Scalar, is_zero
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.cable import Routing
 from cosserat_casadi.rod.rubbing_cable import RubbingRouting
@@ -33,19 +34,20 @@ class TendonActuator(Actuator[scenes.Tendon]):
         """The routing, on which a cable with friction rubs."""
         course = routing(actuator, grid)
         friction = actuator.friction * values["pull"]
-        if not friction.nnz() or not actuator.friction:
+        if is_zero(friction) or is_zero(actuator.friction):
             return course
         return RubbingRouting(course, friction)
 
-    def compliance(self, actuator: scenes.Tendon) -> tuple[float, float]:
+    def compliance(self, actuator: scenes.Tendon) -> tuple[Scalar, Scalar]:
         """1/EA, 1/N, and 1/k, m/N."""
-        by_length = 0.0 if actuator.axial_stiffness is None else 1 / actuator.axial_stiffness
-        at_base = 0.0 if actuator.winch_stiffness is None else 1 / actuator.winch_stiffness
+        by_length: Scalar = 0.0 if actuator.axial_stiffness is None else 1 / actuator.axial_stiffness
+        at_base: Scalar = 0.0 if actuator.winch_stiffness is None else 1 / actuator.winch_stiffness
         return by_length, at_base
 
-    def resting_effort(self, actuator: scenes.Tendon) -> float:
+    def resting_effort(self, actuator: scenes.Tendon) -> Scalar:
         """The pretension, N."""
-        return float(actuator.pretension)
+        pretension: Scalar = actuator.pretension
+        return pretension
 
     def prescribes_conjugate(self, actuator: scenes.Tendon) -> bool:
         """Where the scene gives a length."""

@@ -14,6 +14,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from cosserat_casadi.maths.numbers import Scalar, is_zero
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.cable import RoutedCable
 
@@ -31,14 +32,14 @@ class Elasticity:
         resting: tension at which the cable has the given length, N.
     """
 
-    by_length: float
-    at_base: float
-    resting: float
+    by_length: Scalar
+    at_base: Scalar
+    resting: Scalar
 
     @property
     def rigid(self) -> bool:
         """Whether the cable keeps its length."""
-        return self.by_length == 0.0 and self.at_base == 0.0
+        return is_zero(self.by_length) and is_zero(self.at_base)
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ class CableLength:
     def strain_columns(self) -> Matrix:
         """Derivative of the residual with the strain coordinates, 1×n."""
         by_strain = self.cable.gradient / self._rod_length
-        if self.elasticity.by_length and self.cable.mean_share_gradient is not None:
+        if self.cable.mean_share_gradient is not None and not is_zero(self.elasticity.by_length):
             stretched = self.elasticity.by_length * self.wanted * self._stretching
             by_strain = by_strain - stretched / self._rod_length * self.cable.mean_share_gradient
         return -(self._results[1] * by_strain).T

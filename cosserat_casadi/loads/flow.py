@@ -23,7 +23,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section, Site
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, stacked_rows
+from cosserat_casadi.maths.numbers import Numbers, is_zero, repeated, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 STILL = 1e-8
@@ -44,13 +44,13 @@ class FlowLoad(Load[scenes.Flow]):
         """Force (N/m) and moment (N m/m) in world axes; the moment is that of the added mass in motion."""
         force: Matrix = ca.DM(3, 1)
         moment: Matrix = ca.DM(3, 1)
-        if load.normal or load.tangential:
+        if not (is_zero(load.normal) and is_zero(load.tangential)):
             diameter = section.data[0]
             force = -load.density / 2 * diameter * self._drag(load, section, values["velocity"])
         if load.gravity is not None:
-            force = force - load.density * section.data[1] * ca.DM(load.gravity)
+            force = force - load.density * section.data[1] * ca.vertcat(*load.gravity)
         # At rest nothing is accelerated.
-        if load.added_mass and section.acceleration.nnz():
+        if section.acceleration.nnz() and not is_zero(load.added_mass):
             added = load.added_mass * load.density * section.data[1]
             inertia, turning = _added_mass(section)
             force = force - added * inertia
@@ -64,7 +64,8 @@ class FlowLoad(Load[scenes.Flow]):
     def data(self, load: scenes.Flow, site: Site) -> Numbers:
         """Diameter, m, and area of fluid displaced, m², at the sections."""
         if load.diameter is not None:
-            diameter = _linear(load.diameter, site.X)
+            ends = load.diameter if isinstance(load.diameter, tuple) else (load.diameter, load.diameter)
+            diameter: Numbers = ends[0] + (ends[1] - ends[0]) * site.X
         else:
             assert site.rod.diameter is not None, "the rules of the scene ask for one"
             diameter = site.rod.diameter(site.X)
@@ -72,7 +73,7 @@ class FlowLoad(Load[scenes.Flow]):
         # A tube displaces what a solid rod would, a rod that is not round its own area.
         if site.rod.diameter is None and site.rod.area is not None:
             displaced = site.rod.area(site.X)
-        return stacked_rows([diameter, displaced])
+        return stacked_rows([repeated(diameter, len(site.X)), repeated(displaced, len(site.X))])
 
     @staticmethod
     def _drag(load: scenes.Flow, section: Section, stream: Matrix) -> Matrix:
@@ -84,14 +85,6 @@ class FlowLoad(Load[scenes.Flow]):
         of_normal = load.normal * _speed(across) * across
         of_tangential = np.pi * load.tangential * _speed(velocity) * along
         return of_normal + of_tangential
-
-
-def _linear(size: Scalar | tuple[Scalar, ...], X: FloatArray) -> Numbers:
-    """A size along the rod: constant, or linear from base to tip."""
-    base, tip = size if isinstance(size, tuple) else (size, size)
-    if any_symbolic([base, tip]):
-        return base * ca.DM(1 - X) + tip * ca.DM(X)
-    return np.asarray(base + (tip - base) * X)
 
 
 def _speed(velocity: Matrix) -> Matrix:

@@ -12,7 +12,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import Load, Section, Site, coefficients, legendre_values
+from cosserat_casadi.loads.load import Load, Section, Site, coefficients
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
@@ -42,10 +43,12 @@ class FoundationLoad(Load[scenes.Foundation]):
 
     def data(self, load: scenes.Foundation, site: Site) -> Numbers:
         """Where the springs are tied to, m, and in the axes of sections their rotation, column after column."""
-        tied_to: Numbers = site.unloaded_position
-        if load.curve is not None:
-            tied_to = legendre_values(coefficients(load.curve), site.X)
+        if load.curve is None:
+            tied_to: Numbers = site.unloaded_position
+        else:
+            series = coefficients(load.curve)
+            tied_to = series @ legendre_polynomials(series.shape[1], site.X).T
         if load.frame == "world":
             return tied_to
         columns = np.transpose(site.unloaded_rotation, (2, 1, 0)).reshape(9, -1)
-        return stacked_rows([*rows_of(tied_to), *rows_of(columns)])
+        return stacked_rows([*rows_of(tied_to), *columns])

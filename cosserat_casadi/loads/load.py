@@ -21,16 +21,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.numbers import (
-    Numbers,
-    Scalar,
-    any_symbolic,
-    as_matrix,
-    as_vector,
-    is_symbolic,
-    is_zero,
-    known,
-)
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, is_zero
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -251,14 +242,6 @@ def _symbolic_coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) 
     longest = max(len(row) for row in rows)
     padded = [(*row, *[0.0] * (longest - len(row))) for row in rows]
     return ca.horzcat(*[as_vector([row[degree] for row in padded]) for degree in range(longest)])
-
-
-def legendre_values(series: Numbers, X: FloatArray) -> Numbers:
-    """Fields of Legendre coefficients (components, k) at abscissae X, shape (components, len(X))."""
-    polynomials = legendre_polynomials(series.shape[1], X).T
-    if is_symbolic(series):
-        return series @ ca.DM(polynomials)
-    return np.asarray(known(series) @ polynomials)
 
 
 def constant(values: Numbers) -> Matrix | None:

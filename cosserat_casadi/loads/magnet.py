@@ -14,8 +14,9 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients, legendre_values
-from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_matrix, is_zero, known, rows_of, stacked_rows
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import Numbers, columns_times, is_zero, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 MU_0_OVER_4_PI = 1e-7
@@ -58,12 +59,11 @@ class MagnetLoad(Load[scenes.Magnet]):
         if load.magnetisation is None:
             return np.zeros((0, len(site.X)))
         series = coefficients(load.magnetisation)[_components(load), :]
-        magnetisation = legendre_values(series, site.X)
+        magnetisation = series @ legendre_polynomials(series.shape[1], site.X).T
         # The magnetisation of a rod that has no section is its moment per length already.
         if site.rod.area is None:
             return magnetisation
-        area = site.rod.area(site.X)
-        return stacked_rows([_times(row, area) for row in rows_of(magnetisation)])
+        return columns_times(magnetisation, site.rod.area(site.X))
 
     def faults(self, load: scenes.Magnet, site: Site) -> Iterator[Problem]:
         """The source of the field is inside the rod, where a dipole has no field."""
@@ -73,7 +73,7 @@ class MagnetLoad(Load[scenes.Magnet]):
         distances = np.linalg.norm(site.unloaded_position - source, axis=0)
         reach = np.full(len(site.X), ON_THE_AXIS * site.rod.length)
         if site.rod.diameter is not None:
-            reach = site.rod.diameter(site.X) / 2
+            reach = known(site.rod.diameter(site.X)) / 2
         if np.any(distances <= reach):
             problem = f"lies inside the unloaded rod {site.rod.name!r}"
             yield Problem(f"{load.name}.dipole.position", problem, "move the source away from the rod")
@@ -92,15 +92,8 @@ ON_THE_AXIS = 1e-9
 def _components(load: scenes.Magnet) -> list[int]:
     """Axes of the section along which the rod is magnetised."""
     assert load.magnetisation is not None
-    rows = rows_of(coefficients(load.magnetisation))
-    return [axis for axis in range(3) if not is_zero(rows[axis])]
-
-
-def _times(values: Numbers, factors: Numbers) -> Numbers:
-    """Products of two vectors, entry by entry."""
-    if any_symbolic([values, factors]):
-        return as_matrix(values) * as_matrix(factors)
-    return np.asarray(known(values) * known(factors))
+    rows = coefficients(load.magnetisation)
+    return [axis for axis in range(3) if not is_zero(rows[axis, :])]
 
 
 def _dipole_field(position: Matrix, source: Matrix, moment: Matrix) -> Matrix:

@@ -119,7 +119,7 @@ def traced(member: Load[Any], load: Any, values: Mapping[str, Matrix], data_size
         moment = section.rotation @ moment
     columns = force.shape[1], moment.shape[1]
     kernel = _kernel(section, stored(symbols), force, moment, energy)
-    moving = _moving_kernel(member, load, section, symbols)
+    moving = _moving_kernel(member, written, section, symbols)
     return TracedLoad(member, load, kernel, moving, columns, pose_free, fixed)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import casadi as ca
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
@@ -25,6 +26,9 @@ Scalar: TypeAlias = float | Matrix
 
 ROUNDING = 1e-15
 """Share of the largest entry below which an entry is zero by orthogonality."""
+
+
+IndexArray: TypeAlias = npt.NDArray[np.int64]
 
 
 def is_symbolic(value: object) -> TypeIs[Matrix]:
@@ -47,7 +51,7 @@ def is_zero(value: Scalar | Numbers | Sequence[Scalar]) -> bool:
     """Whether numbers are known to be zero, all of them."""
     if isinstance(value, tuple | list):
         return all(is_zero(entry) for entry in value)
-    if isinstance(value, ca.MX | ca.DM):
+    if isinstance(value, ca.MX | ca.SX | ca.DM):
         return bool(value.nnz() == 0)
     return not np.any(np.asarray(value))
 
@@ -95,6 +99,25 @@ def stacked_rows(rows: Sequence[Numbers]) -> Numbers:
     if any_symbolic(rows):
         return side_by_side(rows).T
     return np.stack([known(row) for row in rows])
+
+
+def among(table: Numbers, columns: Sequence[int] | IndexArray, count: int) -> Numbers:
+    """Columns of a table among so many, zero elsewhere; one column of expressions may stand for all of them."""
+    if is_symbolic(table):
+        chosen = ca.sparsify(ca.DM(np.eye(count)[np.asarray(columns)]))
+        placed: Matrix = as_matrix(repeated(table.T, len(columns))).T @ chosen
+        return placed
+    whole = np.zeros((table.shape[0], count))
+    whole[:, columns] = known(table)
+    return whole
+
+
+def columns_times(table: Numbers, factors: Numbers) -> Numbers:
+    """A table, each column times a factor."""
+    if not any_symbolic([table, factors]):
+        return known(table) * known(factors)
+    count = table.shape[1]
+    return as_matrix(table) @ ca.diag(as_matrix(repeated(factors, count)))
 
 
 def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:

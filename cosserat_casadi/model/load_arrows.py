@@ -104,7 +104,7 @@ class LoadArrows:
                 continue
             to_sections = discrete_rod.grid.interpolation_matrix(X)
             site = Site(discrete_rod.properties, X, partial(unloaded_poses, self.discrete, rod, to_sections))
-            data_size = len(member.data(load, site))
+            data_size = member.data(load, site).shape[0]
             kernel = traced(member, load, values, data_size)
             poses = self.rod_poses(rod, X)
             force, moment = _wrench(kernel, stored(values), poses, known(kernel.data(site)))

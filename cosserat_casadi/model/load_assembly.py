@@ -14,8 +14,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.expressions import expressions_in
 from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
-from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.numbers import Numbers, Scalar, as_matrix, as_vector, is_symbolic, is_zero
+from cosserat_casadi.maths.numbers import Scalar, among, as_matrix, as_vector, is_zero
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -81,7 +80,7 @@ class RodLoads:
             return []
         values = input_values(self.discrete.layout, load, self.inputs)
         site = _site(self.discrete, self.rod, load)
-        data_size = len(member.data(load, site))
+        data_size = member.data(load, site).shape[0]
         kernel = traced(member, load, values, data_size)
         if not kernel.pose_free or self._feels_motion(kernel):
             return [self._pose_wrench(kernel, site)]
@@ -110,7 +109,7 @@ class RodLoads:
         # Zero outside the span.
         nodes = grid.nodes_in(*kernel.member.span(kernel.load))
         within = kernel.member.profiles(kernel.load, site.rod, site.X, coefficients.shape[1])
-        profiles = _at_nodes(within, nodes, grid.size)
+        profiles = among(within, nodes, grid.size)
         if is_zero(profiles):
             return None
         scaled = per_reference_length(coefficients, self.ratio)
@@ -196,16 +195,6 @@ def _numbers(field: Matrix) -> FloatArray:
     return values
 
 
-def _at_nodes(within: Numbers, nodes: Indices, count: int) -> Numbers:
-    """Profiles at some nodes among those of all, shape (columns, count), zero at the others."""
-    if is_symbolic(within):
-        places = ca.DM(ca.Sparsity.triplet(len(nodes), count, list(range(len(nodes))), nodes.tolist()), 1.0)
-        return within @ places
-    profiles = np.zeros((within.shape[0], count))
-    profiles[:, nodes] = within
-    return profiles
-
-
 def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     """Indices of the inputs that equations need not be linear in: of loads that depend on poses, and declared so."""
     layout = discrete.layout
@@ -235,7 +224,7 @@ def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Ma
     for rod in discrete.rods:
         if member.acts_on(load, rod):
             site = _site(discrete, rod, load)
-            data_sizes.append(len(member.data(load, site)))
+            data_sizes.append(member.data(load, site).shape[0])
     # A body has no data that differ from section to section.
     data_sizes += [0 for body in discrete.scene.bodies if member.on_body(load, body) is not None]
     return [traced(member, load, values, size) for size in data_sizes]
@@ -444,7 +433,7 @@ def _has_potential_on_rod(
     if not EFFECTS[load.kind].acts_on(load, rod):
         return True
     member = EFFECTS[load.kind]
-    data_size = len(member.data(load, _site(discrete, rod, load)))
+    data_size = member.data(load, _site(discrete, rod, load)).shape[0]
     return has_potential(member, load, values, data_size, one_axis=_turns_about_one_axis(discrete, rod))
 
 

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, is_zero, rows_of
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_zero, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Lossless
@@ -153,7 +152,7 @@ class RoutedCable(Lossless):
         x, y, _ = self.tangent
         if x is None and y is None:
             return None
-        metric = _constant(self._metric(a, b))
+        metric = self._metric(a, b)
         along = negative(product(self.lever[a], self.lever[b]))
         across = added(metric, along)
         if across is None:
@@ -190,15 +189,12 @@ class RoutedCable(Lossless):
             (None, None, unit),
         ]
 
-    def _metric(self, a: int, b: int) -> Numbers:
-        """Scalar product of the rates of T with two strains, shape (k,)."""
+    def _metric(self, a: int, b: int) -> Row:
+        """Scalar product of the rates of T with two strains, 1×k."""
         pairs = zip(self.tangent_rates[a], self.tangent_rates[b], strict=True)
-        total = added(*[product(one, other) for one, other in pairs])
-        if total is None:
-            return np.zeros(len(self.routing.nodes))
-        if is_symbolic(total):
-            return total.T
-        return np.asarray(total.full()[0])
+        metric = added(*[product(one, other) for one, other in pairs])
+        # A zero without sign, whichever factor it comes from.
+        return None if metric is None else metric + 0.0
 
     @property
     def _node_lengths(self) -> FloatArray:

@@ -25,7 +25,7 @@ from cosserat_casadi import (
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.loads import LoadRecord
-from tests.loads.kinds import DipoleRecord, FoundationRecord, registered, with_loads
+from tests.loads.kinds import BedRecord, DipoleRecord, registered, with_loads
 from tests.scenes import WEIGHT, push
 
 WIRE: dict[str, Any] = {
@@ -119,6 +119,12 @@ BRANCH: dict[str, Any] = {
     "inputs": ["weight.acceleration"],
 }
 
+
+def streaming(rod: dict[str, Any], load: dict[str, Any]) -> dict[str, Any]:
+    """A rod with one load, none of whose magnitudes is an input."""
+    return {"schema": 1, "rods": [rod], "loads": [load], "inputs": []}
+
+
 CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "moduli": (tables(WIRE), {"wire.material.youngs_modulus": 3.1e9, "wire.material.poisson_ratio": 0.21}),
     "modulus of a uniform rod": (
@@ -181,6 +187,71 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "place of a branch": (
         {"schema": 1, **BRANCH},
         {"twig.base.position": [0.01, 0.02, 0], "twig.base.quaternion": [0.6, 0, 0.8, 0], "tip.position.y": 0.02},
+    ),
+    "a stream": (
+        streaming(
+            WIRE,
+            {
+                "name": "stream",
+                "kind": "flow",
+                "density": 900.0,
+                "velocity": [0.4, 0.1, 0],
+                "normal": 1.1,
+                "tangential": 0.02,
+                "added_mass": 1.0,
+                "gravity": [0, 0, -9.81],
+            },
+        ),
+        {
+            "stream.density": 1050.0,
+            "stream.normal": 0.9,
+            "stream.tangential": 0.03,
+            "stream.added_mass": 0.8,
+            "stream.gravity.z": -9.0,
+            "stream.velocity.y": 0.3,
+            "wire.section.outer_radius": [0.012, 0.009],
+        },
+    ),
+    "a magnetised rod": (
+        streaming(
+            WIRE,
+            {
+                "name": "magnet",
+                "kind": "magnet",
+                "rod": "wire",
+                "magnetisation": [0, 0, [8e4, 1e3]],
+                "field": [0, 0.02, 0.01],
+                "dipole": {"position": [0.5, 0.5, 0.5], "moment": [0, 0, 9.0]},
+            },
+        ),
+        {
+            "magnet.magnetisation.z": [6e4, -2e3],
+            "magnet.dipole.position": [0.6, 0.4, 0.5],
+            "magnet.field.x": 0.01,
+            "wire.section.inner_radius": 0.004,
+        },
+    ),
+    "a foundation along a curve": (
+        streaming(
+            WIRE,
+            {
+                "name": "bed",
+                "kind": "foundation",
+                "rod": "wire",
+                "stiffness": [40.0, 30.0, 0],
+                "span": [0.3, 1.0],
+                "curve": [[0.1, 0.05], 0.0, [0.5, 0.3]],
+            },
+        ),
+        {"bed.stiffness.x": 55.0, "bed.curve.x": [0.12, 0.04]},
+    ),
+    "a rubbing tendon": (
+        tables(ELASTIC, actuators=[{**CABLES[1], "friction": 0.2}]),
+        {"coil.friction": 0.3, "coil.helix.radius": 7e-3, "coil.tension": 0.9},
+    ),
+    "elastic cables": (
+        tables(ELASTIC, actuators=[{**ROPES[0], "axial_stiffness": 400.0, "winch_stiffness": 3e3, "pretension": 0.3}]),
+        {"rope.axial_stiffness": 500.0, "rope.winch_stiffness": 2e3, "rope.pretension": 0.1, "rope.length": 0.795},
     ),
     "cables of given length": (
         tables(ELASTIC, actuators=ROPES),
@@ -344,6 +415,11 @@ EQUILIBRIA = (
     "helix",
     "chamber",
     "cables of given length",
+    "a stream",
+    "a magnetised rod",
+    "a foundation along a curve",
+    "a rubbing tendon",
+    "elastic cables",
     "lengths in an assembly",
     "places of joints",
     "places of hinges and slides",
@@ -452,7 +528,7 @@ def test_coefficients_of_loads_that_depend_on_poses() -> None:
 
 def test_what_is_bound_to_the_unloaded_rod_refuses_parameters_that_move_it() -> None:
     with registered():
-        bed = FoundationRecord(name="bed", kind="foundation", rod="wire", strength=20.0)
+        bed = BedRecord(name="bed", kind="bed", rod="wire", strength=20.0)
         moving = build(with_kind(bed, WIRE, "wire.intrinsic.curvature"))
         with pytest.raises(SceneError, match="bound to where the unloaded rod was, which parameters move"):
             _ = moving.residual
