@@ -259,7 +259,22 @@ class _Reading:
         for i, value in enumerate(self.inputs):
             arguments.append(Argument(function.name_in(i), value.pattern, [value]))
         results = dict(zip(function.name_out(), self.outputs, strict=True))
-        return Program(function.name(), self.origins, arguments, self.steps, results)
+        return Program(function.name(), self.origins, arguments, self._needed_steps(), results)
+
+    def _needed_steps(self) -> list[Step]:
+        """The steps that results come from: a function that is called may give some that nobody reads."""
+        needed = self._things(self.outputs)
+        steps = []
+        for step in reversed(self.steps):
+            if needed & self._things(step.results):
+                needed |= self._things(step.operands)
+                steps.append(step)
+        return steps[::-1]
+
+    def _things(self, values: Sequence[Value]) -> set[int]:
+        """What these values are entries of."""
+        numbers = np.concatenate([np.zeros(0, dtype=np.int64), *[value.numbers for value in values]])
+        return set(self.origins.owners(numbers).tolist()) - {0}
 
     def _read(self, function: ca.Function, arguments: Sequence[Value]) -> list[Value]:
         """Results of a function of matrices for these arguments."""

@@ -7,6 +7,7 @@ Equations that jump or have a kink in time are integrated piece by piece: a step
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -123,6 +124,21 @@ def _equal_steps(run: StepRun, size: float, after_step: AfterStep | None) -> Ste
     return StepOutcome.COMPLETED
 
 
+def _crawls(reached: Sequence[float], length: float) -> bool:
+    """Whether a motion is on its way at a pace that leads nowhere.
+
+    One whose steps shrink is not: it is about to end by their size.
+
+    Args:
+        reached: times before each of the last tries, at most TRIES.
+        length: of the piece, s.
+    """
+    if len(reached) < TRIES or reached[-1] - reached[0] >= SLOWEST * TRIES * length:
+        return False
+    middle = reached[TRIES // 2]
+    return reached[-1] - middle > (middle - reached[0]) / 2
+
+
 def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome:
     """Take steps as long as the tolerance allows."""
     length = run.stop - run.start.time
@@ -135,7 +151,7 @@ def _controlled_steps(run: StepRun, after_step: AfterStep | None) -> StepOutcome
     # Times reached before each of the last tries.
     reached = deque([run.now.time], maxlen=TRIES)
     while run.now.time < run.stop:
-        if len(reached) == TRIES and run.now.time - reached[0] < SLOWEST * TRIES * length:
+        if _crawls(reached, length):
             run.size = control.wanted
             return StepOutcome.TOO_MANY_STEPS
         reached.append(run.now.time)
