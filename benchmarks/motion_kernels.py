@@ -19,14 +19,13 @@ from loops import compiled
 from rich.progress import track
 
 from cosserat_casadi import Model, build, discretise, read_scene, scene_from_dict
-from cosserat_casadi.codegen.blocks import Blocks, blocks
 from cosserat_casadi.codegen.kernels import sources
-from cosserat_casadi.codegen.parts import Parted, parted
+from cosserat_casadi.codegen.motion_parts import motion_in_c
+from cosserat_casadi.codegen.names import model_names
+from cosserat_casadi.codegen.parts import Parted
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 MATERIAL = {"youngs_modulus": 60e9, "poisson_ratio": 0.33, "density": 6450.0}
-MATRICES = 3
-"""Results of the motion's Jacobian that are matrices: stiffness, damping and mass."""
 
 
 def rod(strain: str, modes: int, nodes: int) -> Model:
@@ -78,24 +77,9 @@ def named(kernel: ca.Function) -> ca.Function:
 
 
 def equations(model: Model) -> tuple[Parted, Parted]:
-    """Inverse dynamics and the motion's Jacobian in parts, of state and inputs with their rates."""
-    size, given = model.size, model.inputs.size
-    state, inputs, factor = ca.MX.sym("state", 3 * size), ca.MX.sym("inputs", 3 * given), ca.MX.sym("factor")
-    arguments = [state[k * size : (k + 1) * size] for k in range(3)]
-    arguments += [inputs[k * given : (k + 1) * given] for k in range(3)]
-    matrices = model.dynamics_jacobian.call(arguments)[:MATRICES]
-    pattern = matrices[0].sparsity() + matrices[1].sparsity() + matrices[2].sparsity()
-    partition = blocks(model.discrete, pattern) or Blocks([0] * size, pattern)
-    owners = []
-    for matrix in matrices:
-        pairs = zip(*matrix.sparsity().get_triplet(), strict=True)
-        owners += [max(partition.owners[i], partition.owners[j]) for i, j in pairs]
-    symbols = [state, inputs, factor]
-    entries = ca.vertcat(*[matrix.nz[:] for matrix in matrices])
-    jacobian = ca.Function("jacobian", symbols, [entries], ["x", "inputs", "factor"], ["entries"])
-    rows = [model.inverse_dynamics.call(arguments)[0]]
-    residual = ca.Function("residual", symbols, rows, ["x", "inputs", "factor"], ["entries"])
-    return parted(residual, partition.owners, "residual"), parted(jacobian, owners, "jacobian")
+    """Inverse dynamics and the motion's Jacobian in parts, as an exported folder has them."""
+    motion = motion_in_c(model, model_names("motion", model, dynamics=True))
+    return motion.residual, motion.matrices
 
 
 def main(names: Annotated[list[str] | None, typer.Argument(help="Models; all by default.")] = None) -> None:

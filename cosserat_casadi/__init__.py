@@ -20,6 +20,7 @@ from cosserat_casadi.codegen.compiled_motion import (
     StepState,
 )
 from cosserat_casadi.codegen.export import export
+from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
 from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.codegen.stage import compiled_stage
@@ -112,6 +113,7 @@ __all__ = [
     "sweep_scene",
     "tune",
     "write_acados",
+    "write_fmu",
     "write_motion",
     "write_result",
 ]

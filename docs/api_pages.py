@@ -17,6 +17,7 @@ from typing import Any
 
 import cosserat_casadi
 import cosserat_casadi.control
+import cosserat_casadi.environments
 from cosserat_casadi.model.function_table import FunctionSpec, NamedFunction, Owner
 
 FOLDER = Path(__file__).parent / "api"
@@ -34,6 +35,7 @@ class Concept:
         words: the sentence below it.
         names: public names of the package, in the order in which they are shown.
         control_names: public names of ``cosserat_casadi.control`` that the package itself does not have.
+        environment_names: public classes of ``cosserat_casadi.environments``.
     """
 
     file: str
@@ -41,6 +43,7 @@ class Concept:
     words: str
     names: tuple[str, ...]
     control_names: tuple[str, ...] = ()
+    environment_names: tuple[str, ...] = ()
 
 
 CONCEPTS = (
@@ -125,7 +128,8 @@ CONCEPTS = (
         "export",
         "Export and load",
         "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md). "
-        "A solution as a page for [a browser](../view.md).",
+        "A solution as a page for [a browser](../view.md), a motion as a file for "
+        "[other simulators](../simulators.md).",
         (
             "export",
             "load",
@@ -138,8 +142,16 @@ CONCEPTS = (
             "LinearMotion",
             "MotionStatus",
             "export_page",
+            "write_fmu",
             "ExportError",
         ),
+    ),
+    Concept(
+        "environments",
+        "Environments",
+        "A moving robot for reinforcement learning; see [other programs](../simulators.md).",
+        (),
+        environment_names=("ReachEnvironment",),
     ),
     Concept(
         "results",
@@ -178,9 +190,14 @@ def _contents() -> str:
         "",
     ]
     for concept in CONCEPTS:
-        names = ", ".join(f"`{name}`" for name in (*concept.names, *concept.control_names))
+        names = ", ".join(f"`{name}`" for name in _names(concept))
         lines.append(f"* [{concept.title}]({concept.file}.md): {names}")
     return "\n".join(lines) + "\n"
+
+
+def _names(concept: Concept) -> tuple[str, ...]:
+    """All names of a page."""
+    return (*concept.names, *concept.control_names, *concept.environment_names)
 
 
 def _page(concept: Concept) -> str:
@@ -189,6 +206,8 @@ def _page(concept: Concept) -> str:
         parts += _entry(cosserat_casadi, name)
     for name in concept.control_names:
         parts += _entry(cosserat_casadi.control, name)
+    for name in concept.environment_names:
+        parts += _entry(cosserat_casadi.environments, name)
     return "\n\n".join(parts) + "\n"
 
 

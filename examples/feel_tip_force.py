@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cosserat_casadi import Compiled, Model, build, export, load, scene_from_dict
-from cosserat_casadi.codegen.compiled_motion import StepState
+from cosserat_casadi import Compiled, Model, StepMemory, StepState, build, export, load, scene_from_dict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -130,8 +129,10 @@ class Plant:
     def at_rest(self) -> StepState:
         """The robot at rest, before it is touched."""
         inputs = self.inputs(np.zeros(3), PULLS)
-        state = self.library.rest(inputs, self.library.solve(inputs).x)
-        assert state is not None
+        found = self.library.solve(inputs)
+        state = self.library.rest(inputs, found.x) if found.converged else None
+        if state is None:
+            raise RuntimeError(f"the robot has no state at rest: {found.outcome.value}")
         return state
 
 
@@ -149,7 +150,7 @@ class Belief:
     state: StepState
     force: np.ndarray
     covariance: np.ndarray
-    memory: Any
+    memory: StepMemory
 
     @property
     def mean(self) -> np.ndarray:

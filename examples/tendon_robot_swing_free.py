@@ -25,8 +25,9 @@ from cosserat_casadi import Model, build, compiled_motion_stage, compiled_stage,
 from cosserat_casadi.control import Condensing, Horizon, motion_stage, radau
 from cosserat_casadi.motion.history import equations_of
 from cosserat_casadi.motion.moving_inputs import MovingInputs
+from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
 from cosserat_casadi.numerics.motion_equations import Instant
-from cosserat_casadi.numerics.time_steps import StepOutcome, StepSettings, integrate
+from cosserat_casadi.numerics.time_steps import integrate
 from cosserat_casadi.scene.motions import InputMotion
 
 SCENE = Path(__file__).parent / "two_section_robot.toml"

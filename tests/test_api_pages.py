@@ -10,6 +10,7 @@ import pytest
 
 import cosserat_casadi
 import cosserat_casadi.control
+import cosserat_casadi.environments
 from tests.conftest import ROOT
 
 API = ROOT / "docs" / "api"
@@ -43,6 +44,8 @@ def test_every_public_name_is_on_one_page(generator: ModuleType) -> None:
     assert len(set(control_names)) == len(control_names)
     assert set(control_names) | set(names) >= set(cosserat_casadi.control.__all__)
     assert not set(control_names) & set(names)
+    environment_names = [name for concept in generator.CONCEPTS for name in concept.environment_names]
+    assert sorted([*environment_names, "REACH"]) == sorted(cosserat_casadi.environments.__all__)
 
 
 def test_every_entry_says_something(generator: ModuleType) -> None:

@@ -13,8 +13,6 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
@@ -22,7 +20,9 @@ from cosserat_casadi.codegen.fmu_description import build_description, model_des
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources
 from cosserat_casadi.codegen.library import VERBATIM, render, resource
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
+from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import Names, model_names
+from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model
@@ -82,8 +82,11 @@ def write_fmu(
         progress: told what is compiled, how many files are, and of how many.
 
     Raises:
-        ExportError: the file or the name is refused, there is no compiler, or it fails; nothing was written.
+        ExportError: the file, the name or a motion of this scene is refused, there is no compiler, or it fails; nothing
+            was written.
     """
+    refuse_parameters(model.scene)
+    check_motion(model)
     check_fmu(path)
     names = model_names(name, model)
     found = find_compiler(compiler)
@@ -119,18 +122,14 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         kernel(model, outputs.function, names.kernel("motion_outputs")),
         kernel(model, outputs.jacobian, names.kernel("motion_outputs_jacobian")),
     ]
-    moves = np.concatenate(
-        [np.zeros(0, dtype=int)]
-        + [
-            np.full(entry.size, entry.declared.geometry or entry.declared.continuous, dtype=int)
-            for entry, _ in model.inputs
-        ]
-    )
+    moves = list[int]()
+    for entry, _ in model.inputs:
+        moves += [int(entry.declared.geometry or entry.declared.continuous)] * entry.size
     words = {
         "name": names.name,
         "MACRO": names.macro,
         "outputs": len(outputs.entries),
-        "moves": numbers(moves.tolist()) or "0",
+        "moves": numbers(moves) or "0",
         "step": repr(step),
         "unloaded": int(_starts_unloaded(model)),
         "token": "@{token}",

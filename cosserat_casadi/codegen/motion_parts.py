@@ -14,8 +14,9 @@ import casadi as ca
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parts import Parted, parted
-from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.simulate import immovable
 
 MATRICES = ("stiffness", "damping", "mass")
 """Derivatives of the equations by x, v and a."""
@@ -72,14 +73,7 @@ def check_motion(model: Model) -> None:
     Raises:
         ExportError: with every fault.
     """
-    problems = []
-    for index, rod in enumerate(model.discrete.rods.values()):
-        if rod.properties.linear_density is None:
-            remedy = "give it a material with a density, or linear_density"
-            problems.append(Problem(f"rods[{index}]", "has no mass, and the step in C was asked for", remedy))
-    if model.scene.accuracy.rotation == "permuted":
-        what = "'permuted', the literal linear system, has no velocities"
-        problems.append(Problem("accuracy.rotation", what, "leave it out, or use a product of exponentials"))
+    problems = immovable(model)
     if problems:
         raise ExportError(*problems)
 

@@ -78,7 +78,9 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
     """
     places = _by_owner(owners)
     programs = _programs(function, places)
-    if programs is None or max(program.foreseen for program in programs) <= FORESEEN_WITHIN * STRAIGHT:
+    # A scene without inputs has no derivative by them, and no part.
+    longest = 0.0 if programs is None else max((program.foreseen for program in programs), default=0.0)
+    if longest <= FORESEEN_WITHIN * STRAIGHT:
         straight = _straight(function, places, name)
         if all(kernel.n_instructions() <= STRAIGHT for kernel in straight.kernels):
             return straight

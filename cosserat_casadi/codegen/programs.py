@@ -58,10 +58,10 @@ class PartialProgram:
         """Instructions without loops, roughly: a long function that is called counts as what it reads and gives."""
         total = 0.0
         for step in self.steps:
-            called = step.function
-            total += (
-                min(step.instructions, 1e9) if np.isfinite(step.instructions) else called.nnz_in() + called.nnz_out()
-            )
+            if np.isfinite(step.instructions):
+                total += step.instructions
+            else:
+                total += step.function.nnz_in() + step.function.nnz_out()
         return total
 
     @property

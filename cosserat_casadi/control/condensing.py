@@ -125,7 +125,8 @@ class Condensing:
             unknowns_by_inputs = with_inputs[k] + with_state[k] @ states_by_inputs[k]
             states_by_inputs[k + 1] = self._transition @ states_by_inputs[k] + self._drive @ unknowns_by_inputs
             states_shift[k + 1] = self._transition @ states_shift[k] + self._drive @ unknowns_shift[k] + gaps[k]
-        worst = max(float(np.abs(unsolved).max()), float(np.abs(gaps).max()))
+        # NumPy's maximum is NaN where either is.
+        worst = float(np.maximum(np.abs(unsolved).max(), np.abs(gaps).max()))
         return Condensed(
             guess=guess,
             residual=worst,

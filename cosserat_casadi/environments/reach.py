@@ -1,6 +1,6 @@
 """A moving robot that is to bring a tip to a target and keep it there: an environment of Gymnasium.
 
-Its state moves by the step in C, so that an episode costs milliseconds. gymnasium is an extra.
+Its state moves by the step in C. gymnasium is an extra.
 """
 
 from __future__ import annotations
@@ -17,9 +17,10 @@ import numpy.typing as npt
 
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.codegen.compiled import Compiled, load
-from cosserat_casadi.codegen.compiled_motion import StepState
+from cosserat_casadi.codegen.compiled_motion import StepMemory, StepState
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.motion_outputs import motion_outputs
+from cosserat_casadi.codegen.plain import vector
 from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -42,7 +43,7 @@ class _Episode:
     Attributes:
         state: of the motion.
         inputs: stacked.
-        inputs_rate: with which they moved at last, per s.
+        inputs_rate: with which they moved at last, units per second.
         target: where the tip is to be, m, shape (3,).
         memory: of the steps in C.
         periods: that have passed.
@@ -52,7 +53,7 @@ class _Episode:
     inputs: FloatArray
     inputs_rate: FloatArray
     target: FloatArray
-    memory: Any
+    memory: StepMemory
     periods: int = 0
 
 
@@ -65,14 +66,30 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
     the rod. An episode is truncated at its duration, and terminated where a step cannot be computed: ``info["status"]``
     is the sentence that says why, ``info["distance"]`` the distance in m.
 
-    Targets are tips of equilibria at random inputs within the bounds, so that each can be held; ``options={"target":
-    …}`` of :meth:`reset` names one.
+    Targets are tips of equilibria at random inputs within the bounds, whose stability is not asked for;
+    ``options={"target": …}`` of :meth:`reset` names one.
+
+    The model is built and compiled: seconds the first time, then it is taken from the cache.
+
+    Args:
+        scene: a scene, or the path of its file, with a range in ``[[bounds]]`` for every input that acts. Its
+            parameters have the values of the scene.
+        rod: whose tip moves; the first rod by default.
+        period: between two actions, s.
+        step: longest step of the integrator, s.
+        duration: of an episode, s.
 
     Attributes:
+        rod: name of the rod whose tip moves.
         model: the model of the scene in motion.
         library: its compiled folder.
         period: between two actions, s.
         dt: length of a step of the integrator, s.
+
+    Raises:
+        SceneError: the scene is faulty, has no such rod, or an input that acts has no range.
+        ValueError: a time is not > 0.
+        RuntimeError: there is no equilibrium at the scene's inputs.
     """
 
     metadata = {"render_modes": []}  # noqa: RUF012  (so declared by gymnasium)
@@ -86,22 +103,9 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         step: float = 2e-3,
         duration: float = 2.0,
     ) -> None:
-        """Build and compile the model: seconds the first time, then it is taken from the cache.
-
-        Args:
-            scene: a scene, or the path of its file, with a range in ``[[bounds]]`` for every input that acts.
-            rod: whose tip moves; the first rod by default.
-            period: between two actions, s.
-            step: longest step of the integrator, s.
-            duration: of an episode, s.
-
-        Raises:
-            SceneError: the scene is faulty, has no such rod, or an input that acts has no range.
-            ValueError: a time is not > 0.
-        """
         if not all(np.isfinite(time) and time > 0 for time in (period, step, duration)):
             raise ValueError(f"period, step and duration must be > 0, got {period}, {step}, {duration}")
-        described = scene if isinstance(scene, Scene) else read_scene(Path(scene))
+        described = (scene if isinstance(scene, Scene) else read_scene(Path(scene))).baked()
         self.rod = _rod_name(described, rod)
         self.model = build(described, solve_scene(described).model.discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
@@ -126,14 +130,15 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
 
         Args:
             seed: of the targets.
-            options: ``target``: a position in m instead of a random one.
+            options: ``target``: a position in m, shape (3,), instead of a random one.
 
         Raises:
+            ValueError: the target is not three finite numbers.
             RuntimeError: there is no equilibrium at the scene's inputs, or at twenty random ones.
         """
         super().reset(seed=seed)
         target = (options or {}).get("target")
-        chosen = self._random_target() if target is None else np.asarray(target, dtype=np.float64).reshape(3)
+        chosen = self._random_target() if target is None else _finite(target, 3, "target")
         self._episode = self._begun(self.model.pack(), chosen)
         return self._observation(), self._info("")
 
@@ -141,11 +146,15 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         """Move the inputs to where an action says, over one control period.
 
         Args:
-            action: shares of the ranges, −1 to 1; what lies outside counts as the bound.
+            action: shares of the ranges, −1 to 1, shape (k,); what lies outside counts as the bound.
+
+        Raises:
+            ValueError: the action is not as many finite numbers as there are inputs that act.
         """
+        shares = np.clip(_finite(action, len(self._acting.indices), "action"), -1.0, 1.0)
         episode = self._episode
         aimed = episode.inputs.copy()
-        aimed[self._acting.indices] = self._from_share(np.clip(action, -1.0, 1.0))
+        aimed[self._acting.indices] = self._from_share(shares)
         rate = (aimed - episode.inputs) / (self._steps * self.dt)
         episode.inputs_rate = rate
         episode.periods += 1
@@ -212,6 +221,18 @@ def _rod_name(scene: Scene, rod: str | None) -> str:
     if rod not in names:
         raise SceneError(Problem("rod", f"there is no rod {rod!r}", f"the rods are {', '.join(names)}"))
     return rod
+
+
+def _finite(value: npt.ArrayLike, size: int, name: str) -> FloatArray:
+    """Numbers that are all finite, as a vector of a known size.
+
+    Raises:
+        ValueError: they are not; the name says what they are.
+    """
+    numbers = vector(value, size, name)
+    if not np.all(np.isfinite(numbers)):
+        raise ValueError(f"{name} must have finite numbers, got {numbers.tolist()}")
+    return numbers
 
 
 def _seen_entries(names: list[str], rod: str) -> list[int]:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionOutcome
 from cosserat_casadi.numerics.integration import StepOutcome
 
@@ -67,17 +66,11 @@ def snapping_cables(history: History) -> list[str]:
     """Names of the cables that may go slack and are next to taut where a motion ends."""
     model = history.model
     end = history.at(history.end.time)
-    values = load_values(model.scene, model.inputs, end.inputs)
-    names = []
-    for cable in model.discrete.cables:
-        tendon = cable.tendon
-        if not EFFECTS[tendon.kind].may_go_slack(tendon):
-            continue
-        _, length, _ = model.actuator[tendon.name](end.x, end.inputs)
-        slack = values[tendon.name]["length"].item() - float(length)
-        if abs(slack) <= NEARLY_TAUT * model.discrete.rods[tendon.rod].properties.length:
-            names.append(tendon.name)
-    return names
+    slack = SlackCables(model)
+    if not slack.cables:
+        return []
+    sags = slack.sags(end.x, end.inputs)
+    return [cable.tendon.name for cable, sag in zip(slack.cables, sags, strict=True) if abs(sag) <= NEARLY_TAUT]
 
 
 def message_of(history: History, outcome: MotionOutcome) -> str:

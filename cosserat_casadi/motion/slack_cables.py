@@ -3,7 +3,7 @@
 A slack cable has no tension, a taut one has its length: between these the equations are smooth, and the corner that
 statics rounds is never passed. A cable whose tension would become negative goes slack. One whose sag comes to zero
 snaps taut: an impact without rebound takes from the rod the velocity that would draw the cable out, and the energy
-that goes with it.
+that goes with it. An elastic cable takes nothing: its tension grows from zero.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.discrete_scene import CableOfLength
-from cosserat_casadi.model.load_assembly import input_value
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
@@ -81,7 +81,7 @@ class SlackCables:
 
         def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
             rows = plain.residual(t, x, v, a)
-            sags = self._sags(x, piece.at(t).value)
+            sags = self.sags(x, piece.at(t).value)
             for cable, row, taut, sag in zip(self.cables, self.rows, phases, sags, strict=True):
                 rows[row] = -sag if taut else cable.softness * x[row]
             return rows
@@ -105,7 +105,7 @@ class SlackCables:
             return None
 
         def values(instant: Instant) -> FloatArray:
-            sags = self._sags(instant.x, piece.at(instant.time).value)
+            sags = self.sags(instant.x, piece.at(instant.time).value)
             tensions = self._softness * instant.x[self.rows]
             return np.where(phases, tensions, sags)
 
@@ -115,7 +115,7 @@ class SlackCables:
         """Which cables are taut at a state."""
         if not self.cables:
             return ()
-        return tuple(bool(sag <= TOUCHING) for sag in self._sags(x, inputs))
+        return tuple(bool(sag <= TOUCHING) for sag in self.sags(x, inputs))
 
     def restarted(
         self,
@@ -178,7 +178,8 @@ class SlackCables:
         return np.array([cable.softness for cable in self.cables])
 
     @cached_property
-    def _sags(self) -> RepeatedCall:
+    def sags(self) -> RepeatedCall:
+        """(x, inputs) ↦ what each cable sags by, relative to the rod's length, shape (m,)."""
         return RepeatedCall(ca.Function("sags", self._symbols, [self._sag_rows]))
 
     @cached_property
@@ -191,17 +192,11 @@ class SlackCables:
         return [ca.MX.sym("x", self.model.size), ca.MX.sym("inputs", self.model.inputs.size)]
 
     @cached_property
-    def _sag_rows(self) -> ca.MX:
-        """What the wanted length of each cable exceeds its own by, relative to the rod's length."""
+    def _sag_rows(self) -> Matrix:
+        """What the wanted length of each cable, stretched by its tension, exceeds its own by, over the rod's length."""
         x, inputs = self._symbols
-        sags = []
-        for cable in self.cables:
-            tendon = cable.tendon
-            wanted = input_value(self.model.discrete.layout, tendon, "length", inputs)
-            _, length, _ = self.model.actuator[tendon.name](x, inputs)
-            sags.append((wanted - length) / self.model.discrete.rods[tendon.rod].properties.length)
-        stacked: ca.MX = ca.densify(ca.vertcat(*sags))
-        return stacked
+        lengths = System(self.model.discrete, Arguments(x, inputs)).cable_lengths
+        return ca.densify(ca.vertcat(*[lengths[cable.tendon.name].sag for cable in self.cables]))
 
 
 def _changed(phases: Phases, cables: Sequence[int]) -> Phases:

@@ -210,7 +210,8 @@ def motion_stage(model: Model, duration: float, method: Collocation | None = Non
     """One stage of an optimal-control problem in which a model moves.
 
     Args:
-        model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely.
+        model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
+            have the values of the scene, or those of ``model.at(…)``.
         duration: of the stage, s.
         method: by default Radau IIA with two stages, ``radau(2)``.
 
@@ -226,4 +227,4 @@ def motion_stage(model: Model, duration: float, method: Collocation | None = Non
         problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
     if problems:
         raise SceneError(*problems)
-    return MotionStage(model, duration, chosen)
+    return MotionStage(model.at(), duration, chosen)

@@ -235,8 +235,9 @@ class StepRun:
                 return
             self.steps.pop()
             following = time - float(value / rate) if rate < 0.0 else time
+            latest = min(2.0 * cut.end.time - cut.start.time, self.stop)
             # What needs a change of the time below its rounding, or another step altogether, is not found so.
-            if not cut.start.time < following <= 2.0 * cut.end.time - cut.start.time or following == time:
+            if not cut.start.time < following < latest or following == time:
                 break
             time = following
         self.steps.append(cut)

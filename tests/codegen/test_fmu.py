@@ -269,6 +269,21 @@ def test_step_that_cannot_be_solved_leaves_the_state(instance, described):
     instance.doStep(0.0, PERIOD)
 
 
+def test_derivative_is_that_of_the_last_step_that_was_done(instance, described):
+    """Inputs that are given for a next step, and such a step that cannot be solved, leave it as it is."""
+    initialised(instance)
+    force = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")
+    instance.setFloat64([force], [0.05])
+    instance.doStep(0.0, PERIOD)
+    instance.doStep(PERIOD, PERIOD)
+    wanted = derivative(instance, described, force)
+    instance.setFloat64([force], [0.5])
+    assert_array_equal(derivative(instance, described, force), wanted)
+    instance.setFloat64([force], [1e9])
+    refused(instance, "doStep", 2 * PERIOD, 2 * PERIOD)
+    assert_array_equal(derivative(instance, described, force), wanted)
+
+
 def test_library_of_another_description_is_refused(described, unpacked):
     slave = FMU3Slave(
         guid="another",

@@ -13,7 +13,7 @@ from cosserat_casadi.control import Collocation, MotionStage, motion_stage
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.history import integrated
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.numerics.time_steps import StepSettings
+from cosserat_casadi.numerics.integration import StepSettings
 from cosserat_casadi.scene.motions import InputMotion
 
 STAGES, STEP = 8, 0.04

@@ -10,7 +10,6 @@ from cosserat_casadi.maths.typing import FloatArray
 from tests.control.swing import STAGES, STEP, Task, replayed, task
 
 EAST = np.array([1.0, 0.0])
-EAST = np.array([1.0, 0.0])
 RATES = np.tile([0.8, -1.5], (STAGES, 1))
 """Of the tensions, N/s."""
 
@@ -42,6 +41,16 @@ def test_a_closed_horizon_is_the_simulators() -> None:
     found = closed(wanted, condensing, RATES)
     expected = replayed(wanted, pulled(wanted, RATES), wanted.stage.method)
     assert_allclose(found.guess.states, expected, rtol=0, atol=1e-10)
+
+
+def test_a_state_that_is_not_finite_is_seen_in_the_residual() -> None:
+    wanted = task()
+    condensing = Condensing(wanted.stage, wanted.stage.equations, STAGES, [0])
+    states = np.tile(wanted.start, (STAGES + 1, 1))
+    # The last one is in no equation, only in a gap.
+    states[-1, 0] = np.nan
+    guess = Horizon(states, np.tile(wanted.stage.still(wanted.near.x), (STAGES, 1)))
+    assert np.isnan(condensing.condensed(guess, pulled(wanted, RATES)[:-1], RATES).residual)
 
 
 def test_derivatives_vs_differences_of_simulations() -> None:

@@ -161,3 +161,12 @@ def test_what_cannot_move_is_refused() -> None:
     del tables["rods"][0]["damping"]
     with pytest.raises(SceneError, match="'a' has no mass"):
         motion_stage(build(scene_from_dict(tables), moving=True), 0.1)
+
+
+def test_parameters_have_the_values_of_the_scene() -> None:
+    plain = task()
+    scene = plain.stage.model.scene.model_copy(update={"parameters": ("arm.material.youngs_modulus",)})
+    stage = motion_stage(build(scene, plain.stage.model.discretisation, moving=True), STEP)
+    rng = np.random.default_rng(1)
+    arguments = [rng.normal(scale=0.1, size=symbol.shape) for symbol in plain.stage.symbols]
+    assert_allclose(stage.equations(*arguments), plain.stage.equations(*arguments), rtol=1e-10, atol=1e-10)

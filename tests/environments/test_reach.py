@@ -124,7 +124,7 @@ def test_same_seed_gives_the_same_episode(environment):
     assert_array_equal(episodes[0], episodes[1])
 
 
-def test_random_targets_are_tips_that_can_be_held(environment):
+def test_random_targets_differ_and_are_in_reach(environment):
     targets = []
     for seed in range(5):
         observation, _ = environment.reset(seed=seed)
@@ -154,6 +154,20 @@ def test_episode_ends_with_a_sentence_where_a_step_cannot_be_computed(environmen
 def test_what_cannot_be_is_refused(scene, rod, words):
     with pytest.raises(SceneError, match=words):
         ReachEnvironment(parse_scene(scene), rod)
+
+
+@pytest.mark.parametrize("action", [[0.5], [0.5, np.nan]])
+def test_an_action_that_is_none_is_refused(environment, action):
+    environment.reset(seed=0)
+    with pytest.raises(ValueError, match="action must have"):
+        environment.step(np.array(action))
+
+
+def test_a_target_that_is_none_is_refused(environment):
+    with pytest.raises(ValueError, match="target must have 3 numbers, got 2"):
+        environment.reset(options={"target": [0.1, 0.0]})
+    with pytest.raises(ValueError, match="target must have finite numbers"):
+        environment.reset(options={"target": [0.1, 0.0, np.inf]})
 
 
 def test_times_must_be_positive():

@@ -21,6 +21,7 @@ from cosserat_casadi import (
     modes_of,
     scene_from_dict,
     solve,
+    write_fmu,
 )
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
@@ -501,7 +502,9 @@ def test_functions_in_c_are_refused_with_what_to_do(tmp_path: Path) -> None:
     model = model_of("density")
     with pytest.raises(ExportError, match="functions in C take unknowns and inputs alone"):
         export(model, tmp_path / "folder")
-    assert not (tmp_path / "folder").exists()
+    with pytest.raises(ExportError, match="functions in C take unknowns and inputs alone"):
+        write_fmu(model, tmp_path / "wire.fmu", "wire")
+    assert list(tmp_path.iterdir()) == []
 
 
 def with_kind(load: LoadRecord, rod: dict[str, Any], *parameters: str) -> Scene:

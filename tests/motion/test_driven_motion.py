@@ -150,6 +150,24 @@ def test_cable_that_snaps_taut_takes_energy_and_holds(strain: str, amplitude: fl
     assert np.all(np.diff(lost) >= 0.0)
 
 
+def test_elastic_cable_that_becomes_taut_stretches() -> None:
+    """No impact: what it is longer by than it is given is tension times length over stiffness."""
+    stiffness = 400.0
+    scene = pushed_cable("kirchhoff", 0.02, 3.0, 1.0)
+    scene["actuators"][0]["axial_stiffness"] = stiffness
+    motion = attempted(scene, 1.0, tolerance=1e-3)
+    assert motion.converged, motion.message
+    effort, length = motion.actuator("cable")
+    slack = length < 0.8
+    assert slack.any()
+    assert effort.max() > 0.1
+    assert_allclose(effort[slack], 0.0, rtol=0, atol=1e-9)
+    # Between the stages of a step tensions are interpolated.
+    assert_allclose(length[~slack] - 0.8, 0.8 / stiffness * effort[~slack], rtol=0, atol=3e-5)
+    assert_allclose(motion.energy.impacts, 0.0, rtol=0, atol=1e-12)
+    assert np.abs(motion.energy.imbalance).max() < 2e-3
+
+
 def snapping() -> History:
     """A rod whose cable snaps taut once."""
     scene = {**pushed_cable("kirchhoff", 0.02, 3.0, 1.0), "accuracy": {"modes": 3, "nodes": 9}}

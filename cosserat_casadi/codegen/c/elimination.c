@@ -2,8 +2,8 @@
    touches, then the interface (I. S. Duff, J. K. Reid, ACM Trans. Math. Software 9, 1983). A scene with one front has no
    interface.
 
-   A matrix is complex, of size N, or real, with an unknown for each stage. A column of complex numbers
-   is two planes: its real parts, then its imaginary ones. Matrices are stored column after column. */
+   A matrix is complex, of size N, or real, with an unknown for each stage. A column of complex numbers is two planes: its
+   real parts, then its imaginary ones. Matrices are stored column after column. */
 
 /* Whether numbers are complex (2 planes), how many stages each unknown stands for, and which pivots count as zero beside
    entries of one. */
@@ -31,6 +31,7 @@ static matrix_kind matrix_of_masses(void) {
 
 /* Vectors have as many lanes as a matrix has planes, which lie one after the other, or FOUR: those of four right-hand sides
    of a real matrix, which lie side by side. */
+
 /* Rows of b less the columns first to last times the entries of b there. Some rows stay in registers. */
 static void subtract_real(const real *a, int order, int first, int last, int from, int to, real *b) {
   int i = from;

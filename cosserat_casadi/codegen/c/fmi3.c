@@ -59,6 +59,7 @@ typedef struct {
   double d_next_d_inputs[STATE * INPUT_ROOM]; /* of x alone at the start */
   double d_next_d_rate[STATE * INPUT_ROOM];
   double direction[STATE];
+  moment kept; /* of one call; too large for the stack of a thread */
   fmi3InstanceEnvironment environment;
   fmi3LogMessageCallback log;
   bool logging;
@@ -221,7 +222,7 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 start, fmi3Fl
   if (!(fabs(start - held->now.time) <= 1e-6 * duration)) {
     return refuse(self, "fmi3DoStep", "does not begin where the last step ended");
   }
-  held->before = held->now;
+  self->kept = held->now;
   const int count = count_steps(held, duration);
   moment *now = &held->now;
   set_course(held, duration, now);
@@ -229,12 +230,13 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance handle, fmi3Float64 start, fmi3Fl
     const fmu_motion_status status = fmu_step(now->inputs, now->inputs_rate, duration / count, &now->state,
                                               &now->memory, 0, &self->workspace, 0);
     if (status != FMU_DONE) {
-      *now = held->before;
+      *now = self->kept;
       return say(self, fmi3Discard, fmu_motion_status_text(status));
     }
     move_inputs(now, duration / count);
   }
   held->now.time = start + duration;
+  held->before = self->kept;
   held->last_step = duration;
   *last_time = held->now.time;
   return fmi3OK;
@@ -412,23 +414,26 @@ static const char *direction_at_rest(instance *self, const double *change) {
 }
 
 /* How the state at the end of the last communication step changes with the inputs given for it along `change`; null, or
-   why it is not known. The steps are taken again, each with its derivatives. */
+   why it is not known. Its steps are taken again, each with its derivatives. */
 static const char *direction_of_step(instance *self, const double *change) {
   const snapshot *held = &self->held;
-  moment now = held->before;
+  moment *now = &self->kept;
   const int count = count_steps(held, held->last_step);
   const double duration = held->last_step / count;
   double inputs_change[INPUT_ROOM] = {0};
   double rate_change[INPUT_ROOM] = {0};
   double next[STATE];
-  set_course(held, held->last_step, &now);
+  *now = held->before;
   for (int i = 0; i < FMU_INPUTS; i++) {
+    /* As they were in that step: others may have been given since for the next one. */
+    now->inputs_rate[i] = held->now.inputs_rate[i];
+    if (!MOVES[i]) now->inputs[i] = held->now.inputs[i];
     rate_change[i] = MOVES[i] ? change[i] / held->last_step : 0;
     inputs_change[i] = MOVES[i] ? 0 : change[i];
   }
   for (int k = 0; k < count; k++) {
     const fmu_motion_status status =
-        fmu_step_sensitivity(now.inputs, now.inputs_rate, duration, &now.state, &now.memory, 0, self->d_next_d_state,
+        fmu_step_sensitivity(now->inputs, now->inputs_rate, duration, &now->state, &now->memory, 0, self->d_next_d_state,
                              self->d_next_d_inputs, self->d_next_d_rate, &self->workspace, 0);
     if (status != FMU_DONE) return fmu_motion_status_text(status);
     memset(next, 0, sizeof next);
@@ -436,7 +441,7 @@ static const char *direction_of_step(instance *self, const double *change) {
     add_product(self->d_next_d_inputs, STATE, FMU_INPUTS, inputs_change, next);
     add_product(self->d_next_d_rate, STATE, FMU_INPUTS, rate_change, next);
     memcpy(self->direction, next, sizeof next);
-    move_inputs(&now, duration);
+    move_inputs(now, duration);
     for (int i = 0; i < FMU_INPUTS; i++) inputs_change[i] += duration * rate_change[i];
   }
   return 0;
