@@ -121,8 +121,8 @@ def test_copies_do_not_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[s
 def test_unknown_examples_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert cosserat("examples", "deep_arch", "one", "two") == 2
     problems = capsys.readouterr().err
-    assert "one: is no example" in problems
-    assert "two: is no example" in problems
+    assert "there is no example one" in problems
+    assert "there is no example two" in problems
 
 
 # cosserat docs, and where errors lead
@@ -175,6 +175,7 @@ def test_every_family_of_errors_leads_to_a_page() -> None:
         (SceneError(Problem("rods[0].length", "is negative")), "scene"),
         (SceneError(Problem("--plot", "has no suffix")), "command-line"),
         (SceneError(Problem("--plot", "has no suffix"), Problem("rods", "are missing")), "scene"),
+        (SceneError(Problem("PAGE", "there is none")), "command-line"),
         (ExportError(Problem("scene", "cannot be exported")), "c-interface"),
     ],
 )

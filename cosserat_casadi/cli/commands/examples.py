@@ -29,7 +29,9 @@ def examples(
     """List the examples that come with the package, or copy them. Exit codes: 0 done, 2 refused."""
     found = shipped_examples()
     unknown = [
-        Problem(name, "is no example", "cosserat examples lists them") for name in names or () if name not in found
+        Problem("NAME", f"there is no example {name}", "cosserat examples lists them")
+        for name in names or ()
+        if name not in found
     ]
     if unknown:
         raise SceneError(*unknown)
