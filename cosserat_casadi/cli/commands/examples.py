@@ -52,13 +52,14 @@ def _print_list(chosen: list[Example]) -> None:
 
 
 def _copy(chosen: list[Example], folder: Path) -> None:
-    """Copy examples into a folder, all of them or none.
+    """Copy examples, with what they need, into a folder, all of them or none.
 
     Raises:
         SceneError: a file is there already, with another content.
     """
     root = shipped_folder("examples")
-    targets = {folder / example.file.relative_to(root): example.file.read_bytes() for example in chosen}
+    sources = [source for example in chosen for source in (example.file, *example.needs)]
+    targets = {folder / source.relative_to(root): source.read_bytes() for source in sources}
     changed = [file for file, content in targets.items() if file.exists() and file.read_bytes() != content]
     if changed:
         remedy = "nothing is overwritten: remove it, or name another folder"
