@@ -25,6 +25,10 @@ class Problem:
         return f"{sentence} ({self.remedy})" if self.remedy else sentence
 
 
+ARGUMENTS = ("SCENE", "NAME", "PAGE")
+"""Arguments of commands, as ``--help`` and problems with them name them."""
+
+
 class CosseratError(Exception):
     """Root of the errors of this package.
 
@@ -52,8 +56,8 @@ class SceneError(CosseratError):
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = problems
-        # What is wrong with an option is no matter of the scene.
-        if any(not problem.where.startswith("--") for problem in problems):
+        # What is wrong with an option or an argument is no matter of the scene.
+        if not all(problem.where.startswith("--") or problem.where in ARGUMENTS for problem in problems):
             self.page = "scene"
         super().__init__("\n".join(str(problem) for problem in problems))
 

@@ -7,6 +7,7 @@ there when a wheel is built.
 from __future__ import annotations
 
 import ast
+import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,11 +31,13 @@ class Example:
         name: its path in the folder of examples, without suffix.
         file: a scene, a table of a sweep, or a program.
         title: one sentence.
+        needs: files of the same folder that a program or a table of a sweep reads or speaks of.
     """
 
     name: str
     file: Path
     title: str
+    needs: tuple[Path, ...]
 
 
 def examples() -> dict[str, Example]:
@@ -44,7 +47,7 @@ def examples() -> dict[str, Example]:
     for pattern in ("*.toml", "sweeps/*.toml", "*.py"):
         for file in sorted(folder.glob(pattern)):
             name = file.relative_to(folder).with_suffix("").as_posix()
-            found[name] = Example(name, file, _title(file))
+            found[name] = Example(name, file, _title(file), _needs(file, folder))
     return found
 
 
@@ -59,6 +62,15 @@ def page_title(page: Path) -> str:
     """The first heading of a page."""
     lines = page.read_text(encoding="utf-8").splitlines()
     return next(line.removeprefix("# ") for line in lines if line.startswith("# "))
+
+
+def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
+    """Scenes and sources in C whose names stand in a program or a table of a sweep; a scene needs none."""
+    if file.suffix == ".toml" and file.parent == folder:
+        return ()
+    words = set(re.findall(r"\w+", file.read_text(encoding="utf-8")))
+    others = [*sorted(folder.glob("*.toml")), *sorted(folder.glob("*.c"))]
+    return tuple(other for other in others if other.stem in words)
 
 
 def _title(file: Path) -> str:

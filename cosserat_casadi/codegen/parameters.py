@@ -14,4 +14,5 @@ def refuse_parameters(scene: Scene) -> None:
     """
     if scene.parameters:
         problem = f"{scene.parameters[0]!r} is a parameter, and functions in C take unknowns and inputs alone"
-        raise ExportError(Problem("parameters[0]", problem, "write model.at(…), whose parameters have values"))
+        remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
+        raise ExportError(Problem("parameters[0]", problem, remedy))

@@ -61,7 +61,7 @@ class Model(functions.ModelFunctions, MotionFunctions):
                 (parameters.size,).
 
         Raises:
-            SceneError: a name is unknown, or the scene refuses a value.
+            SceneError: a name is unknown, the scene refuses a value, or a load cannot be where it is then.
         """
         layout = self.parameters
         if values is not None and not isinstance(values, Mapping):
@@ -75,7 +75,9 @@ class Model(functions.ModelFunctions, MotionFunctions):
         if p not in known:
             # The last one is kept: a loop solves a model with one set of parameters again and again.
             known.clear()
-            known[p] = Model(with_numbers(nominal, layout.set_in(nominal.scene, values)))
+            discrete = with_numbers(nominal, layout.set_in(nominal.scene, values))
+            check_loads(discrete)
+            known[p] = Model(discrete)
         bound: Model = known[p]
         return bound
 

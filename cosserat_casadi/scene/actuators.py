@@ -108,7 +108,8 @@ offset = [1.5e-3, 0.0]
         False, description="whether a cable of given length may go slack, so that it never pushes"
     )
     friction: NotNegative = Field(
-        0.0, description="coefficient μ of friction along the course, without unit; T(X) = T₀ exp(−μ ∫ |turning|)"
+        0.0,
+        description="coefficient μ of friction along the course, without unit; T(X) = T₀ exp(−μ φ), φ the angle turned",
     )
     pull: Pull = Field(
         1.0,

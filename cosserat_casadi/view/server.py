@@ -6,12 +6,12 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
 from importlib import resources
 from threading import Lock
 from typing import Any
 
-from cosserat_casadi.errors import CosseratError
+from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.page import page_text
 from cosserat_casadi.view.session import Session
@@ -23,6 +23,19 @@ LARGEST_QUESTION = 1_000_000
 """Bytes of a question beyond which it is none of ours."""
 
 SCRIPTS = ("server_robot.js", "theatre.js")
+
+
+def check_port(port: int) -> None:
+    """Refuse a port of this machine that cannot be taken, before any work is done for it.
+
+    Raises:
+        SceneError: another program has it, or it needs rights that this one has not.
+    """
+    try:
+        HTTPServer((HOST, port), BaseHTTPRequestHandler).server_close()
+    except OSError as error:
+        problem = f"{port} cannot be taken: {error.strerror}"
+        raise SceneError(Problem("--port", problem, "leave it out: a free one is found")) from None
 
 
 @dataclass

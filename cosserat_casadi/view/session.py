@@ -44,6 +44,11 @@ FRAME_RATE = 60.0
 
 FEWEST_FRAMES, MOST_FRAMES = 100, 600
 
+SAME = 1e-5
+"""Largest difference of unknowns between two solves of one equilibrium."""
+
+ELSEWHERE = "These inputs have an equilibrium at the point, and lead the robot to another one."
+
 
 @dataclass
 class Session:
@@ -116,8 +121,15 @@ class Session:
         asked = replace(problem, targets=(target,), origin=origin)
         found = with_verdict(search(asked, start, stable=False, starts=0), stable=False)
         solution = found.solution
-        moved = self.move(solution.inputs.tolist())
-        return {**moved, "inputs": solution.inputs.tolist(), "text": solution.message, "met": found.met}
+        inputs = solution.inputs.tolist()
+        moved = self.move(inputs)
+        if self._present is None or not self._present.converged:
+            return {**moved, "inputs": inputs, "met": False}
+        # The inputs are right for the equilibrium that was found: the way there may lead to another one.
+        led_there = np.allclose(self._present.x, solution.x, rtol=0, atol=SAME)
+        if found.met and not led_there:
+            return {**moved, "inputs": inputs, "text": ELSEWHERE, "met": False}
+        return {**moved, "inputs": inputs, "text": solution.message, "met": found.met}
 
     def modes(self) -> dict[str, Any]:
         """Modes about the present equilibrium, each with the pictures of one period.

@@ -103,9 +103,24 @@ def test_examples_are_copied(tmp_path: Path) -> None:
 
 
 def test_chosen_examples_are_copied(tmp_path: Path) -> None:
-    assert cosserat("examples", "deep_arch", "sweeps/wire_tolerances", "--output", str(tmp_path)) == 0
-    files = sorted(str(file.relative_to(tmp_path)) for file in tmp_path.rglob("*.*"))
-    assert files == ["deep_arch.toml", "sweeps/wire_tolerances.toml"]
+    assert cosserat("examples", "deep_arch", "soft_arm", "--output", str(tmp_path)) == 0
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["deep_arch.toml", "soft_arm.toml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "needed"),
+    [
+        ("sweeps/wire_tolerances", "nitinol_wire.toml"),
+        ("tendon_robot_mpc", "two_section_robot.toml"),
+        ("tendon_robot_swing_free", "two_section_robot.toml"),
+        ("feel_tip_force", "feel_tip_force.c"),
+    ],
+)
+def test_copy_comes_with_what_it_needs(name: str, needed: str, tmp_path: Path) -> None:
+    assert cosserat("examples", name, "--output", str(tmp_path)) == 0
+    files = [file.relative_to(tmp_path) for file in tmp_path.rglob("*.*")]
+    assert len(files) == 2
+    assert (tmp_path / needed).read_bytes() == (ROOT / "examples" / needed).read_bytes()
 
 
 def test_copies_do_not_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -121,8 +136,8 @@ def test_copies_do_not_overwrite(tmp_path: Path, capsys: pytest.CaptureFixture[s
 def test_unknown_examples_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert cosserat("examples", "deep_arch", "one", "two") == 2
     problems = capsys.readouterr().err
-    assert "one: is no example" in problems
-    assert "two: is no example" in problems
+    assert "there is no example one" in problems
+    assert "there is no example two" in problems
 
 
 # cosserat docs, and where errors lead
@@ -175,6 +190,7 @@ def test_every_family_of_errors_leads_to_a_page() -> None:
         (SceneError(Problem("rods[0].length", "is negative")), "scene"),
         (SceneError(Problem("--plot", "has no suffix")), "command-line"),
         (SceneError(Problem("--plot", "has no suffix"), Problem("rods", "are missing")), "scene"),
+        (SceneError(Problem("PAGE", "there is none")), "command-line"),
         (ExportError(Problem("scene", "cannot be exported")), "c-interface"),
     ],
 )

@@ -266,3 +266,6 @@ def test_a_source_inside_the_rod_is_refused() -> None:
         build(scene_from_dict(tables))
     tables["loads"] = [magnet(dipole={**source, "position": [0.011, 0.0, 0.31]})]
     build(scene_from_dict(tables))
+    outside = build(scene_from_dict({**tables, "inputs": [], "parameters": ["magnet.dipole.position"]}))
+    with pytest.raises(SceneError, match="inside the unloaded rod"):
+        outside.at({"magnet.dipole.position": [0.009, 0.0, 0.31]})

@@ -43,3 +43,11 @@ def test_what_cannot_be_written_is_refused_before_the_solve(tmp_path: Path) -> N
     assert without.returncode == 2
     assert "apt install clang lld wasi-libc" in " ".join(without.stderr.split())
     assert not list(tmp_path.iterdir())
+
+
+def test_options_of_the_sources_are_refused_without_sources(tmp_path: Path) -> None:
+    done = export("--page", str(tmp_path / "strip.html"), "--dynamics", "--derivatives")
+    assert done.returncode == 2
+    assert "--dynamics: is for the sources in C" in done.stderr
+    assert "--derivatives: is for the sources in C" in done.stderr
+    assert not list(tmp_path.iterdir())

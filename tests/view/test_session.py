@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, SceneError, build, scene_from_dict, solve
 from cosserat_casadi.page.drawn_model import SECTIONS
-from cosserat_casadi.view.session import PERIOD_FRAMES, Session, opened
+from cosserat_casadi.view.session import ELSEWHERE, PERIOD_FRAMES, Session, opened
 from tests.page.pages_made import FEW
 from tests.scenes import rod
 
@@ -108,6 +108,17 @@ def test_reaching_a_point_finds_the_inputs(session: Session) -> None:
     assert not beside["met"]
     assert "not all met" in beside["text"]
     assert 0.0 <= beside["inputs"][3] <= 6.0
+
+
+def test_a_point_is_not_met_where_the_robot_ends_elsewhere(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    point = solve(session.first.model, {"front.tension": 5.0}).tip().position[0].tolist()
+    assert session.reach({"rod": "rod"}, point)["met"]
+    at_first = session.library.solve(session.first.inputs)
+    monkeypatch.setattr(type(session.library), "follow", lambda *_: at_first)
+    answer = session.reach({"rod": "rod"}, point)
+    assert answer["found"]
+    assert not answer["met"]
+    assert answer["text"] == ELSEWHERE
 
 
 def frames(text: str) -> np.ndarray:

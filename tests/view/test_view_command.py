@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import urllib.request
@@ -43,6 +44,7 @@ def test_it_serves_the_page_until_it_is_stopped() -> None:
     [
         (["nowhere.toml"], {}, 2, "nowhere.toml"),
         ([STRIP], {"CC": "no-such-cc"}, 2, "no-such-cc is not a program"),
+        ([STRIP, "--port", "65536"], {}, 2, "'--port'"),
     ],
 )
 def test_what_cannot_be_viewed_is_refused(
@@ -53,3 +55,12 @@ def test_what_cannot_be_viewed_is_refused(
     done = subprocess.run(command, env=everything, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == code
     assert words in " ".join(done.stderr.split())
+
+
+def test_port_of_another_program_is_refused_before_the_solve() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        command = [*PROGRAM, STRIP, "--no-browser", "--port", str(port)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert f"--port: {port} cannot be taken: Address already in use" in " ".join(done.stderr.split())

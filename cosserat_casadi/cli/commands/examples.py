@@ -29,7 +29,9 @@ def examples(
     """List the examples that come with the package, or copy them. Exit codes: 0 done, 2 refused."""
     found = shipped_examples()
     unknown = [
-        Problem(name, "is no example", "cosserat examples lists them") for name in names or () if name not in found
+        Problem("NAME", f"there is no example {name}", "cosserat examples lists them")
+        for name in names or ()
+        if name not in found
     ]
     if unknown:
         raise SceneError(*unknown)
@@ -50,13 +52,14 @@ def _print_list(chosen: list[Example]) -> None:
 
 
 def _copy(chosen: list[Example], folder: Path) -> None:
-    """Copy examples into a folder, all of them or none.
+    """Copy examples, with what they need, into a folder, all of them or none.
 
     Raises:
         SceneError: a file is there already, with another content.
     """
     root = shipped_folder("examples")
-    targets = {folder / example.file.relative_to(root): example.file.read_bytes() for example in chosen}
+    sources = [source for example in chosen for source in (example.file, *example.needs)]
+    targets = {folder / source.relative_to(root): source.read_bytes() for source in sources}
     changed = [file for file, content in targets.items() if file.exists() and file.read_bytes() != content]
     if changed:
         remedy = "nothing is overwritten: remove it, or name another folder"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -65,7 +66,9 @@ def export(
     if output is None and page is None and fmu is None:
         remedy = "name a folder for the sources, or a file with --page or --fmu"
         raise ExportError(Problem("--output", "missing", remedy))
-    if output is not None:
+    if output is None:
+        _refuse_without_sources({"--derivatives": derivatives, "--dynamics": dynamics})
+    else:
         check_export(output, name)
     if page is not None:
         check_writable(page, "--page")
@@ -102,3 +105,11 @@ def export(
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
         print_plain(console, f"wrote {escape(str(page))}; any browser opens it")
+
+
+def _refuse_without_sources(options: Mapping[str, bool]) -> None:
+    """Refuse options that only sources in C know: page and FMU hold what they hold."""
+    remedy = "name a folder for them with --output, or leave it out"
+    problems = [Problem(option, "is for the sources in C", remedy) for option, given in options.items() if given]
+    if problems:
+        raise ExportError(*problems)

@@ -33,7 +33,7 @@ def new(
 ) -> None:
     """Write a scene with comments, to begin with. Exit codes: 0 written, 2 refused."""
     if scene.exists():
-        raise SceneError(Problem(str(scene), "is there already", "nothing is overwritten: name another file"))
+        raise SceneError(Problem("SCENE", f"{scene} is there already", "nothing is overwritten: name another file"))
     check_writable(scene, "SCENE")
     write_atomically(scene, (TEMPLATES / f"{template.value}.toml").read_bytes())
     console = Console()

@@ -20,7 +20,7 @@ from cosserat_casadi.scene import read_scene
 
 def view(
     scene: SceneFile,
-    port: Annotated[int, typer.Option(help="Of this machine; 0 for one that is free.")] = 0,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Of this machine; 0 for one that is free.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open a browser.")] = True,
     settings: Settings = None,
 ) -> None:
@@ -29,9 +29,10 @@ def view(
     Only this machine reaches the page. Exit codes: 2 refused, 3 not solved, 130 ended.
     """
     # Imported here, because motions and inverse problems are needed by few commands.
-    from cosserat_casadi.view.server import RobotServer
+    from cosserat_casadi.view.server import RobotServer, check_port
     from cosserat_casadi.view.session import opened
 
+    check_port(port)
     viewed_scene = read_scene(scene, tuple(settings or ()))
     find_compiler()
     solution = solve_with_progress(viewed_scene)
