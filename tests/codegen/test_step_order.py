@@ -24,7 +24,7 @@ from tests.conftest import case_files
 from tests.motion.stepping import moving_model, orders, stepped
 
 CASES = {path.stem: path for path in case_files("dynamics")}
-pytestmark = pytest.mark.skipif(not CASES, reason="the reference cases are not beside this checkout")
+needs_cases = pytest.mark.skipif(not CASES, reason="the reference cases are not beside this checkout")
 
 OFF = {"release_damped": 2.5e-2, "planar_release": 5e-3, "shaken": 1e-2}
 """Distance of the paths over the length that so few modes leave."""
@@ -70,6 +70,7 @@ def path_of(made: Exported, duration: float, count: int) -> tuple[list[FloatArra
     return path, values
 
 
+@needs_cases
 def test_order_three(case: Callable[[str], Exported]) -> None:
     """Errors of the unknowns beside Radau IIA with three stages in Python, of order five, at a damped rod let go."""
     made = case("release_damped")
@@ -193,6 +194,7 @@ def test_order_three_of_a_base_whose_rate_does_not_jump(shaken: Exported) -> Non
     assert_allclose(orders(errors), 3.0, rtol=0, atol=0.25)
 
 
+@needs_cases
 @pytest.mark.parametrize("name", list(OFF))
 def test_path_of_the_tip_vs_independent_program(case: Callable[[str], Exported], name: str) -> None:
     made = case(name)
