@@ -136,6 +136,7 @@ def test_numbers_that_are_not_finite_are_refused_and_leave_the_memory_of_use(mot
     ):
         taken = made.compiled.step(state, 1e-3, given, rate, acceleration, memory=memory)
         assert taken.status is MotionStatus.NOT_FINITE
+        assert taken.iterations == 0
         assert_allclose(taken.state.v, state.v, rtol=0, atol=0)
     assert made.compiled.step(first.state, 1e-3, inputs, memory=memory).done
 
@@ -196,11 +197,12 @@ def test_tolerance_zero_is_rounding(motion_library: MotionLibrary, family: str) 
     assert_allclose(taken.state.x[differential], exact.state.x[differential], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("family", ["planar", "kirchhoff", "free with body"])
-def test_tolerance_zero_of_a_rod_at_rest(motion_library: MotionLibrary, family: str) -> None:
-    """Corrections are rounding, and the unknowns are zero: they are measured by the length."""
+@pytest.mark.parametrize("share", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("family", ["planar", "kirchhoff"])
+def test_tolerance_zero_of_a_rod_that_is_hardly_bent(motion_library: MotionLibrary, family: str, share: float) -> None:
+    """Let go under a small share of its loads: corrections are rounding of the length, not of its small unknowns."""
     made = motion_library(family)
-    inputs = 0.0 * made.model.pack()
+    inputs = share * made.model.pack()
     state = made.compiled.rest(inputs)
     assert state is not None
     for _ in range(3):
@@ -208,7 +210,7 @@ def test_tolerance_zero_of_a_rod_at_rest(motion_library: MotionLibrary, family: 
         assert taken.done
         assert taken.parts == 1
         state = taken.state
-    assert_allclose(state.x, 0.0, rtol=0, atol=1e-14)
+    assert np.abs(state.x).max() <= share
 
 
 def test_work_is_bounded(motion_library: MotionLibrary) -> None:
