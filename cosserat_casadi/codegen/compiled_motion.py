@@ -67,7 +67,7 @@ class StepSensitivity:
     Attributes:
         by_start: by x and v at the start, shape (2 size, 2 size).
         by_inputs: by the inputs at the start, shape (2 size, inputs).
-        by_inputs_rate: by their rates in the step, shape (2 size, inputs).
+        by_inputs_rate: by their rates at the start, shape (2 size, inputs).
     """
 
     by_start: FloatArray
@@ -123,7 +123,12 @@ class StepMemory:
 
 
 class _Options(ctypes.Structure):
-    _fields_ = (("tolerance", ctypes.c_double), ("iterations", ctypes.c_int), ("parts", ctypes.c_int))
+    _fields_ = (
+        ("tolerance", ctypes.c_double),
+        ("iterations", ctypes.c_int),
+        ("parts", ctypes.c_int),
+        ("inputs_acceleration", ctypes.POINTER(ctypes.c_double)),
+    )
 
 
 class _Info(ctypes.Structure):
@@ -182,6 +187,7 @@ class CompiledMotion(ABC):
         dt: float,
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None = None,
+        inputs_acceleration: npt.ArrayLike | None = None,
         *,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
@@ -192,11 +198,14 @@ class CompiledMotion(ABC):
             state: at the start.
             dt: length of the step, s.
             inputs: at the start, shape (inputs,).
-            inputs_rate: with which they move in the step, per s; held by default.
+            inputs_rate: at the start, shape (inputs,), per s; none by default.
+            inputs_acceleration: in the step, shape (inputs,), per s²; none by default. A base or a length whose rate
+                changes from step to step needs it, for its inertia forces.
             memory: of the steps before, :meth:`step_memory`; it is written to.
             options: when Newton's method is done.
         """
-        taken, _ = self._take("step", state, dt, inputs, inputs_rate, memory, options, [])
+        path = (inputs, inputs_rate, inputs_acceleration)
+        taken, _ = self._take("step", state, dt, path, memory, options, [])
         return taken
 
     def step_sensitivity(
@@ -205,14 +214,19 @@ class CompiledMotion(ABC):
         dt: float,
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None = None,
+        inputs_acceleration: npt.ArrayLike | None = None,
         *,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
-        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
+        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken.
+
+        They are those by the inputs and their rates at the start, with the acceleration held.
+        """
         size, count = 2 * self.size, len(self.defaults)
         results = [np.zeros((columns, size)) for columns in (size, count, count)]
-        taken, status = self._take("step_sensitivity", state, dt, inputs, inputs_rate, memory, options, results)
+        path = (inputs, inputs_rate, inputs_acceleration)
+        taken, status = self._take("step_sensitivity", state, dt, path, memory, options, results)
         if status is not MotionStatus.DONE:
             return taken, None
         return taken, StepSensitivity(*(result.T for result in results))
@@ -246,15 +260,17 @@ class CompiledMotion(ABC):
         word: str,
         state: StepState,
         dt: float,
-        inputs: npt.ArrayLike,
-        inputs_rate: npt.ArrayLike | None,
+        path: tuple[npt.ArrayLike, npt.ArrayLike | None, npt.ArrayLike | None],
         memory: StepMemory | None,
         options: StepOptions | None,
         results: Sequence[FloatArray],
     ) -> tuple[CompiledStep, MotionStatus]:
-        """A step by one of the two functions in C, and what it returned."""
+        """A step by one of the two functions in C, and what it returned; a path is inputs, rates, accelerations."""
+        inputs, inputs_rate, inputs_acceleration = path
         chosen = options or StepOptions()
-        budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts)
+        # It must outlive the call: the struct alone does not keep it.
+        acceleration = self._given(inputs_acceleration)
+        budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts, acceleration)
         packed = self._packed(state)
         info = _Info()
         room = memory or self.step_memory()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,36 +38,56 @@ class MovingRecipe:
 
 @dataclass(frozen=True)
 class Drive:
-    """Inputs that move linearly in each of several equal steps.
+    """Inputs that move with an acceleration of their own in each of several equal steps.
 
     Attributes:
         dt: length of a step, s.
         inputs: at the start of each, shape (steps, inputs).
-        rates: in each, shape (steps, inputs).
+        rates: at the start of each, shape (steps, inputs).
+        accelerations: in each, shape (steps, inputs).
     """
 
     dt: float
     inputs: FloatArray
     rates: FloatArray
+    accelerations: FloatArray
+
+    @property
+    def steps(self) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+        """Inputs, rates and accelerations of each step."""
+        return zip(self.inputs, self.rates, self.accelerations, strict=True)
 
 
 def drive(model: Model, dt: float, steps: int, seed: int = 0) -> Drive:
-    """Forces, lengths and poses that begin to move where the consistent state says."""
+    """Forces, lengths and poses that begin to move where the consistent state says, linearly in each step."""
     state = moving_scenes.consistent_state(model, seed)
     times = dt * np.arange(steps + 1)[:, None]
     values = state.inputs + np.sin(2.0 * times) / 2.0 * state.inputs_rate
-    return Drive(dt, values[:-1], np.diff(values, axis=0) / dt)
+    rates = np.diff(values, axis=0) / dt
+    return Drive(dt, values[:-1], rates, np.zeros_like(rates))
 
 
-def equations(model: Model, inputs: FloatArray, rate: FloatArray) -> MotionEquations:
+def accelerated(model: Model, dt: float, steps: int) -> Drive:
+    """The same with accelerations in the steps, whose ends meet in value and rate."""
+    state = moving_scenes.consistent_state(model, 0)
+    accelerations = 5.0 * np.cos(200.0 * dt * np.arange(steps))[:, None] * (1.0 + np.abs(state.inputs_rate))
+    rates = state.inputs_rate + dt * (np.cumsum(accelerations, axis=0) - accelerations)
+    changes = dt * rates + dt**2 / 2.0 * accelerations
+    values = state.inputs + np.cumsum(changes, axis=0) - changes
+    return Drive(dt, values, rates, accelerations)
+
+
+def equations(model: Model, inputs: FloatArray, rate: FloatArray, acceleration: FloatArray) -> MotionEquations:
     """The equations of motion in a step that begins at t = 0."""
-    still = np.zeros_like(rate)
+
+    def inputs_at(t: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        return inputs + t * rate + t**2 / 2.0 * acceleration, rate + t * acceleration, acceleration
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        return np.asarray(model.inverse_dynamics(x, v, a, inputs + t * rate, rate, still).full().ravel())
+        return np.asarray(model.inverse_dynamics(x, v, a, *inputs_at(t)).full().ravel())
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, inputs + t * rate, rate, still)
+        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *inputs_at(t))
         return stiffness.full(), damping.full(), mass.full()
 
     return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
@@ -80,8 +100,8 @@ def python_steps(model: Model, state: StepState, driven: Drive) -> list[Step]:
     bounds = NewtonBounds(np.where(differential, displacements(model), 0.0), 0.0, 40)
     now = Instant(0.0, state.x, state.v, state.a)
     steps = list[Step]()
-    for inputs, rate in zip(driven.inputs, driven.rates, strict=True):
-        system = equations(model, inputs, rate)
+    for inputs, rate, acceleration in driven.steps:
+        system = equations(model, inputs, rate, acceleration)
         guess = np.tile(np.where(differential, now.a, now.x), (2, 1))
         if steps:
             guess = extrapolated(steps[-1], driven.dt)
@@ -104,8 +124,8 @@ def compiled_steps(
     """The same steps in C."""
     memory = made.compiled.step_memory()
     taken = list[CompiledStep]()
-    for inputs, rate in zip(driven.inputs, driven.rates, strict=True):
-        step = made.compiled.step(state, driven.dt, inputs, rate, memory=memory, options=options)
+    for path in driven.steps:
+        step = made.compiled.step(state, driven.dt, *path, memory=memory, options=options)
         assert step.done, step.status.value
         state = step.state
         taken.append(step)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,18 @@ from cosserat_casadi.codegen.compiled_motion import StepOptions, StepState
 from cosserat_casadi.codegen.motion_status import MotionStatus
 from cosserat_casadi.numerics.consistent_start import consistent_start
 from tests import moving_scenes
-from tests.codegen.motions import MotionLibrary, compiled_steps, drive, equations, python_steps, start_of
+from tests.codegen.libraries import Exported
+from tests.codegen.motions import (
+    EXACT,
+    Drive,
+    MotionLibrary,
+    accelerated,
+    compiled_steps,
+    drive,
+    equations,
+    python_steps,
+    start_of,
+)
 
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
 """Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
@@ -22,7 +34,23 @@ FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given lengt
 def test_steps_vs_python(motion_library: MotionLibrary, family: str) -> None:
     """The same discrete motion to rounding."""
     made = motion_library(family)
-    driven = drive(made.model, 2e-3, 8)
+    assert_same_steps(made, drive(made.model, 2e-3, 8))
+
+
+@pytest.mark.parametrize("family", ["given length", "driven and held"])
+def test_steps_with_accelerations_of_inputs_vs_python(motion_library: MotionLibrary, family: str) -> None:
+    """A cable, a base and a length along a path of second degree in each step."""
+    made = motion_library(family)
+    driven = accelerated(made.model, 2e-3, 4)
+    assert_same_steps(made, driven)
+    # The path matters: without the accelerations the rods are elsewhere.
+    straight = compiled_steps(made, start_of(made.model), replace(driven, accelerations=0.0 * driven.accelerations))
+    end = compiled_steps(made, start_of(made.model), driven)[-1].state
+    assert np.abs(straight[-1].state.x - end.x).max() > 1e-6
+
+
+def assert_same_steps(made: Exported, driven: Drive) -> None:
+    """Positions to 1e-12, their rates and accelerations to as much over the step and over its square."""
     start = start_of(made.model)
     steps = python_steps(made.model, start, driven)
     taken = compiled_steps(made, start, driven)
@@ -76,8 +104,9 @@ def test_inputs_are_held_where_no_rate_is_given(motion_library: MotionLibrary) -
     made = motion_library("kirchhoff")
     start = start_of(made.model)
     inputs = made.model.pack()
+    nothing = np.zeros_like(inputs)
     held = made.compiled.step(start, 1e-3, inputs)
-    with_zeros = made.compiled.step(start, 1e-3, inputs, np.zeros_like(inputs))
+    with_zeros = made.compiled.step(start, 1e-3, inputs, nothing, nothing)
     assert_allclose(held.state.x, with_zeros.state.x, rtol=0, atol=0)
 
 
@@ -98,13 +127,16 @@ def test_numbers_that_are_not_finite_are_refused_and_leave_the_memory_of_use(mot
     memory = made.compiled.step_memory()
     first = made.compiled.step(start, 1e-3, inputs, memory=memory)
     spoilt = StepState(np.where(np.arange(made.model.size) == 1, np.nan, start.x), start.v, start.a)
-    for state, given, rate in (
-        (spoilt, inputs, None),
-        (first.state, inputs * np.inf, None),
-        (first.state, inputs, inputs * np.nan),
+    for state, given, rate, acceleration in (
+        (spoilt, inputs, None, None),
+        (first.state, inputs * np.inf, None, None),
+        (first.state, inputs, inputs * np.nan, None),
+        (first.state, inputs, None, inputs * np.nan),
+        (first.state, inputs, inputs, inputs * np.inf),
     ):
-        taken = made.compiled.step(state, 1e-3, given, rate, memory=memory)
+        taken = made.compiled.step(state, 1e-3, given, rate, acceleration, memory=memory)
         assert taken.status is MotionStatus.NOT_FINITE
+        assert taken.iterations == 0
         assert_allclose(taken.state.v, state.v, rtol=0, atol=0)
     assert made.compiled.step(first.state, 1e-3, inputs, memory=memory).done
 
@@ -126,6 +158,59 @@ def test_a_step_too_long_is_cut_and_says_so(motion_library: MotionLibrary) -> No
         state = made.compiled.step(state, dt / cut.parts, inputs, options=StepOptions(1e-12, 20, 1)).state
     assert_allclose(cut.state.x, state.x, rtol=0, atol=1e-10)
     assert_allclose(cut.state.v, state.v, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize(("family", "dt", "iterations"), [("planar", 0.2, 4), ("driven and held", 0.02, 8)])
+def test_parts_begin_where_the_inputs_have_moved_to(
+    motion_library: MotionLibrary, family: str, dt: float, iterations: int
+) -> None:
+    """With the rates that they have there."""
+    made = motion_library(family)
+    start = start_of(made.model)
+    inputs, rate, acceleration = next(accelerated(made.model, dt, 1).steps)
+    short = StepOptions(tolerance=1e-12, iterations=iterations, parts=32)
+    cut = made.compiled.step(start, dt, inputs, rate, acceleration, options=short)
+    assert cut.done
+    assert cut.parts > 1
+    part = dt / cut.parts
+    state = start
+    for k in range(cut.parts):
+        t = k * part
+        path = (inputs + t * rate + t**2 / 2.0 * acceleration, rate + t * acceleration, acceleration)
+        taken = made.compiled.step(state, part, *path, options=StepOptions(1e-12, 20, 1))
+        assert taken.done
+        state = taken.state
+    differential = made.model.discrete.unknowns.differential
+    assert_allclose(cut.state.x[differential], state.x[differential], rtol=0, atol=1e-10)
+    assert_allclose(cut.state.v, state.v, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_tolerance_zero_is_rounding(motion_library: MotionLibrary, family: str) -> None:
+    made = motion_library(family)
+    inputs, rate, _ = next(drive(made.model, 2e-3, 1).steps)
+    start = start_of(made.model)
+    taken = made.compiled.step(start, 2e-3, inputs, rate, options=StepOptions(tolerance=0.0))
+    assert taken.done
+    exact = made.compiled.step(start, 2e-3, inputs, rate, options=EXACT)
+    differential = made.model.discrete.unknowns.differential
+    assert_allclose(taken.state.x[differential], exact.state.x[differential], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("share", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("family", ["planar", "kirchhoff"])
+def test_tolerance_zero_of_a_rod_that_is_hardly_bent(motion_library: MotionLibrary, family: str, share: float) -> None:
+    """Let go under a small share of its loads: corrections are rounding of the length, not of its small unknowns."""
+    made = motion_library(family)
+    inputs = share * made.model.pack()
+    state = made.compiled.rest(inputs)
+    assert state is not None
+    for _ in range(3):
+        taken = made.compiled.step(state, 2e-3, inputs, options=StepOptions(tolerance=0.0))
+        assert taken.done
+        assert taken.parts == 1
+        state = taken.state
+    assert np.abs(state.x).max() <= share
 
 
 def test_work_is_bounded(motion_library: MotionLibrary) -> None:
@@ -163,7 +248,8 @@ def test_rest_out_of_balance_vs_python(motion_library: MotionLibrary, family: st
     model = made.model
     x = moving_scenes.consistent_state(model).x
     inputs = model.pack()
-    system = equations(model, inputs, np.zeros_like(inputs))
+    nothing = np.zeros_like(inputs)
+    system = equations(model, inputs, nothing, nothing)
     wanted = consistent_start(system, 0.0, x, np.zeros(model.size), 1e-3)
     state = made.compiled.rest(inputs, x)
     assert state is not None

@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import radau
 from cosserat_casadi.numerics.step import Step, stages_of
 from tests.codegen.libraries import Exported
-from tests.codegen.motions import EXACT, Drive, MotionLibrary, drive, python_steps, start_of
+from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
 
@@ -33,8 +33,10 @@ def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
     system = np.zeros((2 * size, 2 * size))
     right = np.zeros((2 * size, 2 * size + 2 * count))
     for i in range(2):
-        inputs = driven.inputs[0] + method.nodes[i] * h * driven.rates[0]
-        at = (stages.x[i], stages.v[i], stages.a[i], inputs, driven.rates[0], np.zeros(count))
+        time = method.nodes[i] * h
+        rate = driven.rates[0] + time * driven.accelerations[0]
+        inputs = driven.inputs[0] + time * driven.rates[0] + time**2 / 2.0 * driven.accelerations[0]
+        at = (stages.x[i], stages.v[i], stages.a[i], inputs, rate, driven.accelerations[0])
         stiffness, damping, mass, _ = (matrix.full() for matrix in model.dynamics_jacobian(*at))
         rows = slice(i * size, (i + 1) * size)
         for j in range(2):
@@ -73,9 +75,7 @@ def slopes(function: Callable[..., object], at: tuple[FloatArray, ...], which: i
 def taken(
     made: Exported, state: StepState, driven: Drive, options: StepOptions = EXACT
 ) -> tuple[StepState, StepSensitivity]:
-    step, sensitivity = made.compiled.step_sensitivity(
-        state, driven.dt, driven.inputs[0], driven.rates[0], options=options
-    )
+    step, sensitivity = made.compiled.step_sensitivity(state, driven.dt, *next(driven.steps), options=options)
     assert step.done
     assert sensitivity is not None
     return step.state, sensitivity
@@ -84,12 +84,20 @@ def taken(
 @pytest.mark.parametrize("family", FAMILIES)
 def test_sensitivity_vs_python(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
-    driven = drive(made.model, DT, 1)
+    assert_sensitivity_of_python(made, drive(made.model, DT, 1))
+
+
+def test_sensitivity_with_accelerations_of_inputs_vs_python(motion_library: MotionLibrary) -> None:
+    made = motion_library("driven and held")
+    assert_sensitivity_of_python(made, accelerated(made.model, DT, 1))
+
+
+def assert_sensitivity_of_python(made: Exported, driven: Drive) -> None:
     start = start_of(made.model)
     (step,) = python_steps(made.model, start, driven)
     wanted = of_python(made.model, step, driven)
     end, found = taken(made, start, driven)
-    plain = made.compiled.step(start, driven.dt, driven.inputs[0], driven.rates[0], options=EXACT)
+    plain = made.compiled.step(start, driven.dt, *next(driven.steps), options=EXACT)
     assert_allclose(end.x, plain.state.x, rtol=0, atol=0)
     scale = entry_scales(made.model)
     for name in ("by_start", "by_inputs", "by_inputs_rate"):
@@ -108,7 +116,16 @@ def entry_scales(model: Model) -> FloatArray:
 def test_sensitivity_vs_differences(motion_library: MotionLibrary, family: str) -> None:
     """Central differences of the step in every direction, with one term of Richardson's extrapolation."""
     made = motion_library(family)
-    driven = drive(made.model, DT, 1)
+    assert_sensitivity_of_differences(made, drive(made.model, DT, 1))
+
+
+@pytest.mark.parametrize("family", ["given length", "driven and held"])
+def test_sensitivity_with_accelerations_of_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
+    made = motion_library(family)
+    assert_sensitivity_of_differences(made, accelerated(made.model, DT, 1))
+
+
+def assert_sensitivity_of_differences(made: Exported, driven: Drive) -> None:
     start = start_of(made.model)
     _, found = taken(made, start, driven)
     size, count = made.model.size, len(driven.inputs[0])
@@ -119,7 +136,8 @@ def test_sensitivity_vs_differences(motion_library: MotionLibrary, family: str) 
     def end(values: FloatArray) -> FloatArray:
         state = StepState(values[:size], values[size : 2 * size], start.a)
         inputs = values[2 * size : 2 * size + count]
-        step = made.compiled.step(state, driven.dt, inputs, values[2 * size + count :], options=EXACT)
+        rate = values[2 * size + count :]
+        step = made.compiled.step(state, driven.dt, inputs, rate, driven.accelerations[0], options=EXACT)
         assert step.done
         return np.concatenate([step.state.x, step.state.v])
 
@@ -150,8 +168,10 @@ def test_sensitivity_of_a_step_in_parts_is_that_of_its_parts(motion_library: Mot
     start = start_of(made.model)
     inputs = 4.0 * made.model.pack()
     rate = inputs
+    acceleration = -3.0 * inputs
     dt = 0.2
-    cut, found = made.compiled.step_sensitivity(start, dt, inputs, rate, options=StepOptions(1e-12, 5, 32))
+    short = StepOptions(1e-12, 5, 32)
+    cut, found = made.compiled.step_sensitivity(start, dt, inputs, rate, acceleration, options=short)
     assert cut.done
     assert cut.parts > 1
     assert found is not None
@@ -161,11 +181,11 @@ def test_sensitivity_of_a_step_in_parts_is_that_of_its_parts(motion_library: Mot
     by_inputs = np.zeros((2 * made.model.size, len(inputs)))
     by_rate = by_inputs
     for k in range(cut.parts):
-        step, own = made.compiled.step_sensitivity(
-            state, part, inputs + k * part * rate, rate, options=StepOptions(1e-12, 20, 1)
-        )
+        t = k * part
+        path = (inputs + t * rate + t**2 / 2.0 * acceleration, rate + t * acceleration, acceleration)
+        step, own = made.compiled.step_sensitivity(state, part, *path, options=StepOptions(1e-12, 20, 1))
         assert own is not None
-        by_rate = own.by_start @ by_rate + own.by_inputs_rate + k * part * own.by_inputs
+        by_rate = own.by_start @ by_rate + own.by_inputs_rate + t * own.by_inputs
         by_inputs = own.by_start @ by_inputs + own.by_inputs
         by_start = own.by_start @ by_start
         state = step.state
@@ -180,8 +200,8 @@ def test_a_controller_that_differentiates_evaluates_few_jacobians_beside(motion_
     memory = made.compiled.step_memory()
     state = start_of(made.model)
     jacobians = 0
-    for inputs, rate in zip(driven.inputs, driven.rates, strict=True):
-        step, _ = made.compiled.step_sensitivity(state, driven.dt, inputs, rate, memory=memory, options=EXACT)
+    for path in driven.steps:
+        step, _ = made.compiled.step_sensitivity(state, driven.dt, *path, memory=memory, options=EXACT)
         assert step.done
         state = step.state
         jacobians += step.jacobians

@@ -23,7 +23,8 @@ enum {
 
 static const double DEFAULT_INPUTS[INPUT_ROOM] = FMU_DEFAULTS;
 
-/* Which inputs move linearly over a communication step: those that move rods or prescribe a length have a velocity. The
+/* Which inputs move linearly over a communication step: those that move rods or prescribe a length have a velocity. They
+   have no acceleration, which two values do not tell: jumps of the velocity between steps exert no inertia forces. The
    others are loads, held over the step. */
 static const int MOVES[INPUT_ROOM] = FMU_MOVES;
 

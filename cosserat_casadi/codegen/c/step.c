@@ -37,17 +37,26 @@ typedef struct {
   const real *x;
   const real *v;
   const real *inputs;
-  const real *inputs_rate; /* may be null */
-  real size;               /* s */
+  const real *inputs_rate;         /* may be null */
+  const real *inputs_acceleration; /* may be null */
+  real size;                       /* s */
 } step_start;
+
+/* The inputs and their rates so many seconds into the step. */
+static void inputs_after(const step_start *start, real time, real *inputs, real *rates) {
+  for (int i = 0; i < INPUTS; i++) {
+    const real rate = start->inputs_rate ? start->inputs_rate[i] : 0;
+    const real acceleration = start->inputs_acceleration ? start->inputs_acceleration[i] : 0;
+    inputs[i] = start->inputs[i] + time * (rate + time / 2 * acceleration);
+    rates[i] = rate + time * acceleration;
+  }
+}
 
 /* The inputs after a share of the step. */
 static void inputs_of(const step_start *start, real share, instant *at) {
+  inputs_after(start, share * start->size, at->inputs, at->inputs + INPUTS);
   for (int i = 0; i < INPUTS; i++) {
-    const real rate = start->inputs_rate ? start->inputs_rate[i] : 0;
-    at->inputs[i] = start->inputs[i] + share * start->size * rate;
-    at->inputs[INPUTS + i] = rate;
-    at->inputs[2 * INPUTS + i] = 0;
+    at->inputs[2 * INPUTS + i] = start->inputs_acceleration ? start->inputs_acceleration[i] : 0;
   }
 }
 
@@ -208,7 +217,8 @@ static real residuals_of_stages(const step_start *start, const real *unknowns, r
 static solver_motion_status solve_stages(const step_start *start, const stage_factors *factors,
                                          const solver_step_options *options, real *unknowns, workspace *work,
                                          solver_step_info *info) {
-  const real rounding = STAGE_ROUNDING * weighted_length(start->x, N);
+  /* Positions are rounded at the length of a rod, however little the rod is bent. */
+  const real rounding = STAGE_ROUNDING * larger(1, weighted_length(start->x, N));
   const real allowed = larger(options->tolerance, rounding);
   const real to_acceleration = 1 / (start->size * start->size);
   real *corrections = work->stage_corrections;
@@ -311,23 +321,27 @@ static int continues(const solver_step_memory *memory, const solver_state *state
   return 1;
 }
 
-/* The inputs with which a part of a step begins. */
-static void part_inputs(const step_start *whole, int number, real size, real *inputs) {
-  for (int i = 0; i < INPUTS; i++) {
-    const real rate = whole->inputs_rate ? whole->inputs_rate[i] : 0;
-    inputs[i] = whole->inputs[i] + (real)number * size * rate;
-  }
+/* A part of a step, which begins with the state in work->end; its inputs and their rates have moved by then. */
+static step_start part_of_step(const step_start *whole, int number, int count, workspace *work) {
+  const real size = whole->size / (real)count;
+  const step_start part = {.x = work->end.x,
+                           .v = work->end.v,
+                           .inputs = work->part_of_inputs,
+                           .inputs_rate = work->part_of_rates,
+                           .inputs_acceleration = whole->inputs_acceleration,
+                           .size = size};
+  inputs_after(whole, (real)number * size, work->part_of_inputs, work->part_of_rates);
+  return part;
 }
 
 /* The step in so many parts, whose unknowns it leaves in the workspace, as their end in work->end. */
 static solver_motion_status take_parts(int count, const step_start *whole, const solver_state *state,
                                        const solver_step_options *options, solver_step_memory *memory,
                                        workspace *work, solver_step_info *info) {
-  step_start start = {work->end.x, work->end.v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
   work->end = *state;
   for (int number = 0; number < count; number++) {
     real *unknowns = work->parts_unknowns[number];
-    part_inputs(whole, number, start.size, work->part_of_inputs);
+    const step_start start = part_of_step(whole, number, count, work);
     if (number > 0) {
       guess_stages(unknowns - STAGED, 1, &work->end, unknowns);
     } else if (count == 1 && continues(memory, state)) {
@@ -349,11 +363,12 @@ static solver_motion_status take_parts(int count, const step_start *whole, const
 static int bounded(int value, int largest) { return value < 1 ? 1 : value > largest ? largest : value; }
 
 static solver_step_options chosen_options(const solver_step_options *options) {
-  solver_step_options chosen = {STEP_TOLERANCE, STEP_ITERATIONS, STEP_PARTS};
+  solver_step_options chosen = {STEP_TOLERANCE, STEP_ITERATIONS, STEP_PARTS, 0};
   if (options) {
     chosen.tolerance = options->tolerance > 0 ? options->tolerance : 0;
     chosen.max_iterations = bounded(options->max_iterations, MAX_STEP_ITERATIONS);
     chosen.max_parts = bounded(options->max_parts, MAX_STEP_PARTS);
+    chosen.inputs_acceleration = options->inputs_acceleration;
   }
   return chosen;
 }
@@ -364,15 +379,15 @@ static int state_is_finite(const solver_state *state) {
 
 /* A step, whole or in parts; the state is moved on where it is done, and else as it was. */
 static solver_motion_status take_step(const step_start *whole, solver_state *state, solver_step_memory *memory,
-                                      const solver_step_options *options, workspace *work, solver_step_info *info) {
-  const solver_step_options chosen = chosen_options(options);
+                                      const solver_step_options *chosen, workspace *work, solver_step_info *info) {
   if (!(whole->size > 0) || !isfinite(whole->size)) return SOLVER_MOTION_BAD_STEP;
   if (!all_finite(whole->inputs, INPUTS) || !state_is_finite(state)) return SOLVER_MOTION_NOT_FINITE;
   if (whole->inputs_rate && !all_finite(whole->inputs_rate, INPUTS)) return SOLVER_MOTION_NOT_FINITE;
+  if (whole->inputs_acceleration && !all_finite(whole->inputs_acceleration, INPUTS)) return SOLVER_MOTION_NOT_FINITE;
   solver_motion_status status = SOLVER_MOTION_NOT_SOLVED;
-  for (int count = 1; count <= chosen.max_parts && status != SOLVER_MOTION_DONE; count *= 2) {
+  for (int count = 1; count <= chosen->max_parts && status != SOLVER_MOTION_DONE; count *= 2) {
     info->parts = count;
-    status = take_parts(count, whole, state, &chosen, memory, work, info);
+    status = take_parts(count, whole, state, chosen, memory, work, info);
   }
   if (status != SOLVER_MOTION_DONE) {
     memory->jacobian_size = 0;
@@ -393,9 +408,10 @@ static solver_step_info no_step(void) {
 solver_motion_status solver_step(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
                                  solver_step_memory *memory, const solver_step_options *options, workspace *work,
                                  solver_step_info *info) {
-  const step_start whole = {state->x, state->v, inputs, inputs_rate, dt};
+  const solver_step_options chosen = chosen_options(options);
+  const step_start whole = {state->x, state->v, inputs, inputs_rate, chosen.inputs_acceleration, dt};
   solver_step_info found = no_step();
-  found.status = take_step(&whole, state, memory, options, work, &found);
+  found.status = take_step(&whole, state, memory, &chosen, work, &found);
   if (info) *info = found;
   return found.status;
 }

@@ -156,13 +156,14 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
   return 1;
 }
 
-/* Derivatives of a step that was taken in parts, from the state that it began with. Zero where there are none. */
+/* Derivatives of a step that was taken in parts, from work->begin, the state that it began with. Zero where there are
+   none. */
 static int differentiate_step(const step_start *whole, int count, const step_derivatives *wanted, workspace *work) {
   const step_derivatives later = {work->by_start, work->by_inputs, work->by_inputs_rate};
-  step_start start = {whole->x, whole->v, work->part_of_inputs, whole->inputs_rate, whole->size / (real)count};
+  work->end = work->begin;
   for (int number = 0; number < count; number++) {
     const real *unknowns = work->parts_unknowns[number];
-    part_inputs(whole, number, start.size, work->part_of_inputs);
+    const step_start start = part_of_step(whole, number, count, work);
     if (!differentiate_part(&start, unknowns, number == 0 ? wanted : &later, work)) return 0;
     if (number > 0) {
       if (wanted->by_start) carry_on(later.by_start, 2 * N, wanted->by_start, work);
@@ -179,8 +180,6 @@ static int differentiate_step(const step_start *whole, int count, const step_der
     stage_at(&start, STAGES - 1, unknowns, &work->at);
     memcpy(work->end.x, work->at.state, sizeof work->end.x);
     memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
-    start.x = work->end.x;
-    start.v = work->end.v;
   }
   return (!wanted->by_start || all_finite(wanted->by_start, 4 * N * N)) &&
          (!wanted->by_inputs || all_finite(wanted->by_inputs, 2 * N * INPUTS)) &&
@@ -204,10 +203,11 @@ solver_motion_status solver_step_sensitivity(const real *inputs, const real *inp
                                              real *d_end_d_start, real *d_end_d_inputs, real *d_end_d_inputs_rate,
                                              workspace *work, solver_step_info *info) {
   const step_derivatives wanted = {d_end_d_start, d_end_d_inputs, d_end_d_inputs_rate};
-  const step_start whole = {work->begin.x, work->begin.v, inputs, inputs_rate, dt};
+  const solver_step_options chosen = chosen_options(options);
+  const step_start whole = {work->begin.x, work->begin.v, inputs, inputs_rate, chosen.inputs_acceleration, dt};
   solver_step_info found = no_step();
   work->begin = *state;
-  found.status = take_step(&whole, state, memory, options, work, &found);
+  found.status = take_step(&whole, state, memory, &chosen, work, &found);
   if (info) *info = found;
   if (found.status != SOLVER_MOTION_DONE) return found.status;
   if (!differentiate_step(&whole, found.parts, &wanted, work)) return SOLVER_MOTION_SINGULAR;

@@ -49,15 +49,18 @@ static void fail(const char *what, const @{name}_step_info *info) {
   exit(1);
 }
 
-static void step(const double *inputs, const double *rate, double dt, const @{name}_state *start, int differentiate) {
+static void step(const double *inputs, const double *rate, const double *acceleration, double dt,
+                 const @{name}_state *start, int differentiate) {
+  const @{name}_step_options options = {1e-11, 12, 8, acceleration};
   @{name}_state state = *start;
   @{name}_step_info info;
   @{name}_motion_status said;
   const double begun = seconds();
   if (differentiate) {
-    said = @{name}_step_sensitivity(inputs, rate, dt, &state, &memory, 0, by_start, by_inputs, by_rate, &workspace, &info);
+    said = @{name}_step_sensitivity(inputs, rate, dt, &state, &memory, &options, by_start, by_inputs, by_rate, &workspace,
+                                    &info);
   } else {
-    said = @{name}_step(inputs, rate, dt, &state, &memory, 0, &workspace, &info);
+    said = @{name}_step(inputs, rate, dt, &state, &memory, &options, &workspace, &info);
   }
   if (seconds() - begun > 2) fail("took more than two seconds", &info);
   if ((int)info.status < 0 || info.status >= STATUSES) fail("no such status", &info);
@@ -71,6 +74,7 @@ static void step(const double *inputs, const double *rate, double dt, const @{na
     return;
   }
   if (!(dt > 0) || !finite(inputs, INPUTS) || (rate && !finite(rate, INPUTS))) fail("done with bad numbers", &info);
+  if (acceleration && !finite(acceleration, INPUTS)) fail("done with a bad acceleration", &info);
   if (!finite(state.x, N) || !finite(state.v, N) || !finite(state.a, N)) fail("done, not finite", &info);
   if (!isfinite(info.residual) || !isfinite(info.error_left)) fail("done, with what is left not finite", &info);
   if (differentiate && said == @{MACRO}_MOTION_DONE) {
@@ -87,7 +91,7 @@ int main(int count, char **words) {
   enum { SPECIAL = sizeof special / sizeof *special };
   const long random = count > 1 ? atol(words[1]) : 1000;
   double own[INPUTS + 1] = @{MACRO}_DEFAULTS;
-  double inputs[INPUTS + 1], rate[INPUTS + 1], x[N] = {0};
+  double inputs[INPUTS + 1], rate[INPUTS + 1], acceleration[INPUTS + 1], x[N] = {0};
   @{name}_state rest = {{0}, {0}, {0}}, state;
   long k;
   int i, a;
@@ -95,14 +99,15 @@ int main(int count, char **words) {
   @{name}_rest(own, x, &rest, &workspace);
   /* Each special number in each place; the memory is what the call before has left. */
   for (a = 0; a < SPECIAL; a++) {
-    step(own, 0, special[a], &rest, a % 2);
+    step(own, 0, 0, special[a], &rest, a % 2);
     for (i = 0; i < INPUTS; i++) {
       memcpy(inputs, own, sizeof inputs);
       memset(rate, 0, sizeof rate);
       inputs[i] = special[a];
-      step(inputs, 0, 1e-3, &rest, a % 2);
+      step(inputs, 0, 0, 1e-3, &rest, a % 2);
       rate[i] = special[a];
-      step(own, rate, 1e-3, &rest, 1 - a % 2);
+      step(own, rate, 0, 1e-3, &rest, 1 - a % 2);
+      step(own, 0, rate, 1e-3, &rest, a % 2);
       @{name}_rest(inputs, x, &state, &workspace);
     }
     for (i = 0; i < 3 * N; i++) {
@@ -110,7 +115,7 @@ int main(int count, char **words) {
       if (i < N) state.x[i] = special[a];
       else if (i < 2 * N) state.v[i - N] = special[a];
       else state.a[i - 2 * N] = special[a];
-      step(own, 0, 1e-3, &state, i % 2);
+      step(own, 0, 0, 1e-3, &state, i % 2);
       @{name}_inverse_dynamics(state.x, state.v, state.a, own, 0, 0, matrices[0], &workspace);
       @{name}_linearise(&state, own, 0, matrices[0], matrices[1], matrices[2], matrices[3], matrices[4], &workspace);
     }
@@ -126,8 +131,9 @@ int main(int count, char **words) {
     for (i = 0; i < INPUTS; i++) {
       inputs[i] = k % 7 ? own[i] * (1 + level * (uniform() - 0.5)) : any_magnitude();
       rate[i] = k % 4 ? level * (uniform() - 0.5) : 0;
+      acceleration[i] = k % 11 ? 10 * level * (uniform() - 0.5) : any_magnitude();
     }
-    step(inputs, rate, dt, &state, k % 2);
+    step(inputs, rate, k % 3 ? acceleration : 0, dt, &state, k % 2);
   }
   printf("{\"cut\": %ld, \"differentiated\": %ld, \"counts\": [", cut, differentiated);
   for (i = 0; i < STATUSES; i++) printf("%s%ld", i ? ", " : "", counts[i]);
