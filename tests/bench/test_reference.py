@@ -30,9 +30,7 @@ UNKNOWN = (
 """Words of scenes that the bench cannot shoot."""
 
 PLAIN = [
-    path
-    for path in sorted((ROOT / "examples").glob("*.toml"))
-    if not any(word in path.read_text() for word in UNKNOWN)
+    path for path in sorted((ROOT / "examples").glob("*.toml")) if not any(word in path.read_text() for word in UNKNOWN)
 ]
 
 
