@@ -100,11 +100,11 @@ def export(
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):
             write_fmu(model, fmu, name, error_estimate=estimate)
-        print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0")
+        print_plain(console, f"wrote {escape(str(fmu))}; simulators open it that know FMI 3.0", soft_wrap=True)
     if page is not None:
         with Console(stderr=True).status("Compiling the page"):
             export_page(solution, page)
-        print_plain(console, f"wrote {escape(str(page))}; any browser opens it")
+        print_plain(console, f"wrote {escape(str(page))}; any browser opens it", soft_wrap=True)
 
 
 def _refuse_without_sources(options: Mapping[str, bool]) -> None:
