@@ -84,6 +84,7 @@ def test_alike_legs_share_one_kernel_in_loops() -> None:
     assert all(len(part.x) < function.size1_in(0) / 2 for part in of_legs)
 
 
+@pytest.mark.slow
 def test_a_leg_that_is_different_has_a_kernel_of_its_own() -> None:
     function, owners = motion(legs(2, first="kirchhoff"))
     made = parted(function, owners, "k")
@@ -92,6 +93,7 @@ def test_a_leg_that_is_different_has_a_kernel_of_its_own() -> None:
     assert len(long) == 2
 
 
+@pytest.mark.slow
 def test_more_alike_legs_are_little_more_code() -> None:
     sizes = []
     for count in (2, 3):

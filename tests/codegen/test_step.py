@@ -26,6 +26,9 @@ from tests.codegen.motions import (
     start_of,
 )
 
+pytestmark = pytest.mark.xdist_group("steps")
+"""On one worker, so that what they share is made once."""
+
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
 """Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
 

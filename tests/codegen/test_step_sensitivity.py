@@ -16,6 +16,9 @@ from cosserat_casadi.numerics.step import Step, stages_of
 from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
+pytestmark = pytest.mark.xdist_group("steps")
+"""On one worker, so that what they share is made once."""
+
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
 
 DT = 4e-3
