@@ -214,7 +214,9 @@ def test_version_is_that_of_the_package_and_of_casadi(capsys: pytest.CaptureFixt
 
 def in_shell(home: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
     code = "import sys; sys.argv[0] = 'cosserat'; from cosserat_casadi.cli.main import main; main()"
-    environment = {**os.environ, "HOME": str(home), **variables}
+    # Else typer asks the processes above it which shell they are, and a runner of tests may have none.
+    named = {"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
+    environment = {**os.environ, "HOME": str(home), **named, **variables}
     command = [sys.executable, "-c", code, *arguments]
     return subprocess.run(command, cwd=home, env=environment, capture_output=True, text=True, timeout=60, check=False)
 
