@@ -76,6 +76,7 @@ def smoke_test(python: Path | str, folder: Path, path: Path | None = None) -> No
     assert (folder / "wire" / "solver.c").exists()
 
 
+@pytest.mark.slow
 def test_wheel_works_away_from_the_repository(wheel: Path, tmp_path: Path) -> None:
     installed = tmp_path / "installed"
     install = ("-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", installed, wheel)

@@ -29,7 +29,9 @@ from tests.codegen.motions import (
 pytestmark = pytest.mark.xdist_group("steps")
 """On one worker, so that what they share is made once."""
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
+DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
+
+FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]
 """Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
 
 
@@ -40,7 +42,7 @@ def test_steps_vs_python(motion_library: MotionLibrary, family: str) -> None:
     assert_same_steps(made, drive(made.model, 2e-3, 8))
 
 
-@pytest.mark.parametrize("family", ["given length", "driven and held"])
+@pytest.mark.parametrize("family", ["given length", DRIVEN])
 def test_steps_with_accelerations_of_inputs_vs_python(motion_library: MotionLibrary, family: str) -> None:
     """A cable, a base and a length along a path of second degree in each step."""
     made = motion_library(family)
@@ -88,7 +90,7 @@ def test_steps_to_the_default_tolerance_are_as_near_as_they_say(motion_library: 
     assert sum(step.iterations for step in near) < sum(step.iterations for step in exact)
 
 
-@pytest.mark.parametrize("family", ["fixed joint", "driven and held", "given length"])
+@pytest.mark.parametrize("family", ["fixed joint", DRIVEN, "given length"])
 def test_loops_stay_closed(motion_library: MotionLibrary, family: str) -> None:
     """After 200 steps, constraints are open by no more than 1e-10 of the length."""
     made = motion_library(family)
@@ -163,7 +165,10 @@ def test_a_step_too_long_is_cut_and_says_so(motion_library: MotionLibrary) -> No
     assert_allclose(cut.state.v, state.v, rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize(("family", "dt", "iterations"), [("planar", 0.2, 4), ("driven and held", 0.02, 8)])
+@pytest.mark.parametrize(
+    ("family", "dt", "iterations"),
+    [("planar", 0.2, 4), pytest.param("driven and held", 0.02, 8, marks=pytest.mark.slow)],
+)
 def test_parts_begin_where_the_inputs_have_moved_to(
     motion_library: MotionLibrary, family: str, dt: float, iterations: int
 ) -> None:
@@ -261,6 +266,7 @@ def test_rest_out_of_balance_vs_python(motion_library: MotionLibrary, family: st
     assert np.abs(made.compiled.inverse_dynamics(state, inputs)).max() < 1e-7
 
 
+@pytest.mark.slow
 def test_rest_where_a_support_is_open(motion_library: MotionLibrary) -> None:
     made = motion_library("driven and held")
     assert made.compiled.rest() is None
@@ -287,7 +293,7 @@ def test_equations_of_motion_vs_python(motion_library: MotionLibrary, family: st
         assert_allclose(ours.full(), theirs.full(), rtol=1e-12, atol=1e-14)
 
 
-@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length", "driven and held"])
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "given length", DRIVEN])
 def test_derivatives_by_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
     drawn = moving_scenes.drawn_state(made.model)

@@ -73,6 +73,7 @@ def path_of(made: Exported, duration: float, count: int) -> tuple[list[FloatArra
     return path, values
 
 
+@pytest.mark.slow
 @needs_cases
 def test_order_three(case: Callable[[str], Exported]) -> None:
     """Errors of the unknowns beside Radau IIA with three stages in Python, of order five, at a damped rod let go."""

@@ -37,7 +37,7 @@ def test_very_many_numbers_under_sanitizers(motion_library: MotionLibrary, famil
     fuzz(motion_library(family), 3000)
 
 
-@pytest.mark.parametrize("family", ["planar", "fixed joint"])
+@pytest.mark.parametrize("family", ["planar", pytest.param("fixed joint", marks=pytest.mark.slow)])
 def test_threads_vs_one_thread(motion_library: MotionLibrary, family: str) -> None:
     assert int(run(motion_library(family).program("step_threads.c", *QUICK, "-pthread"))) > 50
 
@@ -64,7 +64,7 @@ def test_a_million_steps_of_a_damped_rod(motion_library: MotionLibrary) -> None:
     long_run(motion_library("kirchhoff"), 1_000_000, "-O2", "-fPIC")
 
 
-@pytest.mark.parametrize("family", ["planar", "fixed joint"])
+@pytest.mark.parametrize("family", ["planar", pytest.param("fixed joint", marks=pytest.mark.slow)])
 def test_demo_simulates_a_second(motion_library: MotionLibrary, family: str) -> None:
     """Its tip is where the same steps in Python's hands end."""
     made = motion_library(family)

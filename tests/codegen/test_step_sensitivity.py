@@ -19,7 +19,9 @@ from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, driv
 pytestmark = pytest.mark.xdist_group("steps")
 """On one worker, so that what they share is made once."""
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", "driven and held"]
+DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
+
+FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]
 
 DT = 4e-3
 
@@ -90,6 +92,7 @@ def test_sensitivity_vs_python(motion_library: MotionLibrary, family: str) -> No
     assert_sensitivity_of_python(made, drive(made.model, DT, 1))
 
 
+@pytest.mark.slow
 def test_sensitivity_with_accelerations_of_inputs_vs_python(motion_library: MotionLibrary) -> None:
     made = motion_library("driven and held")
     assert_sensitivity_of_python(made, accelerated(made.model, DT, 1))
@@ -122,7 +125,7 @@ def test_sensitivity_vs_differences(motion_library: MotionLibrary, family: str) 
     assert_sensitivity_of_differences(made, drive(made.model, DT, 1))
 
 
-@pytest.mark.parametrize("family", ["given length", "driven and held"])
+@pytest.mark.parametrize("family", ["given length", DRIVEN])
 def test_sensitivity_with_accelerations_of_inputs_vs_differences(motion_library: MotionLibrary, family: str) -> None:
     made = motion_library(family)
     assert_sensitivity_of_differences(made, accelerated(made.model, DT, 1))

@@ -42,6 +42,7 @@ def mean_error(plant, runs, steps):
     return np.mean(errors), entries, 1.96 * np.sqrt(2 * entries / runs)
 
 
+@pytest.mark.slow
 def test_covariance_says_how_far_off_the_belief_is(plant):
     error, entries, band = mean_error(plant, 20, SETTLED)
     assert_allclose(error, entries, rtol=0.0, atol=band)
@@ -71,6 +72,7 @@ def test_filter_in_c_vs_python(plant, folder, tmp_path):
     assert np.all(found[-1, 3:] < 0.03)
 
 
+@pytest.mark.slow
 def test_picture_is_drawn(plant, tmp_path):
     run = true_motion(plant, 5, 0)
     draw(run, filtered(plant, run), str(tmp_path / "f.png"))

@@ -38,8 +38,10 @@ def largest_residual(history: History) -> float:
     return largest
 
 
-@pytest.mark.parametrize("integrator", ["radau", "gauss"])
-@pytest.mark.parametrize("example", ["tendon_robot_move", "thrown_rod"])
+@pytest.mark.parametrize(
+    ("example", "integrator"),
+    [("tendon_robot_move", "radau"), ("tendon_robot_move", "gauss"), ("thrown_rod", "gauss")],
+)
 def test_every_given_step_is_solved(example: str, integrator: str) -> None:
     history = in_given_steps(example, 0.03, 0.21, integrator)
     assert history.outcome is StepOutcome.COMPLETED

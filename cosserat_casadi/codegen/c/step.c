@@ -324,14 +324,14 @@ static int continues(const solver_step_memory *memory, const solver_state *state
 /* A part of a step, which begins with the state in work->end; its inputs and their rates have moved by then. */
 static step_start part_of_step(const step_start *whole, int number, int count, workspace *work) {
   const real size = whole->size / (real)count;
-  const step_start part = {.x = work->end.x,
-                           .v = work->end.v,
-                           .inputs = work->part_of_inputs,
-                           .inputs_rate = work->part_of_rates,
-                           .inputs_acceleration = whole->inputs_acceleration,
-                           .size = size};
+  const step_start own = {.x = work->end.x,
+                          .v = work->end.v,
+                          .inputs = work->part_of_inputs,
+                          .inputs_rate = work->part_of_rates,
+                          .inputs_acceleration = whole->inputs_acceleration,
+                          .size = size};
   inputs_after(whole, (real)number * size, work->part_of_inputs, work->part_of_rates);
-  return part;
+  return own;
 }
 
 /* The step in so many parts, whose unknowns it leaves in the workspace, as their end in work->end. */
