@@ -241,7 +241,9 @@ class CompiledMotion(ABC):
         """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
         residual = np.zeros(self.size)
         rates = [self._given(value) for value in (inputs, inputs_rate, inputs_acceleration)]
-        arguments = [pointer(value) for value in (state.x, state.v, state.a)]
+        # A slice of a table is no vector in memory: C reads what lies side by side.
+        named = {"x": state.x, "v": state.v, "a": state.a}
+        arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
         self._motion_function("inverse_dynamics")(*arguments, *rates, pointer(residual), self._workspace())
         return residual
 
