@@ -22,7 +22,7 @@ from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.stage import bare_second, differentiated, jacobian_of, poses_of, written
+from cosserat_casadi.codegen.stage import bare_second, differentiated, exact_second, jacobian_of, poses_of, written
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.motion.stage import MotionStage
 
@@ -85,7 +85,8 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[
     plain = stage.equations_by(inverse_dynamics, name)
     slopes = _equations_jacobian(stage, plain)
     adjoint = plain.reverse(1)
-    second = adjoint.jacobian() if curvature else bare_second(plain, slopes, adjoint)
+    make_second = exact_second if curvature else bare_second
+    second = make_second(plain, slopes, adjoint)
     return [plain, slopes, adjoint, second]
 
 
