@@ -20,9 +20,6 @@ from cosserat_casadi.view.session import opened
 from tests.browser import browser
 from tests.view.test_session import strip
 
-pytestmark = pytest.mark.xdist_group("view")
-"""On one worker, so that what they share is made once."""
-
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[RobotServer]:
