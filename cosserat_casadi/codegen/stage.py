@@ -16,7 +16,6 @@ from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_comp
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
@@ -31,6 +30,8 @@ def compiled_stage(
     progress: Progress | None = None,
 ) -> ca.Function:
     """(x, inputs) ↦ (residual, pose of every tip and body), compiled once, with compiled derivatives.
+
+    Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
 
     Args:
         model: the model.
@@ -49,7 +50,6 @@ def compiled_stage(
         ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails.
     """
     library_names(name)
-    refuse_parameters(model.scene)
     check_scalar(model)
     found = find_compiler(compiler)
     texts: dict[str, str] = {}
@@ -115,27 +115,29 @@ def poses_of(model: Model) -> dict[str, ca.Function]:
 
 
 def _stage(model: Model, name: str) -> ca.Function:
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     poses = poses_of(model)
-    results = [model.residual(x, inputs)]
+    results = [model.residual(*arguments)]
     for pose in poses.values():
-        position, quaternion, _ = pose(x, inputs)
+        position, quaternion, _ = pose(*arguments)
         results.append(ca.vertcat(position, quaternion))
-    return ca.Function(name, [x, inputs], results, ["x", "inputs"], ["residual", *poses])
+    return ca.Function(name, arguments, results, model.residual.name_in(), ["residual", *poses])
 
 
 def _slopes(model: Model, plain: ca.Function) -> ca.Function:
     """∂ output / ∂ input, output by output, with the model's own Jacobians."""
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
-    blocks = [model.jacobian(x, inputs)[0], model.input_jacobian(x, inputs)]
+    blocks = [model.jacobian(*arguments)[0], model.input_jacobian(*arguments)]
+    if model.parameters.size:
+        blocks.append(model.parameter_jacobian(*arguments))
     for pose in poses:
-        blocks += pose(x, inputs)
-    return jacobian_of(plain, [x, inputs], blocks)
+        blocks += pose(*arguments)
+    return jacobian_of(plain, arguments, blocks)
 
 
 def bare_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
-    """Jacobian of the adjoint with its multipliers; with x and inputs it is left empty."""
+    """Jacobian of the adjoint with its multipliers; with x, inputs and p it is left empty."""
     symbols = adjoint.mx_in()
     blocks = slopes.call(symbols[: slopes.n_in()])
     rows = []

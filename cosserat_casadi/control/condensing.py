@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.stage import MotionStage
@@ -74,9 +75,15 @@ class Condensing:
         equations: those of the stage, compiled or not.
         stages: number of stages N.
         steered: numbers of the inputs whose rates are to be chosen; the others move as given.
+
+    Raises:
+        SceneError: the equations of the stage take parameters.
     """
 
     def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+        if stage.model.parameters.size:
+            problem = "the equations of the stage take parameters, and a horizon is condensed for given ones"
+            raise SceneError(Problem("parameters", problem, "make the stage of model.at(…)"))
         self._stage = stage
         self._stages = stages
         self._steered = list(steered)
