@@ -20,7 +20,6 @@ from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_comp
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
@@ -37,6 +36,8 @@ def compiled_stage(
     progress: Progress | None = None,
 ) -> ca.Function:
     """(x, inputs) ↦ (residual, pose of every tip and body, …), compiled once, with compiled derivatives.
+
+    Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
 
     Args:
         model: the model.
@@ -60,7 +61,6 @@ def compiled_stage(
             there is no such rod, section or actuator.
     """
     library_names(name)
-    refuse_parameters(model.scene)
     check_scalar(model)
     wanted = dict(sections or {})
     _check_wanted(model, wanted, actuators)
@@ -170,14 +170,14 @@ def _further_outputs(
     model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]
 ) -> dict[str, Matrix]:
     """Poses of sections, efforts and conjugates of actuators by name, in the symbols of the residual."""
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     further: dict[str, Matrix] = {}
     for rod, abscissae in sections.items():
-        columns = [ca.vertcat(*model.shape[rod](x, inputs, X)) for X in abscissae]
+        columns = [ca.vertcat(*model.shape[rod](*arguments, X)) for X in abscissae]
         further[f"sections_{rod}"] = ca.horzcat(*columns)
     for actuator in actuators:
         function = model.actuator[actuator]
-        effort, conjugate, _ = function(x, inputs)
+        effort, conjugate, _ = function(*arguments)
         effort_name, conjugate_name, _ = function.name_out()
         further[f"{effort_name}_{actuator}"] = effort
         further[f"{conjugate_name}_{actuator}"] = conjugate
@@ -185,26 +185,28 @@ def _further_outputs(
 
 
 def _stage(model: Model, name: str, further: Mapping[str, Matrix]) -> ca.Function:
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     poses = poses_of(model)
-    results = [model.residual(x, inputs)]
+    results = [model.residual(*arguments)]
     for pose in poses.values():
-        position, quaternion, _ = pose(x, inputs)
+        position, quaternion, _ = pose(*arguments)
         results.append(ca.vertcat(position, quaternion))
     results += further.values()
-    return ca.Function(name, [x, inputs], results, ["x", "inputs"], ["residual", *poses, *further])
+    return ca.Function(name, arguments, results, model.residual.name_in(), ["residual", *poses, *further])
 
 
 def _slopes(model: Model, plain: ca.Function, further: Mapping[str, Matrix]) -> ca.Function:
     """∂ output / ∂ input, output by output, with the model's own Jacobians."""
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
-    blocks = [model.jacobian(x, inputs)[0], model.input_jacobian(x, inputs)]
+    blocks = [model.jacobian(*arguments)[0], model.input_jacobian(*arguments)]
+    if model.parameters.size:
+        blocks.append(model.parameter_jacobian(*arguments))
     for pose in poses:
-        blocks += pose(x, inputs)
+        blocks += pose(*arguments)
     for output in further.values():
-        blocks += [ca.jacobian(output, x), ca.jacobian(output, inputs)]
-    return jacobian_of(plain, [x, inputs], blocks)
+        blocks += [ca.jacobian(output, argument) for argument in arguments]
+    return jacobian_of(plain, arguments, blocks)
 
 
 def bare_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:

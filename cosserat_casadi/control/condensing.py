@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.stage import MotionStage
@@ -77,9 +78,13 @@ class Condensing:
 
     Raises:
         ValueError: there is no stage, or no such input.
+        SceneError: the equations of the stage take parameters.
     """
 
     def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+        if stage.model.parameters.size:
+            problem = "the equations of the stage take parameters, and a horizon is condensed for given ones"
+            raise SceneError(Problem("parameters", problem, "make the stage of model.at(…)"))
         inputs = stage.model.inputs.size
         if stages < 1:
             raise ValueError(f"stages must be 1 or more, got {stages}")
