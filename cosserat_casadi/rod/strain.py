@@ -39,7 +39,6 @@ from cosserat_casadi.maths.numbers import (
     product,
     reciprocal,
     repeated,
-    row_times,
     without_rounding,
 )
 from cosserat_casadi.maths.polynomials import legendre_table
@@ -281,6 +280,9 @@ class DiscreteRod:
         rate = self.grid.rates_in(elements)
         if rate is None:
             return coefficients
+        if is_symbolic(rate) and not is_symbolic(coefficients):
+            same = (coefficients == coefficients[:1]) | np.isnan(coefficients)
+            coefficients = coefficients[:1] if np.all(same) else coefficients
         # One row for all times the one rate of the element.
         return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))
 
@@ -290,18 +292,24 @@ class DiscreteRod:
         element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
         X = np.concatenate([X for X, _ in points])
         weights = np.concatenate([weight for _, weight in points])
-        alike = all(part.shape[0] == 1 for part in by_element) and self.ends is None
-        if alike:
+        uniform = all(part.shape[0] == 1 for part in by_element)
+        if uniform and self.ends is None:
             # One row stands for all points of all elements.
             coefficients = as_matrix(by_element[0])
         else:
-            rows = [repeated(part, len(own)) for part, (own, _) in zip(by_element, points, strict=True)]
+            counts = [1 if uniform else len(own) for own, _ in points]
+            rows = [repeated(part, count) for part, count in zip(by_element, counts, strict=True)]
             coefficients = ca.vertcat(*map(as_matrix, rows))
+        # One row stands for all points of an element.
+        of_element = element[:, None] == np.arange(self.grid.elements)
+        by_row = of_element if uniform and self.ends is not None else None
         blocks = []
         for c in self.columns:
             phi = self.shape_functions(c, X, element)
             # One column a point: the product of two modes there, for every pair of modes.
             pairs = (phi[:, :, None] * phi[:, None, :] * weights[:, None, None]).reshape(len(X), -1).T
+            if by_row is not None:
+                pairs = without_rounding(pairs @ by_row)
             own = column(coefficients, c)
             size = phi.shape[1]
             blocks.append(ca.reshape(product(pairs, own), size, size))
@@ -406,24 +414,44 @@ class DiscreteRod:
 
     def _moved_intrinsic_turn(self) -> Matrix:
         """The same where element ends are expressions: the unloaded curvature is sampled where its elements are."""
-        X, element, lengths, to_taylor = self._taylor_samples
-        intrinsic = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
-        rates = self.grid.rates_in(element)
-        assert rates is not None, "asked for where elements move"
-        rates_of_intervals: Numbers = rates[:: len(X) // len(lengths)]
         rows: list[Matrix] = []
-        for order, weights in enumerate(to_taylor):
-            summed = ca.sparsify(ca.DM(np.kron(np.diag(lengths), weights)))
+        turns = [self._turn_of_samples(len(own)) for own in self.properties.intrinsic[:3]]
+        for order in range(self.taylor_count):
             for axis in self.properties.turning_axes:
                 own = self.properties.intrinsic[axis]
                 if len(own) <= order or is_zero(own):
                     # A polynomial has no Taylor coefficient beyond its degree.
-                    rows.append(ca.DM(1, len(lengths)))
-                elif len(own) == 1:
-                    rows.append(as_matrix(row_times(lengths, rates_of_intervals)).T * own[0])
-                else:
-                    rows.append((summed @ as_matrix(each_times(column(intrinsic, axis), rates))).T)
+                    rows.append(ca.DM(1, len(self.grid.left_ends)))
+                    continue
+                by_sample = turns[axis][order]
+                rows.append((ca.sparsify(ca.DM(by_sample)) @ self._element_samples(axis)).T)
         return ca.vertcat(*rows)
+
+    def _element_samples(self, axis: int) -> Matrix:
+        """Unloaded curvature about an axis at as many Gauss points of each element as determine it, times its rate."""
+        count = len(self.properties.intrinsic[axis])
+        points, _ = legendre.leggauss(count)
+        breaks = np.asarray(self.grid.breaks)
+        places = breaks[:-1, None] + np.diff(breaks)[:, None] * (points + 1) / 2
+        element = np.repeat(np.arange(self.grid.elements), count)
+        curvature = self.properties.intrinsic_curvature(self.grid.on_rod(places.ravel(), element))
+        rates = self.grid.rates_in(element)
+        return as_matrix(each_times(column(curvature, axis), rates))
+
+    def _turn_of_samples(self, count: int) -> list[Array]:
+        """Taylor coefficients of all intervals by so many samples of each element, (intervals, E·count) for each l."""
+        points, _ = legendre.leggauss(count)
+        to_coefficients = np.linalg.inv(legendre.legvander(points, count - 1))
+
+        def local_polynomials(X: Array, element: Indices) -> Array:
+            breaks = np.asarray(self.grid.breaks)
+            local = 2 * (X - breaks[element]) / np.diff(breaks)[element] - 1
+            polynomials = np.zeros((len(X), self.grid.elements, count))
+            polynomials[np.arange(len(X)), element] = legendre.legvander(local, count - 1)
+            return polynomials.reshape(len(X), -1)
+
+        to_samples = np.kron(np.eye(self.grid.elements), to_coefficients)
+        return [without_rounding(turn @ to_samples) for turn in self._taylor(local_polynomials)]
 
     @cached_property
     def taylor_count(self) -> int:
