@@ -38,7 +38,6 @@ from cosserat_casadi.maths.numbers import (
     known,
     product,
     reciprocal,
-    repeated,
     without_rounding,
 )
 from cosserat_casadi.maths.polynomials import legendre_table
@@ -46,6 +45,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import Field, RodProperties
+from cosserat_casadi.rod.section_matrix import section_matrix
 
 Array = npt.NDArray[np.float64]
 
@@ -236,84 +236,14 @@ class DiscreteRod:
     @cached_property
     def stiffness(self) -> Numbers:
         """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit."""
-        return self._section_matrix(self.properties.hooke)
+        return section_matrix(self, self.properties.hooke)
 
     @cached_property
     def viscosity(self) -> Numbers:
         """ℓ ∫ Φᵀ Υ Φ dX divided by EI/ℓ, Υ the coefficients of damping, shape (n, n), s; zero without damping."""
         if self.properties.damping is None:
             return np.zeros((self.size, self.size))
-        return self._section_matrix(self.properties.damping)
-
-    def _section_matrix(self, diagonal: Field) -> Numbers:
-        """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n)."""
-        points = [self._gauss_points(e) for e in range(self.grid.elements)]
-        coefficients = [self._per_element(diagonal, e, X) for e, (X, _) in enumerate(points)]
-        if any_symbolic(coefficients):
-            return self._symbolic_section_matrix(coefficients)
-        result = np.zeros((self.size, self.size))
-        for e, (X, weight) in enumerate(points):
-            weighted = known(coefficients[e]) * weight[:, None]
-            element = np.full(len(X), e)
-            # Strains do not couple: the tensor is diagonal, and so are its blocks.
-            for c, columns in self.columns.items():
-                phi = self.shape_functions(c, X, element)
-                result[columns, columns] += phi.T @ (weighted[:, [c]] * phi)
-        return without_rounding(result)
-
-    def _gauss_points(self, element: int) -> tuple[Array, Array]:
-        """Places of an element in the grid's coordinate, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
-
-        Enough for the product of two polynomials with a section stiffness of degree four.
-        """
-        points, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
-        start, end = self.grid.breaks[element : element + 2]
-        width = end - start
-        X = start + width * (points + 1) / 2
-        lengths = weights * width / 2 * self.length
-        return X, lengths / self.energy_unit
-
-    def _per_element(self, diagonal: Field, element: int, X: Array) -> Numbers:
-        """Coefficients of strains per coordinate at places of an element, shape (k, 6) or one row for all."""
-        elements = np.full(len(X), element)
-        coefficients = diagonal(self.grid.on_rod(X, elements))
-        rate = self.grid.rates_in(elements)
-        if rate is None:
-            return coefficients
-        if is_symbolic(rate) and not is_symbolic(coefficients):
-            same = (coefficients == coefficients[:1]) | np.isnan(coefficients)
-            coefficients = coefficients[:1] if np.all(same) else coefficients
-        # One row for all times the one rate of the element.
-        return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))
-
-    def _symbolic_section_matrix(self, by_element: Sequence[Numbers]) -> Matrix:
-        """The same where the coefficients are expressions: its entries are linear in them."""
-        points = [self._gauss_points(e) for e in range(self.grid.elements)]
-        element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
-        X = np.concatenate([X for X, _ in points])
-        weights = np.concatenate([weight for _, weight in points])
-        uniform = all(part.shape[0] == 1 for part in by_element)
-        if uniform and self.ends is None:
-            # One row stands for all points of all elements.
-            coefficients = as_matrix(by_element[0])
-        else:
-            counts = [1 if uniform else len(own) for own, _ in points]
-            rows = [repeated(part, count) for part, count in zip(by_element, counts, strict=True)]
-            coefficients = ca.vertcat(*map(as_matrix, rows))
-        # One row stands for all points of an element.
-        of_element = element[:, None] == np.arange(self.grid.elements)
-        by_row = of_element if uniform and self.ends is not None else None
-        blocks = []
-        for c in self.columns:
-            phi = self.shape_functions(c, X, element)
-            # One column a point: the product of two modes there, for every pair of modes.
-            pairs = (phi[:, :, None] * phi[:, None, :] * weights[:, None, None]).reshape(len(X), -1).T
-            if by_row is not None:
-                pairs = without_rounding(pairs @ by_row)
-            own = column(coefficients, c)
-            size = phi.shape[1]
-            blocks.append(ca.reshape(product(pairs, own), size, size))
-        return ca.diagcat(*blocks)
+        return section_matrix(self, self.properties.damping)
 
     @cached_property
     def stiffness_matrix(self) -> Matrix:
