@@ -48,6 +48,9 @@ LOADS = [
 CABLE = [{"name": "cable", "kind": "tendon", "rod": "rod", "tension": 1.0, "offset": [[4e-4, -1e-4], 0.0]}]
 COIL = [{"name": "coil", "kind": "tendon", "rod": "rod", "tension": 1.0, "helix": {"radius": 4e-4, "turns": 1.0}}]
 
+SHORT = [{**CABLE[0], "span": [0.0, 0.6]}]
+POKE = [{"name": "poke", "kind": "point_wrench", "rod": "rod", "at": 0.5, "force": [0.05, 0.02, 0.0]}]
+
 CASES: tuple[tuple[str, dict[str, Any], list[dict[str, Any]], tuple[str, ...]], ...] = (
     ("Young's modulus, uniform rod", ROD, [], ("rod.material.youngs_modulus",)),
     ("… and Poisson's ratio", ROD, [], ("rod.material.youngs_modulus", "rod.material.poisson_ratio")),
@@ -62,12 +65,20 @@ CASES: tuple[tuple[str, dict[str, Any], list[dict[str, Any]], tuple[str, ...]], 
     ("offset of a tendon, linear along the rod", ROD, CABLE, ("cable.offset.x",)),
     ("radius and turns of a helical tendon", ROD, COIL, ("coil.helix.radius", "coil.helix.turns")),
     ("acceleration of a weight that is no input", ROD, [], ("weight.acceleration",)),
+    ("end of a tendon", ROD, SHORT, ("cable.span.end",)),
+    ("place of a force", ROD, [], ("poke.at",)),
+    ("… on a tapered rod", TAPERED, [], ("poke.at",)),
 )
 
+FORCES: dict[tuple[str, ...], list[dict[str, Any]]] = {("poke.at",): [*LOADS, *POKE]}
+"""Loads of those cases whose parameters are not of the others."""
 
-def model_of(rod: dict[str, Any], actuators: list[dict[str, Any]], parameters: tuple[str, ...]) -> Model:
+
+def model_of(
+    rod: dict[str, Any], loads: list[dict[str, Any]], actuators: list[dict[str, Any]], parameters: tuple[str, ...]
+) -> Model:
     """The model with these parameters; the force at the tip alone is an input."""
-    tables = {"schema": 1, "rods": [rod], "loads": LOADS, "actuators": actuators, "inputs": ["push.force"]}
+    tables = {"schema": 1, "rods": [rod], "loads": loads, "actuators": actuators, "inputs": ["push.force"]}
     scene = scene_from_dict({**tables, "parameters": list(parameters)})
     return build(scene, discretise(scene, MODES, NODES, "magnus6"))
 
@@ -81,9 +92,11 @@ def price() -> str:
     """The table."""
     rows = []
     for name, rod, actuators, parameters in CASES:
-        bare_residual, bare_jacobian = operations(model_of(rod, actuators, ()))
-        residual, jacobian = operations(model_of(rod, actuators, parameters))
-        count = model_of(rod, actuators, parameters).parameters.size
+        loads = FORCES.get(parameters, LOADS)
+        bare_residual, bare_jacobian = operations(model_of(rod, loads, actuators, ()))
+        model = model_of(rod, loads, actuators, parameters)
+        residual, jacobian = operations(model)
+        count = model.parameters.size
         cells = (
             f"+{residual - bare_residual:,} on {bare_residual:,}",
             f"+{jacobian - bare_jacobian:,} on {bare_jacobian:,}",
