@@ -12,9 +12,10 @@ import numpy as np
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
-from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
+from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, render
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.stability import stability_sources
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -26,8 +27,28 @@ NAME = "sweep"
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""
 
+STABILITY = ("smallest_eigenvalue", "stable")
+"""Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
+
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
+
+STABILITY_IN_ROWS = {
+    "stability_header": '#include "@{name}_stability.h"\n',
+    "stability_room": """  @{name}_stability_workspace *room = (@{name}_stability_workspace *)malloc(sizeof *room);
+  if (!room) {
+    free(workspace);
+    return 1;
+  }
+""",
+    "stability_call": """
+    @{name}_stability_info found;
+    if (@{name}_stability(given, x, workspace, room, &found) != @{MACRO}_CONVERGED) continue;
+    row[@{column}] = found.smallest_eigenvalue;
+    row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
+    "stability_end": "  free(room);\n",
+}
+"""What is added to the function for rows where it judges stability."""
 
 _LOCK = threading.Lock()
 
@@ -64,8 +85,12 @@ class RowLibrary:
         return results
 
 
-def row_library(model: Model) -> RowLibrary:
+def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
     """Sources of the solver of a model with a function for rows.
+
+    Args:
+        model: what is solved.
+        stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
@@ -73,11 +98,12 @@ def row_library(model: Model) -> RowLibrary:
     names = model_names(NAME, model)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
-    columns = row_results(model.scene)
+    columns = row_results(model.scene, stability=stability)
     files = {
         **library_sources(model, names, parts, generated, None),
+        **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, names, len(columns)),
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
     }
     wanted = [
         (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
@@ -85,11 +111,17 @@ def row_library(model: Model) -> RowLibrary:
     return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
 
 
-def row_results(scene: Scene) -> tuple[str, ...]:
-    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
+def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
+    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert.
+
+    Args:
+        scene: what is solved.
+        stability: whether they end with :data:`STABILITY`.
+    """
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
     states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
-    return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
+    poses = [f"{name}.{axis}" for name in posed for axis in POSE]
+    return (*JUDGED, *poses, *states, *(STABILITY if stability else ()))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:
@@ -98,7 +130,7 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _rows_source(model: Model, names: Names, results: int) -> str:
+def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
     lines = list[str]()
@@ -111,7 +143,12 @@ def _rows_source(model: Model, names: Names, results: int) -> str:
         lines.append(f"    {function}(x, given, row + {column}, row + {column + 1}, 0);")
         column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
-    return render("rows.c.in", words)
+    in_rows = {"stability_header": "", "stability_room": "", "stability_call": "", "stability_end": ""}
+    if stability:
+        in_rows = {
+            key: fill(text, {**words, "column": column, "next": column + 1}) for key, text in STABILITY_IN_ROWS.items()
+        }
+    return render("rows.c.in", {**words, **in_rows})
 
 
 def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:

@@ -31,6 +31,9 @@ def sweep(
     samples: Annotated[
         int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
     ] = SAMPLES,
+    stability: Annotated[
+        bool, typer.Option("--stability", help="Say of every row whether its equilibrium is stable.")
+    ] = False,
     plot: Annotated[Path | None, typer.Option(help="Draw the workspace here: .png, .pdf or .svg.")] = None,
     colour: Annotated[
         str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
@@ -45,7 +48,7 @@ def sweep(
     problems: list[Problem] = []
     with collect_problems(problems):
         check_outputs(None, plot)
-    plan = _check_table(scene, tuple(settings or ()), over, output, samples, problems)
+    plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, problems)
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -68,7 +71,13 @@ def sweep(
 
 
 def _check_table(
-    scene_file: Path, settings: tuple[str, ...], over: Path, output: Path, samples: int, problems: list[Problem]
+    scene_file: Path,
+    settings: tuple[str, ...],
+    over: Path,
+    output: Path,
+    samples: int,
+    stability: bool,
+    problems: list[Problem],
 ) -> Plan | None:
     """The sweep that is asked for; None where the scene, the table or the output is refused."""
     scene: Scene | None = None
@@ -82,7 +91,7 @@ def _check_table(
         problems.extend(output_problems(output, None))
         return None
     with collect_problems(problems):
-        return plan_sweep(scene, table, output, samples)
+        return plan_sweep(scene, table, output, samples, stability=stability)
     return None
 
 
