@@ -71,6 +71,7 @@ class Plan:
             # They say which rows are solved in C: the same to the tolerance, but not to the last digit.
             [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
             self.stability,
+            self.table.factors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
         values = np.ascontiguousarray(self.table.values, dtype="<f8")
@@ -327,6 +328,7 @@ def _sweep(
 
 
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
+    sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
     return {
         "schema": 1,
         "sweep": plan.identity,
@@ -339,6 +341,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "checked": checked,
         "swept": list(sweep.swept),
         "parameters": list(plan.variants.parameters),
+        **sobol,
         "scene": scene_text(plan.scene),
     }
 
