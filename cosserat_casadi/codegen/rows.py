@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -80,7 +81,7 @@ class RowLibrary:
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
         results = np.empty((len(given), self.results))
-        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
+        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
@@ -105,10 +106,13 @@ def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
         **generated,
         f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
     }
-    wanted = [
-        (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
-    ]
-    return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
+    return RowLibrary(to_compile(files), model.inputs.size, len(columns))
+
+
+def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """The sources and headers of a library, without its demo programs."""
+    wanted = [name for name in files if name.endswith((".c", ".h")) and not name.endswith("_demo.c")]
+    return tuple((name, files[name]) for name in wanted)
 
 
 def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
@@ -151,12 +155,21 @@ def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -
     return render("rows.c.in", {**words, **in_rows})
 
 
-def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+def loaded(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    """A library that is compiled once in this process.
+
+    Args:
+        name: what the name of the object begins with.
+        files: sources and headers by name.
+
+    Raises:
+        ExportError: there is no C compiler, or it fails.
+    """
     # Threads wait for the one that compiles, instead of compiling too.
     with _LOCK:
-        return _library(files)
+        return _library(name, files)
 
 
 @cache
-def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), VERBATIM)))
+def _library(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    return ctypes.CDLL(str(compiled_texts(name, dict(files), find_compiler(), VERBATIM)))
