@@ -16,7 +16,6 @@ from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
@@ -52,7 +51,6 @@ def export(
     Raises:
         ExportError: the name, the folder, a motion or the stability of this scene is refused; nothing was written.
     """
-    refuse_parameters(model.scene)
     if stability:
         check_stability(model)
     folder = Path(directory)

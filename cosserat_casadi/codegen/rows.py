@@ -44,7 +44,7 @@ STABILITY_IN_ROWS = {
 """,
     "stability_call": """
     @{name}_stability_info found;
-    if (@{name}_stability(given, x, workspace, room, &found) != @{MACRO}_CONVERGED) continue;
+    if (@{name}_stability(given@{passed}, x, workspace, room, &found) != @{MACRO}_CONVERGED) continue;
     row[@{column}] = found.smallest_eigenvalue;
     row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
     "stability_end": "  free(room);\n",
@@ -61,17 +61,23 @@ class RowLibrary:
     Attributes:
         files: content by file name, as pairs.
         inputs: numbers in a row of inputs.
+        parameters: numbers in a row of parameters.
         results: numbers in a row of results.
     """
 
     files: tuple[tuple[str, str], ...]
     inputs: int
+    parameters: int
     results: int
 
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs).
+    def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs and of parameters.
 
         Other threads run meanwhile. What a row gives depends on that row alone.
+
+        Args:
+            inputs: shape (count, inputs).
+            parameters: shape (count, parameters); needed where there are any.
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -80,8 +86,15 @@ class RowLibrary:
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
+        arguments = [pointer(given)]
+        if self.parameters:
+            wanted = (len(given), self.parameters)
+            p = np.ascontiguousarray(np.empty((0, 0)) if parameters is None else parameters, dtype=np.float64)
+            if p.shape != wanted:
+                raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
+            arguments.append(pointer(p))
         results = np.empty((len(given), self.results))
-        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
+        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), *arguments, pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
@@ -106,7 +119,7 @@ def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
         **generated,
         f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
     }
-    return RowLibrary(to_compile(files), model.inputs.size, len(columns))
+    return RowLibrary(to_compile(files), model.inputs.size, model.parameters.size, len(columns))
 
 
 def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -137,16 +150,24 @@ def _state(actuator: Actuator) -> tuple[str, str]:
 def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
+    passed = ", parameters" if model.parameters.size else ""
     lines = list[str]()
     column = len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(x, given, row + {column}, row + {column + 3});")
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 3});")
         column += len(POSE)
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(x, given, row + {column}, row + {column + 1}, 0);")
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
         column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
+    words |= {"passed": passed, "parameters": "", "parameter_rows": "", "own_parameters": ""}
+    if passed:
+        real = f"{names.name}_real"
+        words["parameters"] = f", const {real} *all_parameters"
+        words["parameter_rows"] = ", all_parameters (PARAMETERS x count)"
+        own = f"all_parameters + (size_t)i * {names.macro}_PARAMETERS"
+        words["own_parameters"] = f"    const {real} *parameters = {own};\n"
     in_rows = {"stability_header": "", "stability_room": "", "stability_call": "", "stability_end": ""}
     if stability:
         in_rows = {

@@ -65,7 +65,16 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
         "aside": ASIDE,
         "tolerance": ContinuationSettings().newton.tolerance,
         "single_tolerance": SINGLE["single_tolerance"],
+        **_parameter_words(model, names),
         "potential_note": ALWAYS if everywhere else AT_TIMES,
     }
     source, header = stability_files(names.name)
     return {source: render("stability.c.in", words), header: render("stability.h.in", words)}
+
+
+def _parameter_words(model: Model, names: Names) -> dict[str, str]:
+    """The argument of parameters where there are some, as in the library's own header and source."""
+    if not model.parameters.size:
+        return {"parameters": "", "passed": ""}
+    argument = f"const {names.name}_real *parameters"
+    return {"parameters": f", {argument}", "passed": ", parameters"}

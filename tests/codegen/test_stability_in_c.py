@@ -36,6 +36,7 @@ PINNED = [{"rod": "rod", "kind": "pinned", "position": [0, 0, 0.9]}]
 GUY = {"name": "guy", "kind": "tendon", "rod": "rod", "length": 1.0, "offset": [0.02, 0.0], "slack": False}
 SCENES = {
     "planar": (column("planar"), 6, 12, "magnus6"),
+    "adjustable": (column("planar", parameters=["rod.stiffness.bending_y"]), 6, 12, "magnus6"),
     "round": (column("kirchhoff"), 4, 8, "magnus6"),
     "guyed": (column("kirchhoff", actuators=[GUY]), 4, 8, "magnus6"),
     "pinned": (column("kirchhoff", supports=PINNED), 5, 10, "magnus4"),
@@ -147,6 +148,20 @@ def test_neutral_equilibrium_is_told_from_a_critical_one(library: Callable[[str]
     assert straight.converged
     found = planar.judged(straight.x, at_event)
     assert (found.verdict, found.stable) == ("critical", False)
+
+
+def test_stability_follows_parameters(library: Callable[[str], Library]) -> None:
+    """A load beyond the critical one of the scene's own stiffness is not beyond that of twice as much."""
+    compiled = library("adjustable").compiled
+    inputs = np.array([0.0, 0.0, -1.01 * CRITICAL])
+    verdicts = {}
+    for stiffness in (1.0, 2.0):
+        p = {"rod.stiffness.bending_y": stiffness}
+        solution = compiled.solve(inputs, parameters=p)
+        found = compiled.stability(inputs, solution.x, parameters=p)
+        assert found is not None
+        verdicts[stiffness] = found.verdict
+    assert verdicts == {1.0: "unstable", 2.0: "stable"}
 
 
 def test_what_is_no_equilibrium_is_not_judged(library: Callable[[str], Library]) -> None:
