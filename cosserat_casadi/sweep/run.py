@@ -24,6 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweep.cluster import Cluster
 from cosserat_casadi.sweep.local import Cores
@@ -34,7 +35,7 @@ from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.variants import Variants, variants_of
-from cosserat_casadi.sweep.work import COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS, Chunk, Part, chunks
+from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
 SAMPLES = 12
 """Rows that the discretisation is chosen on, unless said otherwise."""
@@ -283,7 +284,8 @@ def _tasks(
             scene = choice.scene(variants.entries[variant].scene)
             library = row_library(build(scene), stability=plan.stability)
             library_of = variant
-        yield chunk, [(library, variants.inputs[rows])]
+        answer: Answer = Parametrised(library) if variants.arguments else library
+        yield chunk, [(answer, variants.given(rows))]
 
 
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
@@ -341,6 +343,7 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "checked": checked,
         "swept": list(sweep.swept),
         "parameters": list(plan.variants.parameters),
+        "arguments": list(plan.variants.arguments),
         **sobol,
         "scene": scene_text(plan.scene),
     }
