@@ -177,7 +177,7 @@ def test_derivatives_with_parameters(made: Exported) -> None:
 
 
 def polished(compiled: Compiled, inputs: FloatArray, p: FloatArray, x: FloatArray) -> FloatArray:
-    """An equilibrium near x to rounding: solutions within the tolerance of the solver have no sixth digit of a slope."""
+    """An equilibrium near x to rounding: within the tolerance of the solver a slope has no sixth digit."""
     size = compiled.size
     jacobian, residual = np.zeros((size, size)), np.zeros(size)
     for _ in range(4):
@@ -354,5 +354,5 @@ def test_a_scene_without_parameters_has_no_word_of_them(export_recipe: Callable[
 
 
 def test_names_that_are_one_in_c_are_refused() -> None:
-    with pytest.raises(ExportError, match="'joints_0.mass' and 'joints.0.mass' are one name in C"):
+    with pytest.raises(ExportError, match=r"'joints_0\.mass' and 'joints\.0\.mass' are one name in C"):
         library_names("robot", parameters=("joints_0.mass", "joints.0.mass"))
