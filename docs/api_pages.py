@@ -92,7 +92,7 @@ CONCEPTS = (
         "sweeps",
         "Sweeps",
         "A scene solved for every row of a table; see [sweeps](../sweeps.md).",
-        ("sweep_scene", "read_sweep", "Sweep"),
+        ("sweep_scene", "read_sweep", "Sweep", "sobol_table", "sobol_indices", "SobolIndices"),
     ),
     Concept(
         "control",
