@@ -16,8 +16,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene import Scene
 
-OUTLIER = 0.5
-"""Weight of a robust loss below which a datum is told as an outlier."""
+OUTLIER = 4.0
+"""Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
+
+NORMAL_MEDIAN = 0.6744897501960817
+"""Median of the size of what is normally distributed, in standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -138,9 +141,14 @@ class Identification:
 
     @property
     def outliers(self) -> tuple[Row, ...]:
-        """Numbers that the loss has taken for outliers, the farthest first."""
-        rows = [row for row in self.rows if row.weight < OUTLIER]
-        return tuple(sorted(rows, key=lambda row: row.weight))
+        """Numbers that are far from the model, the farthest first.
+
+        Where most residuals are larger than stated, they are measured by their median: what sticks out counts.
+        """
+        sizes = [abs(row.residual) for row in self.rows if not row.held_out]
+        spread = max(1.0, float(np.median(sizes)) / NORMAL_MEDIAN) if sizes else 1.0
+        rows = [row for row in self.rows if not row.held_out and abs(row.residual) > OUTLIER * spread]
+        return tuple(sorted(rows, key=lambda row: -abs(row.residual)))
 
     def fitted_scene(self, scene: Scene | None = None) -> Scene:
         """The scene with what was found for its numbers; unknowns of single cases stay as they are.

@@ -24,6 +24,7 @@ from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layou
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics.arrow_least_squares import Arrow, ArrowFit, Fit, Limits
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
 
@@ -232,7 +233,8 @@ class _Task:
             rows += self._rows(*predicted, held_out=True)
         ending.warnings += plausibility(self.model, self.layout, rows)
         ending.unstable += _unstable(misfit, fit.state.point)
-        ending.unresolved += _unresolved(misfit, fit.state.point)
+        resolved = _resolved(self.model, fit.state.point)
+        ending.unresolved += [case.where for case, is_so in zip(misfit.cases, resolved, strict=True) if not is_so]
         return ending.found(fit, known, rows, misfit, self.layout.shared_limits, (self.starts, ended_here))
 
     def _first(
@@ -248,13 +250,16 @@ class _Task:
         wanted = self.layout.inputs(shared, own, inputs)
         p = self.layout.parameters(shared)
         moved, reached = everyone.tracked(point, point.x, wanted, p)
+        resolved = _resolved(self.model, moved)
         left_out = []
         kept = []
         for i, (case, outcome) in enumerate(zip(cases, outcomes, strict=True)):
-            if outcome.label != "converged":
+            if outcome is not Outcome.CONVERGED:
                 left_out.append(LeftOut(case.where, outcome.value))
             elif not reached[i]:
                 left_out.append(LeftOut(case.where, NOT_FOLLOWED))
+            elif not resolved[i]:
+                left_out.append(LeftOut(case.where, Outcome.UNRESOLVED.value))
             else:
                 kept.append(i)
         if not kept:
@@ -291,13 +296,13 @@ class _Task:
         points = [first]
         bounded = np.isfinite(limits.lower) & np.isfinite(limits.upper)
         spread = bounded & (limits.lower > 0) & (limits.upper > DECADES * limits.lower)
+        even = bounded & ~spread
         expected = ~bounded & (limits.weight > 0)
         for _ in range(self.starts - 1):
             shares = rng.random(len(first))
             normal = rng.standard_normal(len(first))
             point = first.copy()
-            even = bounded & ~spread
-            point[even] = (limits.lower + shares * (limits.upper - limits.lower))[even]
+            point[even] = limits.lower[even] + shares[even] * (limits.upper[even] - limits.lower[even])
             ratios = limits.upper[spread] / limits.lower[spread]
             point[spread] = limits.lower[spread] * ratios ** shares[spread]
             point[expected] = limits.mean[expected] + normal[expected] / limits.weight[expected]
@@ -372,12 +377,10 @@ def _unstable(misfit: Misfit, point: Point) -> list[str]:
     return unstable
 
 
-def _unresolved(misfit: Misfit, point: Point) -> list[str]:
-    """Cases whose rods turn more between nodes than these resolve."""
-    model = misfit.model
+def _resolved(model: Model, point: Point) -> list[bool]:
+    """Whether the nodes resolve the rods in each case."""
     parameters: list[npt.NDArray[np.float64]] = [point.p] if model.parameters.size else []
-    unresolved = []
-    for case, x, inputs in zip(misfit.cases, point.x, point.inputs, strict=True):
-        if float(model.resolution_index(x, inputs, *parameters)) > 1.0:
-            unresolved.append(case.where)
-    return unresolved
+    return [
+        float(model.resolution_index(x, inputs, *parameters)) <= 1.0
+        for x, inputs in zip(point.x, point.inputs, strict=True)
+    ]

@@ -241,7 +241,9 @@ class Arrow:
         free_weights = np.where(self.shared_held, 0.0, weights)
         rows = np.vstack([left[:, :n], np.diag(free_weights), np.diag(shared_damping)])
         right = np.concatenate([left[:, n], prior_residuals, np.zeros(n)])
-        shared = -np.linalg.lstsq(rows, right, rcond=None)[0]
+        # Unknowns differ by many orders of magnitude: unscaled, the small columns would pass for rounding.
+        sizes = np.linalg.norm(rows, axis=0)
+        shared = -np.linalg.lstsq(rows / sizes, right, rcond=None)[0] / sizes
         own = np.zeros(self.own_held.shape)
         for block, elimination in enumerate(eliminations):
             known = elimination[:, k : k + n] @ shared + elimination[:, -1]
