@@ -671,6 +671,7 @@ def test_the_response_of_the_tip_to_a_place_against_scenes_of_their_own() -> Non
     assert_allclose(response, difference, rtol=1e-6, atol=1e-7 * np.abs(difference).max())
 
 
+@pytest.mark.slow
 def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
     """Errors of the tip against many modes, at a place that a parameter has moved far."""
     values = {"poke.at": 0.62, "prod.at": 0.9}
