@@ -27,7 +27,14 @@ TAPERED = {
     "section": {"shape": "circle", "radius": [0.02, 0.015]},
     "intrinsic": {"curvature": [0.2, [0.9, 0.3], 0.0]},
 }
-OFFSET = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [[0.02, -0.005], 0.0]}
+OFFSET = {
+    "name": "pull",
+    "kind": "tendon",
+    "rod": "rod",
+    "tension": 0.6,
+    "offset": [[0.02, -0.005], 0.0],
+    "span": [0, 0.7],
+}
 PIN = {"rod": "rod", "kind": "pinned", "position": [0.2, 0.15, 0.6]}
 
 RECIPES = {
@@ -42,6 +49,7 @@ RECIPES = {
                 "rod.section.radius.tip",
                 "rod.intrinsic.curvature.y",
                 "pull.offset.x[1]",
+                "pull.span.end",
             ],
         ),
         2,

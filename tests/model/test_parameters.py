@@ -591,13 +591,18 @@ def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, 
     rate = widths[np.concatenate(element)]
     x, v, a, inputs, still = point(model)
     p = model.parameters.pack(values)
-    if rotation == "permuted":
-        wanted = rebuilt.residual(x / rate, inputs).full()[:, 0] / rate
-        found = model.residual(x, inputs, p).full()[:, 0]
-    else:
-        wanted = rebuilt.inverse_dynamics(x / rate, v / rate, a / rate, inputs, still, still).full()[:, 0] / rate
-        found = model.inverse_dynamics(x, v, a, inputs, p, still, still).full()[:, 0]
-    assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
+    force, matrix = rate[:, None], np.outer(rate, rate)
+    pairs = [(model.residual(x, inputs, p), rebuilt.residual(x / rate, inputs), force)]
+    if rotation != "permuted":
+        moving = rebuilt.inverse_dynamics(x / rate, v / rate, a / rate, inputs, still, still)
+        pairs += [
+            (model.inverse_dynamics(x, v, a, inputs, p, still, still), moving, force),
+            (model.jacobian(x, inputs, p)[0], rebuilt.jacobian(x / rate, inputs)[0], matrix),
+            (model.mass_matrix(x, inputs, p), rebuilt.mass_matrix(x / rate, inputs), matrix),
+        ]
+    for found, expected, factor in pairs:
+        wanted = expected.full() / factor
+        assert_allclose(found.full(), wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
 
 def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
@@ -671,6 +676,7 @@ def test_the_response_of_the_tip_to_a_place_against_scenes_of_their_own() -> Non
     assert_allclose(response, difference, rtol=1e-6, atol=1e-7 * np.abs(difference).max())
 
 
+@pytest.mark.slow
 def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
     """Errors of the tip against many modes, at a place that a parameter has moved far."""
     values = {"poke.at": 0.62, "prod.at": 0.9}
