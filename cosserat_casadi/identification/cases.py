@@ -222,7 +222,7 @@ class _Reader:
         return values
 
     def _inputs(self, rows: Sequence[int], measured: Flags) -> dict[int, FloatArray]:
-        """Values of inputs that columns set, of shape (rows,), by index in the stacked inputs; NaN of empty cells."""
+        """Inputs that columns set, each of shape (rows,), by index in the stacked inputs; of empty cells NaN."""
         indices = column_indices(self.layout)
         values = {}
         for name, entry in self.measurement.set_inputs.items():
