@@ -17,8 +17,9 @@ typedef enum {
   WAITS_FOR_NOTHING,
   WAITS_FOR_FIRST_TANGENT,
   WAITS_FOR_PREDICTED_RESIDUAL,
-  WAITS_FOR_TRIAL_RESIDUAL,
   WAITS_FOR_NEWTON_MATRIX,
+  WAITS_FOR_STEP,
+  WAITS_FOR_TRIAL_RESIDUAL,
   WAITS_FOR_RATE,
   WAITS_FOR_TANGENT_MATRIX,
   WAITS_FOR_RESOLUTION,
@@ -36,6 +37,7 @@ typedef struct {
   newton_limits limits;
   newton_state newton;
   solver_info info;
+  real resolution; /* the index of its nodes */
   workspace work;
 } row;
 
@@ -46,6 +48,7 @@ typedef struct {
   real load_factor[LANES];
   real inputs_rate[(INPUTS + 1) * LANES];
   real load_factor_rate[LANES];
+  real factors[N * N * LANES];
   real results[WIDEST * LANES];
   int pivots[N * LANES];
   int regular[LANES];
@@ -137,15 +140,22 @@ static void weigh_newton_step(row *own, real length, real norm) {
   }
 }
 
-static void take_newton_step(row *own) {
-  workspace *work = &own->work;
-  const path_point *next = own->now.next;
+static void begin_newton_step(row *own) {
+  real *step = own->work.step;
   own->newton.result.iterations++;
-  if (!newton_step(own->now.spare, next->residual, work->step, work)) {
+  for (int i = 0; i < N; i++) step[i] = -own->now.next->residual[i];
+  permute(own->now.spare->factors.pivots, step);
+  own->state = WAITS_FOR_STEP;
+}
+
+static void after_step(row *own) {
+  workspace *work = &own->work;
+  apply_updates(own->now.spare, work->step);
+  if (!complete_step(own->now.spare, work->step)) {
     weigh_newton_step(own, 0, own->newton.norm);
     return;
   }
-  for (int i = 0; i < N; i++) work->trial[i] = next->x[i] + work->step[i];
+  for (int i = 0; i < N; i++) work->trial[i] = own->now.next->x[i] + work->step[i];
   own->state = WAITS_FOR_TRIAL_RESIDUAL;
 }
 
@@ -153,7 +163,7 @@ static void continue_newton(row *own) {
   if (newton_ends(&own->newton, &own->limits, own->now.next->x)) {
     end_correction(own);
   } else if (own->newton.reuse_jacobian) {
-    take_newton_step(own);
+    begin_newton_step(own);
   } else {
     expect_jacobian(&own->newton, own->now.spare);
     own->state = WAITS_FOR_NEWTON_MATRIX;
@@ -194,7 +204,7 @@ static void after_trial(row *own) {
 
 static void after_newton_matrix(row *own, int finite) {
   if (finite) {
-    take_newton_step(own);
+    begin_newton_step(own);
     return;
   }
   own->newton.result.status = SOLVER_NOT_FINITE;
@@ -218,8 +228,8 @@ static void after_rate(row *own) {
   own->state = WAITS_FOR_TANGENT_MATRIX;
 }
 
-static void after_resolution(row *own, real index) {
-  if (index <= 1) {
+static void after_resolution(row *own) {
+  if (own->resolution <= 1) {
     own->state = WAITS_FOR_RESULTS;
     return;
   }
@@ -235,14 +245,6 @@ static const real *unknowns_of(const row *own) {
   if (own->state == WAITS_FOR_TRIAL_RESIDUAL) return own->work.trial;
   if (own->state == WAITS_FOR_RESOLUTION || own->state == WAITS_FOR_RESULTS) return own->now.point->x;
   return own->now.next->x;
-}
-
-static void into_lane(const real *entries, int count, int lane, real *in_lanes) {
-  for (int i = 0; i < count; i++) in_lanes[i * LANES + lane] = entries[i];
-}
-
-static void out_of_lane(const real *in_lanes, int count, int lane, real *entries) {
-  for (int i = 0; i < count; i++) entries[i] = in_lanes[i * LANES + lane];
 }
 
 static void evaluate_in_lanes(waiting state, lanes_room *room) {
@@ -268,45 +270,69 @@ static void evaluate_in_lanes(waiting state, lanes_room *room) {
   }
 }
 
-static int take_factors(const lanes_room *room, int lane, jacobian_factors *factors) {
-  out_of_lane(room->results, N * N, lane, factors->factors);
+/* Where a row wants what it waits for, and how many numbers of it. */
+static real *wanted_by(row *own, int *count) {
+  *count = N;
+  switch (own->state) {
+    case WAITS_FOR_FIRST_TANGENT:
+      return own->now.point->tangent;
+    case WAITS_FOR_PREDICTED_RESIDUAL:
+      return own->now.next->residual;
+    case WAITS_FOR_NEWTON_MATRIX:
+    case WAITS_FOR_TANGENT_MATRIX:
+      *count = N * N;
+      return own->now.spare->factors.factors;
+    case WAITS_FOR_STEP:
+      return own->work.step;
+    case WAITS_FOR_RATE:
+      return own->work.rate;
+    case WAITS_FOR_RESOLUTION:
+      *count = 1;
+      return &own->resolution;
+    case WAITS_FOR_RESULTS:
+      *count = RESULTS;
+      return own->results;
+    default:
+      return own->work.trial_residual;
+  }
+}
+
+/* Pivots of a Jacobian; whether that was finite. */
+static int take_pivots(const lanes_room *room, int lane, jacobian_factors *factors) {
   for (int i = 0; i < N; i++) factors->pivots[i] = room->pivots[i * LANES + lane];
   factors->regular = room->regular[lane];
   return room->finite[lane];
 }
 
-/* A row goes on with what has been evaluated in its lane. */
+/* A row goes on with what it has waited for. */
 static void resume(row *own, const lanes_room *room, int lane) {
-  const real *results = room->results;
   switch (own->state) {
     case WAITS_FOR_FIRST_TANGENT:
-      out_of_lane(results, N, lane, own->now.point->tangent);
       after_first_tangent(own);
       break;
     case WAITS_FOR_PREDICTED_RESIDUAL:
-      out_of_lane(results, N, lane, own->now.next->residual);
       after_prediction(own);
       break;
+    case WAITS_FOR_NEWTON_MATRIX:
+      after_newton_matrix(own, take_pivots(room, lane, &own->now.spare->factors));
+      break;
+    case WAITS_FOR_STEP:
+      after_step(own);
+      break;
     case WAITS_FOR_TRIAL_RESIDUAL:
-      out_of_lane(results, N, lane, own->work.trial_residual);
       after_trial(own);
       break;
-    case WAITS_FOR_NEWTON_MATRIX:
-      after_newton_matrix(own, take_factors(room, lane, &own->now.spare->factors));
-      break;
     case WAITS_FOR_RATE:
-      out_of_lane(results, N, lane, own->work.rate);
       after_rate(own);
       break;
     case WAITS_FOR_TANGENT_MATRIX:
-      go_on_from_next_point(own, take_factors(room, lane, &own->now.spare->factors));
+      go_on_from_next_point(own, take_pivots(room, lane, &own->now.spare->factors));
       break;
     case WAITS_FOR_RESOLUTION:
-      after_resolution(own, results[lane]);
+      after_resolution(own);
       break;
     case WAITS_FOR_RESULTS:
       write_judgement(&own->info, own->results);
-      out_of_lane(results + JUDGED * LANES, RESULTS - JUDGED, lane, own->results + JUDGED);
       own->state = WAITS_FOR_NOTHING;
       break;
     case WAITS_FOR_NOTHING:
@@ -327,21 +353,50 @@ static waiting most_awaited(const row *rows) {
   return most;
 }
 
-/* Evaluates rows that wait for the same; lanes that are left over repeat the first. */
+/* Evaluates the equations for some rows; lanes that are left over repeat the first. */
+static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
+  const real *x[LANES];
+  const real *inputs[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    x[lane] = unknowns_of(rows[lane]);
+    inputs[lane] = rows[lane]->inputs;
+    room->load_factor[lane] = rows[lane]->now.next->t;
+  }
+  gather_lanes(x, N, room->x);
+  gather_lanes(inputs, INPUTS, room->inputs);
+  evaluate_in_lanes(state, room);
+}
+
+static void substitute_rows(row *const *rows, lanes_room *room) {
+  const real *factors[LANES];
+  const real *steps[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    factors[lane] = rows[lane]->now.spare->factors.factors;
+    steps[lane] = rows[lane]->work.step;
+  }
+  gather_lanes(factors, N * N, room->factors);
+  gather_lanes(steps, N, room->results);
+  substitute_in_lanes(N, room->factors, room->results);
+}
+
+/* Gives rows that wait for the same what they wait for. */
 static void serve(side_by_side *all, waiting state) {
   row *served[LANES];
+  real *wanted[LANES];
   lanes_room *room = &all->room;
   int count = 0;
+  int numbers = 0;
   for (int k = 0; k < ROWS && count < LANES; k++) {
     if (all->rows[k].state == state) served[count++] = all->rows + k;
   }
-  for (int lane = 0; lane < LANES; lane++) {
-    const row *own = served[lane < count ? lane : 0];
-    into_lane(unknowns_of(own), N, lane, room->x);
-    into_lane(own->inputs, INPUTS, lane, room->inputs);
-    room->load_factor[lane] = own->now.next->t;
+  for (int lane = count; lane < LANES; lane++) served[lane] = served[0];
+  if (state == WAITS_FOR_STEP) {
+    substitute_rows(served, room);
+  } else {
+    evaluate_rows(served, state, room);
   }
-  evaluate_in_lanes(state, room);
+  for (int lane = 0; lane < count; lane++) wanted[lane] = wanted_by(served[lane], &numbers);
+  scatter_lanes(room->results, numbers, count, wanted);
   for (int lane = 0; lane < count; lane++) resume(served[lane], room, lane);
 }
 

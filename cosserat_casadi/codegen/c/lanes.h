@@ -23,3 +23,10 @@ int processor_has_lanes(void);
 /* Factorises LANES matrices in place. Gives pivots (size arrays of lanes), whether each matrix is regular, and whether
    its entries were finite. */
 void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite);
+
+/* Solves with such factors, in place; the right sides are in the order of the pivots. */
+void substitute_in_lanes(int size, const double *factors, double *right_sides);
+
+/* Arrays of each row into an array of lanes, and of the lanes in use out of it. */
+void gather_lanes(const double *const *sources, int count, double *in_lanes);
+void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets);

@@ -1,4 +1,20 @@
-/* As factorise of linear_dense.c, of LANES matrices at once: each lane has its own pivots. */
+/* Linear algebra of LANES rows at once, each with pivots of its own: as linear_dense.c. */
+
+void gather_lanes(const double *const *sources, int count, double *in_lanes) {
+  const double *first = sources[0];
+  const double *second = sources[1];
+  const double *third = sources[2];
+  const double *fourth = sources[3];
+  lanes *gathered = (lanes *)in_lanes;
+  for (int i = 0; i < count; i++) gathered[i] = (lanes){first[i], second[i], third[i], fourth[i]};
+}
+
+void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets) {
+  for (int lane = 0; lane < used; lane++) {
+    double *target = targets[lane];
+    for (int i = 0; i < count; i++) target[i] = in_lanes[i * LANES + lane];
+  }
+}
 
 typedef long long lane_mask __attribute__((vector_size(8 * LANES), may_alias));
 
@@ -49,13 +65,26 @@ void factorise_in_lanes(int size, double singular, double *matrices, int *pivots
       if (largest[lane] <= tiny[lane]) regular[lane] = 0;
     }
     const lane_mask vanishes = largest <= tiny;
-    const lanes pivot = chosen(vanishes, IN_ALL(1), column[k]);
-    column[k] = chosen(vanishes, IN_ALL(0), column[k]);
-    for (int i = k + 1; i < size; i++) column[i] = chosen(vanishes, IN_ALL(0), column[i] / pivot);
+    column[k] = chosen(vanishes, IN_ALL(0), 1 / column[k]);
+    for (int i = k + 1; i < size; i++) column[i] *= column[k];
     for (int j = k + 1; j < size; j++) {
       lanes *target = a + j * size;
       const lanes factor = target[k];
       for (int i = k + 1; i < size; i++) target[i] -= column[i] * factor;
     }
+  }
+}
+
+void substitute_in_lanes(int size, const double *factors, double *right_sides) {
+  const lanes *a = (const lanes *)factors;
+  lanes *b = (lanes *)right_sides;
+  for (int k = 0; k < size; k++) {
+    const lanes known = b[k];
+    for (int i = k + 1; i < size; i++) b[i] -= a[k * size + i] * known;
+  }
+  for (int k = size - 1; k >= 0; k--) {
+    const lanes known = b[k] * a[k * size + k];
+    b[k] = known;
+    for (int i = 0; i < k; i++) b[i] -= a[k * size + i] * known;
   }
 }

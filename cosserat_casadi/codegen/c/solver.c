@@ -31,27 +31,36 @@ static const newton_limits DAMPED_NEWTON = {
     .reuse_jacobian = 0,
 };
 
-/* Minus the inverse of the Jacobian times a vector, with one rank-one update for each step and its follower. */
-static void apply_inverse(const updated_jacobian *jacobian, const real *vector, real *result, workspace *work) {
-  for (int i = 0; i < N; i++) result[i] = -vector[i];
-  back_substitute(&jacobian->factors, result, work);
+/* What is left of a product with the inverse of the Jacobian: one rank-one update for each step and its follower. */
+static void apply_updates(const updated_jacobian *jacobian, real *result) {
   for (int j = 0; j + 1 < jacobian->count; j++) {
     const real share = dot(jacobian->steps[j], result) / jacobian->squares[j];
     for (int i = 0; i < N; i++) result[i] += jacobian->steps[j + 1][i] * share;
   }
 }
 
-/* The quasi-Newton step at an iterate with this residual; zero where it is not finite. The update is C. G. Broyden's
-   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for
-   Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
-static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
-  apply_inverse(jacobian, residual, step, work);
+/* Minus the inverse of the Jacobian times a vector. */
+static void apply_inverse(const updated_jacobian *jacobian, const real *vector, real *result, workspace *work) {
+  for (int i = 0; i < N; i++) result[i] = -vector[i];
+  back_substitute(&jacobian->factors, result, work);
+  apply_updates(jacobian, result);
+}
+
+/* The quasi-Newton step at an iterate from minus the inverse times the residual there; zero where it is not finite. The
+   update is C. G. Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley,
+   Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
+static int complete_step(const updated_jacobian *jacobian, real *step) {
   if (jacobian->count > 0) {
     const int last = jacobian->count - 1;
     const real share = 1 - dot(jacobian->steps[last], step) / jacobian->squares[last];
     for (int i = 0; i < N; i++) step[i] /= share;
   }
   return all_finite(step, N);
+}
+
+static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
+  apply_inverse(jacobian, residual, step, work);
+  return complete_step(jacobian, step);
 }
 
 /* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
