@@ -21,9 +21,9 @@ UNLIKE = re.compile(r"(?<![<>=!])(?:[<>]=?|[!=]=|!|&&|\|\|)(?![<>=])|\?")
 
 CALL = re.compile(r"\b([a-z]\w*)\(")
 
-PLAIN_LOOP = re.compile(r"^ *(?:for \([^()]*\) ?)+")
+PLAIN_LOOP = re.compile(r"\bfor \((?:[^()]|\([^()]*\))*\)")
 
-OWN = re.compile(r"casadi_(?:f\d+|sq|fmax|copy|clear|fill|dot|densify|mtimes\w*)")
+OWN = re.compile(r"casadi_(?:f\d+|sq|fmax|fabs|copy|clear|fill|dot|densify|mtimes\w*)")
 """Routines of CasADi's that are the same for lanes."""
 
 
@@ -78,7 +78,7 @@ def _with_lanes(source: str) -> str:
         numbers = re.sub(NUMBER, lambda number: f"ALIKE({number[0]})", table[2])
         return f"{table[1]}{numbers}}};"
 
-    tables = r"^(static const casadi_real casadi_c\d+\[\d+\] = \{)(.*?)\};"
+    tables = r"^(static const casadi_real \w+\[\d+\] =\s*\{)(.*?)\};"
     return re.sub(tables, spread, source, flags=re.M | re.S)
 
 
