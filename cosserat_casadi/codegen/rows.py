@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
-import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
-from cosserat_casadi.codegen.lanes import lane_source
-from cosserat_casadi.codegen.library import VERBATIM, library_sources, render, resource
+from cosserat_casadi.codegen.lanes import Shown, in_lanes
+from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.maths.typing import FloatArray
@@ -32,21 +30,6 @@ JUDGED = ("outcome", "iterations", "residual")
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
 
-EQUATIONS = ("residual", "jacobian", "rate", "tangent", "resolution_index")
-"""Words in the names of the kernels that solve a row."""
-
-LANE_FILES = ("lanes.h", "lanes.c", "lanes_arithmetic.h", "linear_lanes.c")
-"""Files of the folder ``c`` for rows in lanes."""
-
-TRY_LANES = """#if LANES
-  if (count > 1 && processor_has_lanes()) return solve_rows_in_lanes(count, inputs, results);
-#endif
-"""
-"""How the function for rows chooses."""
-
-INCLUDED = frozenset({*VERBATIM, *LANE_FILES, f"{NAME}.c"})
-"""Sources that another one includes."""
-
 _LOCK = threading.Lock()
 
 
@@ -57,17 +40,25 @@ class RowLibrary:
     Attributes:
         files: content by file name, as pairs.
         inputs: numbers in a row of inputs.
+        parameters: numbers in a row of parameters.
         results: numbers in a row of results.
+        in_lanes: whether rows are solved side by side.
     """
 
     files: tuple[tuple[str, str], ...]
     inputs: int
+    parameters: int
     results: int
+    in_lanes: bool = False
 
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs).
+    def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs and of parameters.
 
         Other threads run meanwhile. What a row gives depends on that row alone.
+
+        Args:
+            inputs: shape (count, inputs).
+            parameters: shape (count, parameters); needed where there are any.
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -76,34 +67,50 @@ class RowLibrary:
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
+        arguments = [pointer(given)]
+        if self.parameters:
+            wanted = (len(given), self.parameters)
+            p = np.ascontiguousarray(np.empty((0, 0)) if parameters is None else parameters, dtype=np.float64)
+            if p.shape != wanted:
+                raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
+            arguments.append(pointer(p))
         results = np.empty((len(given), self.results))
-        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
+        function = f"{NAME}_rows_in_lanes" if self.in_lanes else f"{NAME}_rows"
+        if _loaded(self.files)[function](len(given), *arguments, pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
 
-def row_library(model: Model) -> RowLibrary:
-    """Sources of the solver of a model with a function for rows, in lanes where its equations have that form.
+def row_library(model: Model, *, lanes: bool = False) -> RowLibrary:
+    """Sources of the solver of a model with a function for rows.
+
+    Args:
+        model: what is solved.
+        lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
+            about twice as long. The results are the same.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
     """
     names = model_names(NAME, model)
     parts = assembled(model, names)
-    functions = kernels(model, names, parts)
-    generated = kernel_sources(functions, names)
+    generated = kernel_sources(kernels(model, names, parts), names)
     columns = row_results(model.scene)
-    # An assembly is eliminated rod after rod, which has no form for lanes.
-    lanes = None if parts is not None else _lanes(functions, names)
     files = {
         **library_sources(model, names, parts, generated, None),
         **generated,
-        **_rows_source(model, names, len(columns), lanes),
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns)),
     }
+    sources_in_lanes = in_lanes(model, names, _shown(names), len(columns)) if lanes else None
+    if sources_in_lanes is not None:
+        files |= sources_in_lanes
+        files[f"{NAME}.c"] += files.pop(f"{NAME}_side_by_side.c")
     wanted = [
         (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
     ]
-    return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
+    return RowLibrary(
+        tuple(wanted), model.inputs.size, model.parameters.size, len(columns), sources_in_lanes is not None
+    )
 
 
 def row_results(scene: Scene) -> tuple[str, ...]:
@@ -119,53 +126,42 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _shown(names: Names) -> list[tuple[str, str]]:
-    """Functions whose results are in a row, in its order: the word in their names, and whose they are."""
-    tips = [("tip", rod) for rod in names.rods]
-    bodies = [("body", body) for body in names.bodies]
-    return [*tips, *bodies, *(("actuator", actuator) for actuator in names.actuators)]
-
-
-def _rows_source(model: Model, names: Names, results: int, lanes: str | None) -> dict[str, str]:
-    """The sources of the function for rows by file name.
-
-    Args:
-        model: what is solved.
-        names: of the library.
-        results: numbers in a row of results.
-        lanes: source of the kernels in lanes; None where rows are solved one after the other.
-    """
-    shown = _shown(names)
-    calls = list[str]()
-    calls_in_lanes = list[str]()
+def _shown(names: Names) -> list[Shown]:
+    """Where the results of kernels are in a row."""
+    posed = [("tip", rod) for rod in names.rods] + [("body", body) for body in names.bodies]
+    shown = list[Shown]()
     column = len(JUDGED)
-    for word, owner in shown:
-        second, end, rest = (1, 2, ", 0") if word == "actuator" else (3, len(POSE), "")
-        function = names.function(word, owner)
-        calls.append(f"  {function}(x, given, row + {column}, row + {column + second}{rest});")
-        places = {"kernel": names.kernel(word, owner), "first": column, "second": column + second, "rest": rest}
-        calls_in_lanes.append(render("results_in_lanes.c.in", places))
-        column += end
-    words = {"name": names.name, "results": str(results), "judged": str(len(JUDGED)), "calls": "\n".join(calls)}
-    if lanes is None:
-        return {f"{NAME}_rows.c": render("rows.c.in", {**words, "in_lanes": "", "try_lanes": ""})}
-    kernels_called = [*map(names.kernel, EQUATIONS), *(names.kernel(word, owner) for word, owner in shown)]
-    words_of_lanes = {
-        "prototypes": "".join(f"KERNEL_IN_LANES({kernel});\n" for kernel in kernels_called),
-        "calls_in_lanes": "".join(calls_in_lanes),
-    }
-    in_lanes = render("rows_in_lanes.c.in", {**words, **words_of_lanes})
-    return {
-        f"{NAME}_rows.c": render("rows.c.in", {**words, "in_lanes": in_lanes, "try_lanes": TRY_LANES}),
-        f"{NAME}_lanes.c": lanes,
-        **{file: resource("c", file) for file in LANE_FILES},
-    }
+    for word, owner in posed:
+        shown.append(Shown(names.kernel(word, owner), column, column + 3))
+        column += len(POSE)
+    for actuator in names.actuators:
+        shown.append(Shown(names.kernel("actuator", actuator), column, column + 1, ", 0"))
+        column += 2
+    return shown
 
 
-def _lanes(functions: Sequence[ca.Function], names: Names) -> str | None:
-    """Source of the kernels that rows need, for several at once; None where some kernel has no such form."""
-    wanted = {*map(names.kernel, EQUATIONS), *(names.kernel(word, owner) for word, owner in _shown(names))}
-    return lane_source([function for function in functions if function.name() in wanted], names)
+def _rows_source(model: Model, names: Names, results: int) -> str:
+    tips = [names.function("tip", rod) for rod in names.rods]
+    bodies = [names.function("body", body) for body in names.bodies]
+    passed = ", parameters" if model.parameters.size else ""
+    lines = list[str]()
+    column = len(JUDGED)
+    for function in (*tips, *bodies):
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 3});")
+        column += len(POSE)
+    for actuator in names.actuators:
+        function = names.function("actuator", actuator)
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
+        column += 2
+    words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
+    words |= {"passed": passed, "parameters": "", "parameter_rows": "", "own_parameters": ""}
+    if passed:
+        real = f"{names.name}_real"
+        words["parameters"] = f", const {real} *all_parameters"
+        words["parameter_rows"] = ", all_parameters (PARAMETERS x count)"
+        own = f"all_parameters + (size_t)i * {names.macro}_PARAMETERS"
+        words["own_parameters"] = f"    const {real} *parameters = {own};\n"
+    return render("rows.c.in", words)
 
 
 def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
@@ -176,4 +172,4 @@ def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 @cache
 def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), INCLUDED)))
+    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), VERBATIM)))

@@ -35,6 +35,9 @@ from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.variants import Variants, variants_of
 from cosserat_casadi.sweep.work import COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS, Chunk, Part, chunks
 
+IN_LANES_FROM = 250_000
+"""Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it."""
+
 SAMPLES = 12
 """Rows that the discretisation is chosen on, unless said otherwise."""
 
@@ -266,7 +269,8 @@ def _tasks(
         if library is None or library_of != variant:
             progress("Compiling", 0, 0)
             scene = choice.scene(variants.entries[variant].scene)
-            library = row_library(build(scene))
+            many = len(variants.entries[variant].rows) >= IN_LANES_FROM
+            library = row_library(build(scene), lanes=many)
             library_of = variant
         yield chunk, [(library, variants.inputs[rows])]
 

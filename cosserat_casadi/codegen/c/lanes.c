@@ -3,13 +3,11 @@
    are the functions of solver.c. A row that leaves the common way (inputs that are not finite, a path that breaks off) is
    solved by itself.
 
-   Uses of the scene: the equations in lanes, which are declared below, and write_judgement, write_results. */
+   Uses of the scene: the equations in lanes, which are declared below, and solve_row. */
 
 enum {
   ROWS = 4 * LANES, /* under way: enough of them wait for the same */
-  WIDEST = N * N > RESULTS ? N * N : RESULTS,
-  KERNEL_REALS = sizeof ((workspace *)0)->kernel_reals / sizeof(real),
-  KERNEL_INTEGERS = sizeof ((workspace *)0)->kernel_integers / sizeof(int)
+  WIDEST = N * N > RESULTS ? N * N : RESULTS
 };
 
 /* What a row waits for. */
@@ -38,6 +36,7 @@ typedef struct {
   newton_state newton;
   solver_info info;
   real resolution; /* the index of its nodes */
+  int without_memory; /* some row that was solved by itself */
   workspace work;
 } row;
 
@@ -73,10 +72,7 @@ static void results_in_lanes(lanes_room *room);
 /* ---- One row ---- */
 
 static void solve_by_itself(row *own) {
-  real x[N];
-  memset(x, 0, sizeof x);
-  solver_solve(own->inputs, x, &own->work, &own->info);
-  write_results(x, own->inputs, &own->info, own->results);
+  own->without_memory |= solve_row(own->inputs, own->results);
   own->state = WAITS_FOR_NOTHING;
 }
 
@@ -228,14 +224,21 @@ static void after_rate(row *own) {
   own->state = WAITS_FOR_TANGENT_MATRIX;
 }
 
+static void write_judgement(row *own) {
+  own->results[0] = own->info.status;
+  own->results[1] = own->info.iterations;
+  own->results[2] = own->info.residual_norm;
+  own->state = WAITS_FOR_NOTHING;
+}
+
 static void after_resolution(row *own) {
   if (own->resolution <= 1) {
     own->state = WAITS_FOR_RESULTS;
     return;
   }
   own->info.status = SOLVER_UNRESOLVED;
-  write_results(own->now.point->x, own->inputs, &own->info, own->results);
-  own->state = WAITS_FOR_NOTHING;
+  for (int i = 0; i < RESULTS; i++) own->results[i] = NAN;
+  write_judgement(own);
 }
 
 /* ---- Rows together ---- */
@@ -332,8 +335,7 @@ static void resume(row *own, const lanes_room *room, int lane) {
       after_resolution(own);
       break;
     case WAITS_FOR_RESULTS:
-      write_judgement(&own->info, own->results);
-      own->state = WAITS_FOR_NOTHING;
+      write_judgement(own);
       break;
     case WAITS_FOR_NOTHING:
       break;
@@ -400,9 +402,13 @@ static void serve(side_by_side *all, waiting state) {
   for (int lane = 0; lane < count; lane++) resume(served[lane], room, lane);
 }
 
-static void solve_side_by_side(int count, const real *inputs, real *results, side_by_side *all) {
+/* Returns 1 where there was no memory. */
+static int solve_side_by_side(int count, const real *inputs, real *results, side_by_side *all) {
   int begun = 0;
-  for (int k = 0; k < ROWS; k++) all->rows[k].state = WAITS_FOR_NOTHING;
+  for (int k = 0; k < ROWS; k++) {
+    all->rows[k].state = WAITS_FOR_NOTHING;
+    all->rows[k].without_memory = 0;
+  }
   for (int i = 0; i < (INPUTS + 1) * LANES; i++) all->room.inputs_rate[i] = 0;
   for (int lane = 0; lane < LANES; lane++) all->room.load_factor_rate[lane] = 1;
   for (;;) {
@@ -413,7 +419,10 @@ static void solve_side_by_side(int count, const real *inputs, real *results, sid
       }
     }
     const waiting state = most_awaited(all->rows);
-    if (state == WAITS_FOR_NOTHING) return;
+    if (state == WAITS_FOR_NOTHING) break;
     serve(all, state);
   }
+  int without_memory = 0;
+  for (int k = 0; k < ROWS; k++) without_memory |= all->rows[k].without_memory;
+  return without_memory;
 }
