@@ -65,11 +65,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rows", type=int, default=100_000)
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--lanes", action="store_true", help="several rows side by side, as sweeps of many rows do")
     options = parser.parse_args()
     scene = read_scene(SCENE, DISCRETISATION)
     swept = variants_of(scene, table_of(pushes(1))).entries[0].scene
-    library = row_library(build(swept))
-    run.row_library = lambda model: library
+    library = row_library(build(swept), lanes=options.lanes)
+    run.row_library = lambda model, lanes: library
     run.check = lambda *given: []
     rate(scene, 1000, 1, ".csv", 1)
     table = Table(title=f"{options.rows:,} rows of a rod of {build(swept).size} unknowns, best of {options.repeats}")

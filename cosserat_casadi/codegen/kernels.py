@@ -65,13 +65,13 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     return [in_one(parameter_rate(model, name), parts.blocks.owners, name)]
 
 
-def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:
-    """One function under the name it has in C: straight-line code if it is short, else loops."""
+def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
+    """One function under the name it has in C: straight-line code within so many instructions, else loops."""
     # The literal linear system is solved with pivoting, which has no scalar form.
     literal = any(chosen.transport == "permuted" for chosen in model.discretisation.values())
     if not literal:
         straight = scalar(function, name)
-        if straight.n_instructions() <= STRAIGHT:
+        if straight.n_instructions() <= straight_within:
             return straight
     return loops(function, name)
 

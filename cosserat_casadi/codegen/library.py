@@ -46,7 +46,8 @@ TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 SHARED = ("solver.h", "solver.c")
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
-VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES})
+LANES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
+VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *LANES})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {

@@ -13,6 +13,7 @@ import numpy as np
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
+from cosserat_casadi.codegen.lanes import Shown, in_lanes
 from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, render
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
@@ -63,12 +64,14 @@ class RowLibrary:
         inputs: numbers in a row of inputs.
         parameters: numbers in a row of parameters.
         results: numbers in a row of results.
+        in_lanes: whether rows are solved side by side.
     """
 
     files: tuple[tuple[str, str], ...]
     inputs: int
     parameters: int
     results: int
+    in_lanes: bool = False
 
     def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs and of parameters.
@@ -94,17 +97,21 @@ class RowLibrary:
                 raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
             arguments.append(pointer(p))
         results = np.empty((len(given), self.results))
-        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), *arguments, pointer(results)):
+        function = f"{NAME}_rows_in_lanes" if self.in_lanes else f"{NAME}_rows"
+        if loaded(NAME, self.files)[function](len(given), *arguments, pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
 
-def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
+def row_library(model: Model, *, stability: bool = False, lanes: bool = False) -> RowLibrary:
     """Sources of the solver of a model with a function for rows.
 
     Args:
         model: what is solved.
         stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
+        lanes: whether to solve rows side by side where the equations have a form for that, which takes compilers
+            about twice as long. The results are the same.
+            Rows that are judged are solved one by one.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
@@ -119,7 +126,13 @@ def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
         **generated,
         f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
     }
-    return RowLibrary(to_compile(files), model.inputs.size, model.parameters.size, len(columns))
+    sources_in_lanes = in_lanes(model, names, _shown(names), len(columns)) if lanes and not stability else None
+    if sources_in_lanes is not None:
+        files |= sources_in_lanes
+        files[f"{NAME}.c"] += files.pop(f"{NAME}_side_by_side.c")
+    return RowLibrary(
+        to_compile(files), model.inputs.size, model.parameters.size, len(columns), sources_in_lanes is not None
+    )
 
 
 def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -145,6 +158,20 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     """Names of the effort of an actuator and of what it works on."""
     member = EFFECTS[actuator.kind]
     return member.effort, member.conjugate
+
+
+def _shown(names: Names) -> list[Shown]:
+    """Where the results of kernels are in a row."""
+    posed = [("tip", rod) for rod in names.rods] + [("body", body) for body in names.bodies]
+    shown = list[Shown]()
+    column = len(JUDGED)
+    for word, owner in posed:
+        shown.append(Shown(names.kernel(word, owner), column, column + 3))
+        column += len(POSE)
+    for actuator in names.actuators:
+        shown.append(Shown(names.kernel("actuator", actuator), column, column + 1, ", 0"))
+        column += 2
+    return shown
 
 
 def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -> str:

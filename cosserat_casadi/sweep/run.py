@@ -37,6 +37,9 @@ from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.variants import Variants, variants_of
 from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
+IN_LANES_FROM = 250_000
+"""Rows of one scene from which on they are solved side by side: fewer save less time than a compiler takes for it."""
+
 SAMPLES = 12
 """Rows that the discretisation is chosen on, unless said otherwise."""
 
@@ -282,7 +285,8 @@ def _tasks(
         if library is None or library_of != variant:
             progress("Compiling", 0, 0)
             scene = choice.scene(variants.entries[variant].scene)
-            library = row_library(build(scene), stability=plan.stability)
+            many = len(variants.entries[variant].rows) >= IN_LANES_FROM
+            library = row_library(build(scene), stability=plan.stability, lanes=many)
             library_of = variant
         answer: Answer = Parametrised(library) if variants.arguments else library
         yield chunk, [(answer, variants.given(rows))]

@@ -29,8 +29,8 @@ static int pivot_row(const real *column, int k) {
 }
 
 /* Gaussian elimination with partial pivoting, in place, column after column: G. H. Golub, C. F. Van Loan, Matrix
-   Computations, 4th edition, algorithm 3.4.1. A pivot at rounding counts as zero, since symmetry may let a rod turn
-   without energy. Returns whether there was none. */
+   Computations, 4th edition, algorithm 3.4.1. The diagonal holds inverse pivots, zero for one at rounding, since symmetry
+   may let a rod turn without energy. Returns whether there was none. */
 static int factorise(real *a, int *pivots) {
   const real tiny = SINGULAR * largest_entry(a, N * N);
   int regular = 1;
@@ -43,7 +43,8 @@ static int factorise(real *a, int *pivots) {
       regular = 0;
       continue;
     }
-    for (int i = k + 1; i < N; i++) column[i] /= column[k];
+    column[k] = 1 / column[k];
+    for (int i = k + 1; i < N; i++) column[i] *= column[k];
     for (int j = k + 1; j < N; j++) {
       real *target = a + j * N;
       const real factor = target[k];
@@ -54,21 +55,25 @@ static int factorise(real *a, int *pivots) {
   return regular;
 }
 
+/* Brings a right-hand side into the order of the pivots. */
+static void permute(const int *pivots, real *b) {
+  for (int k = 0; k < N; k++) {
+    const real kept = b[pivots[k]];
+    b[pivots[k]] = b[k];
+    b[k] = kept;
+  }
+}
+
 /* Solves with the factors, in place; an unknown without a pivot is left at zero. */
 static void back_substitute(const jacobian_factors *jacobian, real *b, workspace *work) {
   const real *a = jacobian->factors;
   (void)work;
-  for (int k = 0; k < N; k++) {
-    const int row = jacobian->pivots[k];
-    const real kept = b[row];
-    b[row] = b[k];
-    b[k] = kept;
-  }
+  permute(jacobian->pivots, b);
   for (int k = 0; k < N; k++) {
     for (int i = k + 1; i < N; i++) b[i] -= a[k * N + i] * b[k];
   }
   for (int k = N - 1; k >= 0; k--) {
-    b[k] = a[k * N + k] == 0 ? 0 : b[k] / a[k * N + k];
+    b[k] *= a[k * N + k];
     for (int i = 0; i < k; i++) b[i] -= a[k * N + i] * b[k];
   }
 }

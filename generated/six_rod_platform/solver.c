@@ -31,27 +31,36 @@ static const newton_limits DAMPED_NEWTON = {
     .reuse_jacobian = 0,
 };
 
-/* Minus the inverse of the Jacobian times a vector, with one rank-one update for each step and its follower. */
-static void apply_inverse(const updated_jacobian *jacobian, const real *vector, real *result, workspace *work) {
-  for (int i = 0; i < N; i++) result[i] = -vector[i];
-  back_substitute(&jacobian->factors, result, work);
+/* What is left of a product with the inverse of the Jacobian: one rank-one update for each step and its follower. */
+static void apply_updates(const updated_jacobian *jacobian, real *result) {
   for (int j = 0; j + 1 < jacobian->count; j++) {
     const real share = dot(jacobian->steps[j], result) / jacobian->squares[j];
     for (int i = 0; i < N; i++) result[i] += jacobian->steps[j + 1][i] * share;
   }
 }
 
-/* The quasi-Newton step at an iterate with this residual; zero where it is not finite. The update is C. G. Broyden's
-   (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley, Iterative Methods for
-   Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
-static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
-  apply_inverse(jacobian, residual, step, work);
+/* Minus the inverse of the Jacobian times a vector. */
+static void apply_inverse(const updated_jacobian *jacobian, const real *vector, real *result, workspace *work) {
+  for (int i = 0; i < N; i++) result[i] = -vector[i];
+  back_substitute(&jacobian->factors, result, work);
+  apply_updates(jacobian, result);
+}
+
+/* The quasi-Newton step at an iterate from minus the inverse times the residual there; zero where it is not finite. The
+   update is C. G. Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley,
+   Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
+static int complete_step(const updated_jacobian *jacobian, real *step) {
   if (jacobian->count > 0) {
     const int last = jacobian->count - 1;
     const real share = 1 - dot(jacobian->steps[last], step) / jacobian->squares[last];
     for (int i = 0; i < N; i++) step[i] /= share;
   }
   return all_finite(step, N);
+}
+
+static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
+  apply_inverse(jacobian, residual, step, work);
+  return complete_step(jacobian, step);
 }
 
 /* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
@@ -67,6 +76,11 @@ static int response(const updated_jacobian *jacobian, const real *residual, cons
   return all_finite(result, N);
 }
 
+/* Whether a step of this length brings the residual down far enough. */
+static int serves(real length, real trial_norm, real norm) {
+  return isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm;
+}
+
 /* Halves the step until the residual falls. Returns the length that served, or zero; moves x, residual and norm on. */
 static real line_search(const loads *at, const real *step, int max_halvings, real *x, real *residual, real *norm,
                         workspace *work) {
@@ -77,7 +91,7 @@ static real line_search(const loads *at, const real *step, int max_halvings, rea
     for (int i = 0; i < N; i++) trial[i] = x[i] + length * step[i];
     residual_at(trial, at, trial_residual, work);
     const real trial_norm = norm_of(trial_residual);
-    if (isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * *norm) {
+    if (serves(length, trial_norm, *norm)) {
       memcpy(x, trial, N * sizeof *x);
       memcpy(residual, trial_residual, N * sizeof *residual);
       *norm = trial_norm;
@@ -97,56 +111,91 @@ static real append_step(updated_jacobian *jacobian, const real *step) {
   return SQUARE_ROOT(square);
 }
 
+/* Where Newton stands at an iterate. */
+typedef struct {
+  newton_result result;
+  int reuse_jacobian;
+  real norm; /* of the residual */
+} newton_state;
+
+static newton_state begin_newton(const newton_limits *limits, const real *residual) {
+  const newton_state state = {
+      .result = {.status = SOLVER_MAX_ITERATIONS, .iterations = 0, .jacobians = 0, .damped = 0, .residual_norm = 0},
+      .reuse_jacobian = limits->reuse_jacobian,
+      .norm = norm_of(residual),
+  };
+  return state;
+}
+
+/* Whether Newton ends at x, by what its result says. */
+static int newton_ends(newton_state *state, const newton_limits *limits, const real *x) {
+  newton_result *result = &state->result;
+  const real size = 1 + norm_of(x);
+  result->residual_norm = state->norm / size;
+  /* Beside unknowns whose norm overflows any residual would be small. */
+  if (!isfinite(state->norm) || !isfinite(size)) {
+    result->status = SOLVER_NOT_FINITE;
+    return 1;
+  }
+  if (state->norm <= TOLERANCE * size) result->status = SOLVER_CONVERGED;
+  if (result->status == SOLVER_CONVERGED || result->iterations >= limits->max_iterations) return 1;
+  return !state->reuse_jacobian && result->jacobians == limits->max_jacobians;
+}
+
+/* Counts a new Jacobian, which no update has changed yet. */
+static void expect_jacobian(newton_state *state, updated_jacobian *jacobian) {
+  state->result.jacobians++;
+  jacobian->count = 0;
+}
+
+/* What follows from a step of this length that has left the residual with this norm; of length zero where none served.
+   Returns zero where Newton ends. */
+static int weigh_step(newton_state *state, const newton_limits *limits, const real *step, real length, real norm,
+                      updated_jacobian *jacobian) {
+  const real previous_norm = state->norm;
+  state->norm = norm;
+  if (length == 0) {
+    if (!state->reuse_jacobian) {
+      state->result.status = SOLVER_SINGULAR;
+      return 0;
+    }
+    state->reuse_jacobian = 0;
+    return 1;
+  }
+  if (length < 1) {
+    state->result.damped = 1;
+    state->reuse_jacobian = 0;
+    return 1;
+  }
+  /* The step to come is about as much shorter than this one as the residual has fallen. */
+  if (append_step(jacobian, step) * norm < limits->inexact * previous_norm) state->result.status = SOLVER_CONVERGED;
+  state->reuse_jacobian = norm <= REUSE_DECREASE * previous_norm && jacobian->count < MAX_REUSES;
+  return 1;
+}
+
 /* Newton from x, with the residual there. Moves both on, and leaves the last Jacobian. */
 static newton_result newton(const loads *at, const newton_limits *limits, real *x, real *residual,
                             updated_jacobian *jacobian, workspace *work) {
-  newton_result result = {.status = SOLVER_MAX_ITERATIONS, .iterations = 0, .jacobians = 0, .damped = 0, .residual_norm = 0};
-  int reuse_jacobian = limits->reuse_jacobian;
-  real norm = norm_of(residual);
-  for (;;) {
-    const real size = 1 + norm_of(x);
-    result.residual_norm = norm / size;
-    /* Beside unknowns whose norm overflows any residual would be small. */
-    if (!isfinite(norm) || !isfinite(size)) {
-      result.status = SOLVER_NOT_FINITE;
-      return result;
-    }
-    if (norm <= TOLERANCE * size) result.status = SOLVER_CONVERGED;
-    if (result.status == SOLVER_CONVERGED || result.iterations >= limits->max_iterations) return result;
-    if (!reuse_jacobian) {
-      if (result.jacobians == limits->max_jacobians) return result;
-      result.jacobians++;
-      jacobian->count = 0;
+  newton_state state = begin_newton(limits, residual);
+  while (!newton_ends(&state, limits, x)) {
+    if (!state.reuse_jacobian) {
+      expect_jacobian(&state, jacobian);
       if (!linearise(x, at, &jacobian->factors, work)) {
-        result.status = SOLVER_NOT_FINITE;
-        return result;
+        state.result.status = SOLVER_NOT_FINITE;
+        break;
       }
     }
-    result.iterations++;
-    const real previous_norm = norm;
+    state.result.iterations++;
+    real norm = state.norm;
     real length = 0;
     if (newton_step(jacobian, residual, work->step, work)) {
       /* A step of an old Jacobian is not halved: a new Jacobian is worth more. */
-      const int max_halvings = reuse_jacobian ? 0 : limits->max_halvings;
+      const int max_halvings = state.reuse_jacobian ? 0 : limits->max_halvings;
       length = line_search(at, work->step, max_halvings, x, residual, &norm, work);
     }
-    if (length == 0) {
-      if (!reuse_jacobian) {
-        result.status = SOLVER_SINGULAR;
-        return result;
-      }
-      reuse_jacobian = 0;
-      continue;
-    }
-    if (length < 1) {
-      result.damped = 1;
-      reuse_jacobian = 0;
-      continue;
-    }
-    /* The step to come is about as much shorter than this one as the residual has fallen. */
-    if (append_step(jacobian, work->step) * norm < limits->inexact * previous_norm) result.status = SOLVER_CONVERGED;
-    reuse_jacobian = norm <= REUSE_DECREASE * previous_norm && jacobian->count < MAX_REUSES;
+    if (!weigh_step(&state, limits, work->step, length, norm, jacobian)) break;
   }
+  return state.result;
 }
 
 static void count_work(solver_info *info, const newton_result *result) {
@@ -209,6 +258,13 @@ static int is_small(const real *correction, const real *predicted) {
   return step_length(correction) <= (real)0.3 + (real)0.5 * step_length(predicted);
 }
 
+/* The response to the rate of the residual; zero where that, or the Jacobian, is not sound. */
+static void set_tangent(path_point *point, int sound, const updated_jacobian *jacobian, workspace *work) {
+  if (!sound || !response(jacobian, point->residual, work->rate, point->tangent, work)) {
+    memset(point->tangent, 0, sizeof point->tangent);
+  }
+}
+
 /* dx/dt at a point of the path, with the Jacobian that Newton has left there; zero where there is none. Returns the
    number of Jacobians that it took. */
 static int tangent_at(const load_path *path, path_point *point, int has_jacobian, updated_jacobian *jacobian,
@@ -224,9 +280,7 @@ static int tangent_at(const load_path *path, path_point *point, int has_jacobian
     jacobians = 1;
     sound = linearise(point->x, &at, &jacobian->factors, work);
   }
-  if (!sound || !response(jacobian, point->residual, work->rate, point->tangent, work)) {
-    memset(point->tangent, 0, sizeof point->tangent);
-  }
+  set_tangent(point, sound, jacobian, work);
   return jacobians;
 }
 
@@ -246,25 +300,35 @@ static void predict(const path_point *point, const path_point *previous, real st
   for (int i = 0; i < N; i++) predicted[i] += bent[i];
 }
 
-/* Writes the predicted next point. Returns zero where the Jacobian at hand foresees a correction too large to be trusted:
-   a new Jacobian costs far more than to ask it. */
-static int predict_next(const load_path *path, const progress *now, real step, workspace *work) {
+/* Length of the next step, which is wanted this long; zero where that would be too short to go on with. */
+static real admissible_step(const progress *now, real wanted) {
+  const real rest = 1 - now->point->t;
+  const real length = step_length(now->point->tangent);
+  real step = wanted > rest ? rest : wanted;
+  if (step * length > MAX_STEP_LENGTH) step = MAX_STEP_LENGTH / length;
+  return step < MIN_STEP && step < rest ? 0 : step;
+}
+
+/* Writes the predicted next point. */
+static void predict_next(const progress *now, real step, workspace *work) {
   path_point *next = now->next;
   const real end = now->point->t + step;
   next->t = end > 1 - (real)1e-12 ? 1 : end;
   predict(now->point, now->previous, step, work->predicted, work->correction);
   for (int i = 0; i < N; i++) next->x[i] = now->point->x[i] + work->predicted[i];
-  const loads at = loads_at(path, next->t, work);
-  residual_at(next->x, &at, next->residual, work);
+}
+
+/* Zero where the Jacobian at hand foresees a correction of the predicted point, with the residual there, too large to be
+   trusted: a new Jacobian costs far more than to ask it. */
+static int is_promising(const progress *now, workspace *work) {
   if (!now->has_jacobian) return 1;
-  if (!response(now->jacobian, now->point->residual, next->residual, work->correction, work)) return 1;
+  if (!response(now->jacobian, now->point->residual, now->next->residual, work->correction, work)) return 1;
   return is_small(work->correction, work->predicted);
 }
 
 /* Corrector: Newton at the next point, inexact on the way and exact at the end. Damping is not allowed: far from the path
    Newton finds some equilibrium, not the one that the path leads to. */
-static newton_result correct_next(const load_path *path, const progress *now, int max_iterations, workspace *work) {
-  path_point *next = now->next;
+static newton_limits corrector_limits(const path_point *next, int max_iterations) {
   const newton_limits limits = {
       .max_iterations = max_iterations < MAX_ITERATIONS ? max_iterations : MAX_ITERATIONS,
       .max_jacobians = REJECT_ABOVE,
@@ -272,8 +336,7 @@ static newton_result correct_next(const load_path *path, const progress *now, in
       .inexact = next->t == 1 ? 0 : INEXACT,
       .reuse_jacobian = 0,
   };
-  const loads at = loads_at(path, next->t, work);
-  return newton(&at, &limits, next->x, next->residual, now->spare, work);
+  return limits;
 }
 
 static int is_trusted(const newton_result *result, const progress *now, workspace *work) {
@@ -294,11 +357,8 @@ static void accept_next(progress *now) {
   now->has_jacobian = 1;
 }
 
-/* From the equilibrium at t = 0 in points[0], with its tangent and, where it is known, its Jacobian in
-   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end. */
-static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
-                            solver_info *info) {
-  progress now = {
+static progress begin_path(int has_jacobian, workspace *work) {
+  const progress now = {
       .point = work->points,
       .previous = 0,
       .next = work->points + 1,
@@ -307,19 +367,28 @@ static progress follow_path(const load_path *path, const path_limits *limits, in
       .spare = work->updated_jacobians + 1,
       .has_jacobian = has_jacobian,
   };
+  return now;
+}
+
+/* From the equilibrium at t = 0 in points[0], with its tangent and, where it is known, its Jacobian in
+   updated_jacobians[0], towards t = 1. Returns the last point, which was found inexactly unless it is the end. */
+static progress follow_path(const load_path *path, const path_limits *limits, int has_jacobian, workspace *work,
+                            solver_info *info) {
+  progress now = begin_path(has_jacobian, work);
   real step = path->grows_load ? FIRST_STEP : 1;
   for (int k = 0; k < limits->max_steps && info->iterations < limits->max_iterations; k++) {
-    const real rest = 1 - now.point->t;
-    const real length = step_length(now.point->tangent);
-    if (step > rest) step = rest;
-    if (step * length > MAX_STEP_LENGTH) step = MAX_STEP_LENGTH / length;
-    if (step < MIN_STEP && step < rest) break;
-    if (!predict_next(path, &now, step, work)) {
+    step = admissible_step(&now, step);
+    if (step == 0) break;
+    predict_next(&now, step, work);
+    const loads at = loads_at(path, now.next->t, work);
+    residual_at(now.next->x, &at, now.next->residual, work);
+    if (!is_promising(&now, work)) {
       info->iterations++;
       step /= 2;
       continue;
     }
-    const newton_result result = correct_next(path, &now, limits->max_iterations - info->iterations, work);
+    const newton_limits corrector = corrector_limits(now.next, limits->max_iterations - info->iterations);
+    const newton_result result = newton(&at, &corrector, now.next->x, now.next->residual, now.spare, work);
     count_work(info, &result);
     if (!is_trusted(&result, &now, work)) {
       step /= 2;

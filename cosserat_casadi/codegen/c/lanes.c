@@ -1,0 +1,428 @@
+/* Many rows of inputs at once, each solved from the unloaded scene as solver.c does it: rows wait for evaluations of the
+   equations, and those that wait for the same are evaluated side by side. What a row does with what it has waited for
+   are the functions of solver.c. A row that leaves the common way (inputs that are not finite, a path that breaks off) is
+   solved by itself.
+
+   Uses of the scene: the equations in lanes, which are declared below, and solve_row. */
+
+enum {
+  ROWS = 4 * LANES, /* under way: enough of them wait for the same */
+  WIDEST = N * N > RESULTS ? N * N : RESULTS
+};
+
+/* What a row waits for. */
+typedef enum {
+  WAITS_FOR_NOTHING,
+  WAITS_FOR_FIRST_TANGENT,
+  WAITS_FOR_PREDICTED_RESIDUAL,
+  WAITS_FOR_NEWTON_MATRIX,
+  WAITS_FOR_STEP,
+  WAITS_FOR_TRIAL_RESIDUAL,
+  WAITS_FOR_RATE,
+  WAITS_FOR_TANGENT_MATRIX,
+  WAITS_FOR_RESOLUTION,
+  WAITS_FOR_RESULTS
+} waiting;
+
+typedef struct {
+  waiting state;
+  const real *inputs;
+  real *results;
+  load_path path;
+  progress now;
+  real step; /* of the load */
+  int steps;
+  newton_limits limits;
+  newton_state newton;
+  solver_info info;
+  real resolution; /* the index of its nodes */
+  int without_memory; /* some row that was solved by itself */
+  workspace work;
+} row;
+
+/* Arrays of lanes. */
+typedef struct {
+  real x[N * LANES];
+  real inputs[(INPUTS + 1) * LANES];
+  real load_factor[LANES];
+  real inputs_rate[(INPUTS + 1) * LANES];
+  real load_factor_rate[LANES];
+  real factors[N * N * LANES];
+  real results[WIDEST * LANES];
+  int pivots[N * LANES];
+  int regular[LANES];
+  int finite[LANES];
+  real reals[KERNEL_REALS * LANES];
+  int integers[KERNEL_INTEGERS];
+} lanes_room;
+
+typedef struct {
+  row rows[ROWS];
+  lanes_room room;
+} side_by_side;
+
+/* The equations in the lanes of a room: results for x, inputs and load_factor. */
+static void residual_in_lanes(lanes_room *room);
+static void factors_in_lanes(lanes_room *room);
+static void rate_in_lanes(lanes_room *room);
+static void tangent_in_lanes(lanes_room *room);
+static void resolution_in_lanes(lanes_room *room);
+static void results_in_lanes(lanes_room *room);
+
+/* ---- One row ---- */
+
+static void solve_by_itself(row *own) {
+  own->without_memory |= solve_row(own->inputs, own->results);
+  own->state = WAITS_FOR_NOTHING;
+}
+
+static void begin_row(row *own, const real *inputs, real *results) {
+  own->inputs = inputs;
+  own->results = results;
+  own->info = no_result();
+  if (!all_finite(inputs, INPUTS)) {
+    solve_by_itself(own);
+    return;
+  }
+  memset(own->work.points, 0, sizeof own->work.points[0]);
+  own->path.grows_load = 1;
+  own->path.from = inputs;
+  own->path.to = inputs;
+  own->now = begin_path(0, &own->work);
+  own->step = FIRST_STEP;
+  own->steps = 0;
+  own->state = WAITS_FOR_FIRST_TANGENT;
+}
+
+static void take_step(row *own) {
+  if (own->steps < LONG_PATH.max_steps && own->info.iterations < LONG_PATH.max_iterations) {
+    own->steps++;
+    own->step = admissible_step(&own->now, own->step);
+    if (own->step != 0) {
+      predict_next(&own->now, own->step, &own->work);
+      own->state = WAITS_FOR_PREDICTED_RESIDUAL;
+      return;
+    }
+  }
+  solve_by_itself(own);
+}
+
+/* Newton has ended at the next point. */
+static void end_correction(row *own) {
+  const newton_result *result = &own->newton.result;
+  count_work(&own->info, result);
+  if (!is_trusted(result, &own->now, &own->work)) {
+    own->step /= 2;
+    take_step(own);
+  } else if (own->now.next->t < 1) {
+    if (result->jacobians <= GROW_BELOW) own->step *= 2;
+    own->state = WAITS_FOR_RATE;
+  } else {
+    accept_next(&own->now);
+    own->info.status = SOLVER_CONVERGED;
+    own->info.residual_norm = result->residual_norm;
+    own->info.load_factor = 1;
+    own->state = WAITS_FOR_RESOLUTION;
+  }
+}
+
+static void continue_newton(row *own);
+
+static void weigh_newton_step(row *own, real length, real norm) {
+  if (weigh_step(&own->newton, &own->limits, own->work.step, length, norm, own->now.spare)) {
+    continue_newton(own);
+  } else {
+    end_correction(own);
+  }
+}
+
+static void begin_newton_step(row *own) {
+  real *step = own->work.step;
+  own->newton.result.iterations++;
+  for (int i = 0; i < N; i++) step[i] = -own->now.next->residual[i];
+  permute(own->now.spare->factors.pivots, step);
+  own->state = WAITS_FOR_STEP;
+}
+
+static void after_step(row *own) {
+  workspace *work = &own->work;
+  apply_updates(own->now.spare, work->step);
+  if (!complete_step(own->now.spare, work->step)) {
+    weigh_newton_step(own, 0, own->newton.norm);
+    return;
+  }
+  for (int i = 0; i < N; i++) work->trial[i] = own->now.next->x[i] + work->step[i];
+  own->state = WAITS_FOR_TRIAL_RESIDUAL;
+}
+
+static void continue_newton(row *own) {
+  if (newton_ends(&own->newton, &own->limits, own->now.next->x)) {
+    end_correction(own);
+  } else if (own->newton.reuse_jacobian) {
+    begin_newton_step(own);
+  } else {
+    expect_jacobian(&own->newton, own->now.spare);
+    own->state = WAITS_FOR_NEWTON_MATRIX;
+  }
+}
+
+static void after_first_tangent(row *own) {
+  if (isfinite(norm_of(own->now.point->tangent))) {
+    take_step(own);
+  } else {
+    solve_by_itself(own);
+  }
+}
+
+static void after_prediction(row *own) {
+  if (!is_promising(&own->now, &own->work)) {
+    own->info.iterations++;
+    own->step /= 2;
+    take_step(own);
+    return;
+  }
+  own->limits = corrector_limits(own->now.next, LONG_PATH.max_iterations - own->info.iterations);
+  own->newton = begin_newton(&own->limits, own->now.next->residual);
+  continue_newton(own);
+}
+
+static void after_trial(row *own) {
+  path_point *next = own->now.next;
+  const real norm = norm_of(own->work.trial_residual);
+  if (!serves(1, norm, own->newton.norm)) {
+    weigh_newton_step(own, 0, own->newton.norm);
+    return;
+  }
+  memcpy(next->x, own->work.trial, sizeof next->x);
+  memcpy(next->residual, own->work.trial_residual, sizeof next->residual);
+  weigh_newton_step(own, 1, norm);
+}
+
+static void after_newton_matrix(row *own, int finite) {
+  if (finite) {
+    begin_newton_step(own);
+    return;
+  }
+  own->newton.result.status = SOLVER_NOT_FINITE;
+  end_correction(own);
+}
+
+static void go_on_from_next_point(row *own, int sound) {
+  set_tangent(own->now.next, sound, own->now.spare, &own->work);
+  accept_next(&own->now);
+  take_step(own);
+}
+
+static void after_rate(row *own) {
+  const int sound = all_finite(own->work.rate, N);
+  if (!sound || own->newton.result.jacobians > 0) {
+    go_on_from_next_point(own, sound);
+    return;
+  }
+  own->now.spare->count = 0;
+  own->info.jacobians++;
+  own->state = WAITS_FOR_TANGENT_MATRIX;
+}
+
+static void write_judgement(row *own) {
+  own->results[0] = own->info.status;
+  own->results[1] = own->info.iterations;
+  own->results[2] = own->info.residual_norm;
+  own->state = WAITS_FOR_NOTHING;
+}
+
+static void after_resolution(row *own) {
+  if (own->resolution <= 1) {
+    own->state = WAITS_FOR_RESULTS;
+    return;
+  }
+  own->info.status = SOLVER_UNRESOLVED;
+  for (int i = 0; i < RESULTS; i++) own->results[i] = NAN;
+  write_judgement(own);
+}
+
+/* ---- Rows together ---- */
+
+/* The unknowns at which a row waits to be evaluated. */
+static const real *unknowns_of(const row *own) {
+  if (own->state == WAITS_FOR_TRIAL_RESIDUAL) return own->work.trial;
+  if (own->state == WAITS_FOR_RESOLUTION || own->state == WAITS_FOR_RESULTS) return own->now.point->x;
+  return own->now.next->x;
+}
+
+static void evaluate_in_lanes(waiting state, lanes_room *room) {
+  switch (state) {
+    case WAITS_FOR_FIRST_TANGENT:
+      tangent_in_lanes(room);
+      break;
+    case WAITS_FOR_NEWTON_MATRIX:
+    case WAITS_FOR_TANGENT_MATRIX:
+      factors_in_lanes(room);
+      break;
+    case WAITS_FOR_RATE:
+      rate_in_lanes(room);
+      break;
+    case WAITS_FOR_RESOLUTION:
+      resolution_in_lanes(room);
+      break;
+    case WAITS_FOR_RESULTS:
+      results_in_lanes(room);
+      break;
+    default:
+      residual_in_lanes(room);
+  }
+}
+
+/* Where a row wants what it waits for, and how many numbers of it. */
+static real *wanted_by(row *own, int *count) {
+  *count = N;
+  switch (own->state) {
+    case WAITS_FOR_FIRST_TANGENT:
+      return own->now.point->tangent;
+    case WAITS_FOR_PREDICTED_RESIDUAL:
+      return own->now.next->residual;
+    case WAITS_FOR_NEWTON_MATRIX:
+    case WAITS_FOR_TANGENT_MATRIX:
+      *count = N * N;
+      return own->now.spare->factors.factors;
+    case WAITS_FOR_STEP:
+      return own->work.step;
+    case WAITS_FOR_RATE:
+      return own->work.rate;
+    case WAITS_FOR_RESOLUTION:
+      *count = 1;
+      return &own->resolution;
+    case WAITS_FOR_RESULTS:
+      *count = RESULTS;
+      return own->results;
+    default:
+      return own->work.trial_residual;
+  }
+}
+
+/* Pivots of a Jacobian; whether that was finite. */
+static int take_pivots(const lanes_room *room, int lane, jacobian_factors *factors) {
+  for (int i = 0; i < N; i++) factors->pivots[i] = room->pivots[i * LANES + lane];
+  factors->regular = room->regular[lane];
+  return room->finite[lane];
+}
+
+/* A row goes on with what it has waited for. */
+static void resume(row *own, const lanes_room *room, int lane) {
+  switch (own->state) {
+    case WAITS_FOR_FIRST_TANGENT:
+      after_first_tangent(own);
+      break;
+    case WAITS_FOR_PREDICTED_RESIDUAL:
+      after_prediction(own);
+      break;
+    case WAITS_FOR_NEWTON_MATRIX:
+      after_newton_matrix(own, take_pivots(room, lane, &own->now.spare->factors));
+      break;
+    case WAITS_FOR_STEP:
+      after_step(own);
+      break;
+    case WAITS_FOR_TRIAL_RESIDUAL:
+      after_trial(own);
+      break;
+    case WAITS_FOR_RATE:
+      after_rate(own);
+      break;
+    case WAITS_FOR_TANGENT_MATRIX:
+      go_on_from_next_point(own, take_pivots(room, lane, &own->now.spare->factors));
+      break;
+    case WAITS_FOR_RESOLUTION:
+      after_resolution(own);
+      break;
+    case WAITS_FOR_RESULTS:
+      write_judgement(own);
+      break;
+    case WAITS_FOR_NOTHING:
+      break;
+  }
+}
+
+/* What most rows wait for; nothing where none is under way. */
+static waiting most_awaited(const row *rows) {
+  int counts[WAITS_FOR_RESULTS + 1] = {0};
+  waiting most = WAITS_FOR_NOTHING;
+  for (int k = 0; k < ROWS; k++) {
+    const waiting state = rows[k].state;
+    if (state == WAITS_FOR_NOTHING) continue;
+    counts[state]++;
+    if (counts[state] > counts[most]) most = state;
+  }
+  return most;
+}
+
+/* Evaluates the equations for some rows; lanes that are left over repeat the first. */
+static void evaluate_rows(row *const *rows, waiting state, lanes_room *room) {
+  const real *x[LANES];
+  const real *inputs[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    x[lane] = unknowns_of(rows[lane]);
+    inputs[lane] = rows[lane]->inputs;
+    room->load_factor[lane] = rows[lane]->now.next->t;
+  }
+  gather_lanes(x, N, room->x);
+  gather_lanes(inputs, INPUTS, room->inputs);
+  evaluate_in_lanes(state, room);
+}
+
+static void substitute_rows(row *const *rows, lanes_room *room) {
+  const real *factors[LANES];
+  const real *steps[LANES];
+  for (int lane = 0; lane < LANES; lane++) {
+    factors[lane] = rows[lane]->now.spare->factors.factors;
+    steps[lane] = rows[lane]->work.step;
+  }
+  gather_lanes(factors, N * N, room->factors);
+  gather_lanes(steps, N, room->results);
+  substitute_in_lanes(N, room->factors, room->results);
+}
+
+/* Gives rows that wait for the same what they wait for. */
+static void serve(side_by_side *all, waiting state) {
+  row *served[LANES];
+  real *wanted[LANES];
+  lanes_room *room = &all->room;
+  int count = 0;
+  int numbers = 0;
+  for (int k = 0; k < ROWS && count < LANES; k++) {
+    if (all->rows[k].state == state) served[count++] = all->rows + k;
+  }
+  for (int lane = count; lane < LANES; lane++) served[lane] = served[0];
+  if (state == WAITS_FOR_STEP) {
+    substitute_rows(served, room);
+  } else {
+    evaluate_rows(served, state, room);
+  }
+  for (int lane = 0; lane < count; lane++) wanted[lane] = wanted_by(served[lane], &numbers);
+  scatter_lanes(room->results, numbers, count, wanted);
+  for (int lane = 0; lane < count; lane++) resume(served[lane], room, lane);
+}
+
+/* Returns 1 where there was no memory. */
+static int solve_side_by_side(int count, const real *inputs, real *results, side_by_side *all) {
+  int begun = 0;
+  for (int k = 0; k < ROWS; k++) {
+    all->rows[k].state = WAITS_FOR_NOTHING;
+    all->rows[k].without_memory = 0;
+  }
+  for (int i = 0; i < (INPUTS + 1) * LANES; i++) all->room.inputs_rate[i] = 0;
+  for (int lane = 0; lane < LANES; lane++) all->room.load_factor_rate[lane] = 1;
+  for (;;) {
+    for (int k = 0; k < ROWS; k++) {
+      while (begun < count && all->rows[k].state == WAITS_FOR_NOTHING) {
+        begin_row(all->rows + k, inputs + (size_t)begun * INPUTS, results + (size_t)begun * RESULTS);
+        begun++;
+      }
+    }
+    const waiting state = most_awaited(all->rows);
+    if (state == WAITS_FOR_NOTHING) break;
+    serve(all, state);
+  }
+  int without_memory = 0;
+  for (int k = 0; k < ROWS; k++) without_memory |= all->rows[k].without_memory;
+  return without_memory;
+}

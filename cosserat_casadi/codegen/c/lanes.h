@@ -1,0 +1,32 @@
+/* Lanes: the same arithmetic on several rows at once, one row in each lane of a vector of the processor. An array of
+   lanes holds for each entry the numbers of LANES rows, one after the other.
+
+   LANES is 0 where the compiler has no vectors; everything is then computed row after row. On x86 the code is made for
+   AVX2, and processor_has_lanes tells whether there is; elsewhere the compiler splits vectors as it must. Sums and
+   their order are those of one row, so that results are the same to the last digit. */
+#ifndef LANES
+#if defined(__GNUC__)
+#define LANES 4
+#else
+#define LANES 0
+#endif
+#endif
+
+/* A kernel in lanes: arguments and results are arrays of lanes, and so is the room that it works in. */
+#define IN_LANES(kernel) kernel##_in_lanes
+#define KERNEL_IN_LANES(kernel) \
+  int IN_LANES(kernel)(const double **arguments, double **results, int *integers, double *reals)
+
+/* Whether the processor that runs this has the vectors that the code in lanes is compiled for. */
+int processor_has_lanes(void);
+
+/* Factorises LANES matrices in place. Gives pivots (size arrays of lanes), whether each matrix is regular, and whether
+   its entries were finite. */
+void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite);
+
+/* Solves with such factors, in place; the right sides are in the order of the pivots. */
+void substitute_in_lanes(int size, const double *factors, double *right_sides);
+
+/* Arrays of each row into an array of lanes, and of the lanes in use out of it. */
+void gather_lanes(const double *const *sources, int count, double *in_lanes);
+void scatter_lanes(const double *in_lanes, int count, int used, double *const *targets);
