@@ -325,7 +325,7 @@ def test_tune_fixes_a_discretisation_for_a_set_of_loads(wire: Path) -> None:
 def test_tune_refuses_columns_that_are_no_inputs(wire: Path) -> None:
     done = cosserat("tune", "wire.toml", "--output", "tuned.toml", "--range", "pull.x=0:1", cwd=wire)
     assert done.returncode == 2
-    assert "'pull.x' is not an input of this scene" in done.stderr
+    assert "'pull.x' is not an input or a parameter of this scene" in done.stderr
     both = cosserat("tune", "wire.toml", "--output", "tuned.toml", cwd=wire)
     assert both.returncode == 2
     assert not (wire / "tuned.toml").exists()
