@@ -37,6 +37,7 @@ from cosserat_casadi.scene.loads import (
 )
 from cosserat_casadi.scene.magnet import Dipole, Magnet
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.obstacles import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.scene.rods import (
@@ -59,6 +60,7 @@ __all__ = [
     "ACTUATORS",
     "JOINTS",
     "LOADS",
+    "OBSTACLES",
     "SUPPORTS",
     "Accuracy",
     "Actuator",
@@ -68,6 +70,7 @@ __all__ = [
     "Body",
     "BodyWrench",
     "Bound",
+    "Capsule",
     "Chamber",
     "Circle",
     "ClampedSupport",
@@ -89,10 +92,14 @@ __all__ = [
     "JointRecord",
     "Load",
     "LoadRecord",
+    "Lumen",
     "Magnet",
     "Material",
     "NamedNumbers",
+    "Obstacle",
+    "ObstacleRecord",
     "PinnedSupport",
+    "Plane",
     "PointWrench",
     "PoseTarget",
     "PositionTarget",
@@ -103,6 +110,7 @@ __all__ = [
     "Scene",
     "Section",
     "Simulation",
+    "Sphere",
     "SphericalJoint",
     "Stiffness",
     "Support",

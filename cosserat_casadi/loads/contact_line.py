@@ -1,0 +1,58 @@
+"""The force per length of an obstacle that a stretch of a rod lies on: energy −λ(X) d(r) per length.
+
+λ is a polynomial along the stretch, given by its Legendre coefficients. As with contact at a point, it is no input of
+the scene but follows from the contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import LoadRecord
+
+
+class ContactLine(LoadRecord):
+    """An obstacle that a stretch of a rod lies on."""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N/m", 1, polynomial=True)}
+
+    kind: Literal["contact_line"] = "contact_line"
+    rod: str
+    obstacle: Any
+    span: tuple[float, float]
+    force: tuple[tuple[float, ...]]
+
+
+@final
+class ContactLineLoad(Load[ContactLine]):
+    """λ along the normal of the obstacle."""
+
+    record = ContactLine
+
+    def span(self, load: ContactLine) -> tuple[float, float]:
+        """The stretch that lies on the obstacle."""
+        return load.span
+
+    def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """−λ d(r), J/m."""
+        force = ca.mtimes(values["force"], section.data)
+        return -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+
+    def profiles(self, load: ContactLine, rod: object, X: FloatArray, columns: int) -> FloatArray:
+        """One: λ varies with the data of the sections."""
+        return np.ones((columns, len(X)))
+
+    def data(self, load: ContactLine, site: Site) -> FloatArray:
+        """Values of the Legendre polynomials over the stretch."""
+        start, end = load.span
+        local = (site.X - start) / (end - start)
+        return np.asarray(legendre_polynomials(len(load.force[0]), local).T)
