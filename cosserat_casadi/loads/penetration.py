@@ -7,7 +7,7 @@ no scene file names this load.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, final
+from typing import Any, ClassVar, Literal, final
 
 import casadi as ca
 import numpy as np
@@ -16,11 +16,14 @@ from cosserat_casadi.loads.load import Load, Section, Site
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
 
 
 class Penetration(LoadRecord):
     """A soft obstacle."""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m³", 1)}
 
     kind: Literal["penetration"] = "penetration"
     rod: str
@@ -38,7 +41,7 @@ class PenetrationLoad(Load[Penetration]):
         """k/3 (ρ − d)³, J/m."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
         depth = ca.fmax(section.data[0] - distance, 0.0)
-        return load.stiffness / 3 * depth**3
+        return values["stiffness"] / 3 * depth**3
 
     def profiles(self, load: Penetration, rod: object, X: FloatArray, columns: int) -> FloatArray:
         """One all along the rod."""

@@ -1,0 +1,168 @@
+"""Which sections touch which obstacles: discrete data, with the places of contact as numbers that are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.loads.contact_point import ContactPoint
+from cosserat_casadi.maths.typing import FloatArray
+
+TIP = 1.0
+"""Abscissa of the section that contact cannot move beyond."""
+
+SHORTEST = 1e-5
+"""Least distance of places of contact from each other and from the base, relative to the length of the rod."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One contact of a rod with an obstacle: a point, or a stretch that lies on it.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        start: abscissa X at which contact begins.
+        end: abscissa at which it ends; the same for a point.
+    """
+
+    obstacle: str
+    rod: str
+    start: float
+    end: float
+
+    @property
+    def is_line(self) -> bool:
+        """Whether a stretch lies on the obstacle."""
+        return self.end > self.start
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Abscissae of the one point, or of both ends."""
+        return (self.start, self.end) if self.is_line else (self.start,)
+
+    @property
+    def moving(self) -> tuple[float, ...]:
+        """Those of its ends that are sought: all but the tip."""
+        return tuple(end for end in self.ends if end < TIP)
+
+    @property
+    def kind(self) -> str:
+        """The word of the result file."""
+        return "line" if self.is_line else "point"
+
+    def moved(self, places: Sequence[float]) -> Touch:
+        """The same contact at other places, one for each that is sought."""
+        ends = [*map(float, places), TIP][: len(self.ends)]
+        return replace(self, start=ends[0], end=ends[-1])
+
+    def moment_count(self, modes: int) -> int:
+        """Number of polynomials of the force per length on a stretch.
+
+        In a stretch whose curvature has n polynomials the distance has n + 2. Of their conditions each sought end takes
+        two, distance and slope, the tip one; with the rest every one is met, and none twice.
+        """
+        conditions = len(self.ends) + len(self.moving)
+        return max(modes + 2 - conditions, 1)
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """All contacts of a scene.
+
+    Attributes:
+        touches: sorted by rod and abscissa.
+    """
+
+    touches: tuple[Touch, ...]
+
+    @classmethod
+    def of(cls, touches: Sequence[Touch]) -> ContactState:
+        """The state of some contacts, in order."""
+        return cls(tuple(sorted(touches, key=lambda touch: (touch.rod, touch.start, touch.obstacle))))
+
+    @property
+    def signature(self) -> tuple[tuple[str, str, str, bool], ...]:
+        """What of the state is discrete: two states with the same differ in their places alone."""
+        return tuple((touch.rod, touch.obstacle, touch.kind, touch.end == TIP) for touch in self.touches)
+
+    @property
+    def places(self) -> FloatArray:
+        """All abscissae that are sought, shape (k,)."""
+        return np.array([place for touch in self.touches for place in touch.moving])
+
+    def at(self, places: FloatArray) -> ContactState:
+        """The same contacts at other places."""
+        touches = []
+        first = 0
+        for touch in self.touches:
+            last = first + len(touch.moving)
+            touches.append(touch.moved([float(place) for place in places[first:last]]))
+            first = last
+        return ContactState(tuple(touches))
+
+    @property
+    def in_order(self) -> bool:
+        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        rods = {touch.rod for touch in self.touches}
+        for rod in rods:
+            ends = [0.0, *(end for touch in self.touches if touch.rod == rod for end in touch.ends)]
+            gaps = np.diff(ends)
+            if np.any(gaps < SHORTEST) or ends[-1] > TIP:
+                return False
+        return True
+
+    def loads(self, scene: scenes.Scene, modes: int) -> list[scenes.LoadRecord]:
+        """The forces of the contacts as loads of the scene, without magnitude yet: at ends first, then along lines."""
+        obstacles = {obstacle.name: obstacle for obstacle in scene.obstacles}
+        loads: list[scenes.LoadRecord] = []
+        for touch in self.touches:
+            obstacle = obstacles[touch.obstacle]
+            for end in touch.ends:
+                loads.append(
+                    ContactPoint.model_construct(
+                        name=f"contact {len(loads) + 1}", rod=touch.rod, obstacle=obstacle, at=end, force=0.0
+                    )
+                )
+            if touch.is_line:
+                no_force = ((0.0,) * touch.moment_count(modes),)
+                loads.append(
+                    ContactLine.model_construct(
+                        name=f"contact {len(loads) + 1}",
+                        rod=touch.rod,
+                        obstacle=obstacle,
+                        span=(touch.start, touch.end),
+                        force=no_force,
+                    )
+                )
+        return loads
+
+
+def with_contacts(scene: scenes.Scene, state: ContactState, modes: int) -> scenes.Scene:
+    """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
+    loads = state.loads(scene, modes)
+    changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
+    if scene.inputs is not None:
+        changes["inputs"] = (*scene.inputs, *(f"{load.name}.force" for load in loads))
+    return scene.model_copy(update=changes)
+
+
+def without_contacts(scene: scenes.Scene) -> scenes.Scene:
+    """The scene as its file has it."""
+    found = [load for load in scene.loads if is_contact(load)]
+    if not found:
+        return scene
+    changes: dict[str, object] = {"loads": tuple(load for load in scene.loads if not is_contact(load))}
+    if scene.inputs is not None:
+        names = {f"{load.name}.force" for load in found}
+        changes["inputs"] = tuple(name for name in scene.inputs if name not in names)
+    return scene.model_copy(update=changes)
+
+
+def is_contact(load: scenes.LoadRecord) -> bool:
+    """Whether a load is the force of a contact, which no scene file names."""
+    return isinstance(load, ContactPoint | ContactLine)
