@@ -80,11 +80,11 @@ class Pressure:
             last_peak = float(self.X[last_rise[-1] + 1]) if len(last_rise) else start
             line_end = TIP if at_tip else last_peak
             if line_end - first_peak > LONG / 2:
-                return Touch(self.obstacle, self.rod, first_peak, line_end)
+                return Touch.line(self.obstacle, self.rod, first_peak, line_end)
         place = float(self.X[np.argmax(self.values)])
         if not at_tip:
             place = float(self.X @ self.values / self.values.sum())
-        return Touch(self.obstacle, self.rod, place, place)
+        return Touch.point(self.obstacle, self.rod, place)
 
 
 def cushioned(scene: scenes.Scene) -> Model:
@@ -105,9 +105,11 @@ def cushioned(scene: scenes.Scene) -> Model:
     soft = scene.model_copy(update=changes)
     discretisation = {}
     for rod in scene.rods:
-        ends = sorted({*element_ends(scene, rod.name), *np.linspace(0.0, 1.0, ELEMENTS + 1).tolist()})
+        own = element_ends(scene, rod.name)
+        # None as short as the distance of an end of the loads from one of ours may be.
+        further = [end for end in np.linspace(0.0, 1.0, ELEMENTS + 1) if np.abs(end - own).min() > 0.2 / ELEMENTS]
         modes = (MODES,) * len(rod.admitted)
-        discretisation[rod.name] = Discretisation(modes, NODES, tuple(ends))
+        discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
     return build(soft, discretisation)
 
 

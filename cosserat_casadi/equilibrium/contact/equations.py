@@ -8,8 +8,8 @@ inside an element and the accuracy of the polynomials is kept. See docs/contact.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import casadi as ca
@@ -36,31 +36,35 @@ DIFFERENCE = 1e-6
 FIT = 1e-3
 """Singular values, relative to the largest, below which a first guess of forces does without them."""
 
+TORSION = 2
+"""Index of the torsion among the strains: bendings come before it."""
+
 KEPT = 8
 """Models of other places that are kept: those of one Newton step."""
 
 
 @dataclass(frozen=True)
 class Grids:
-    """Modes, nodes and rotation integrator of every element, wherever elements end.
+    """Modes, nodes and rotation integrator of the elements of every rod, wherever elements end.
 
     Attributes:
-        modes: polynomials per strain.
-        nodes: Chebyshev intervals.
-        transport: rotation integrator.
+        rods: by name; their own breaks are not read.
     """
 
-    modes: int
-    nodes: int
-    transport: str
+    rods: Mapping[str, Discretisation]
 
     def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
         """One for every rod of a scene, with elements that end where its loads say."""
-        chosen = {}
+        return {name: replace(own, breaks=element_ends(scene, name)) for name, own in self.rods.items()}
+
+    def bending_modes(self, scene: scenes.Scene) -> dict[str, int]:
+        """Polynomials that all curvatures of each rod have at least, by name."""
+        fewest = {}
         for rod in scene.rods:
-            modes = (self.modes,) * len(rod.admitted)
-            chosen[rod.name] = Discretisation(modes, self.nodes, element_ends(scene, rod.name), self.transport)
-        return chosen
+            modes = self.rods[rod.name].modes
+            bending = [count for strain, count in zip(rod.admitted, modes, strict=True) if strain < TORSION]
+            fewest[rod.name] = min(bending, default=1)
+        return fewest
 
 
 @dataclass(frozen=True)
@@ -71,11 +75,13 @@ class Placed:
         model: of the scene with the forces of the contacts as inputs.
         state: the contacts.
         given: stacked inputs of the scene without contacts.
+        modes: polynomials of the curvature of each rod, by name.
     """
 
     model: Model
     state: ContactState
     given: FloatArray
+    modes: Mapping[str, int]
 
     @cached_property
     def _force_entries(self) -> list[int]:
@@ -112,12 +118,6 @@ class Placed:
         inputs[others] = self.given
         inputs[self._force_entries] = forces * self.force_units
         return inputs
-
-    @property
-    def modes(self) -> int:
-        """Polynomials per strain and element, the same in all."""
-        (modes,) = {count for rod in self.model.discretisation.values() for count in rod.modes}
-        return modes
 
     def fitting_forces(self, x: FloatArray) -> FloatArray:
         """Forces that balance a shape best, shape (k,): it is linear in them."""
@@ -170,7 +170,7 @@ class Placed:
             if end in touch.moving:
                 yield slope
         if touch.is_line:
-            yield distances.moments(touch.start, touch.end, touch.moment_count(self.modes))
+            yield distances.moments(touch.start, touch.end, touch.moment_count(self.modes[touch.rod]))
 
     def obstacle(self, name: str) -> scenes.ObstacleRecord:
         """The obstacle of a name."""
@@ -261,9 +261,10 @@ class ContactEquations:
             if len(self._models) == KEPT:
                 self._models.pop(next(iter(self._models)))
             state = self.state.at(places)
-            loaded = with_contacts(self.scene, state, self.grids.modes)
+            modes = self.grids.bending_modes(self.scene)
+            loaded = with_contacts(self.scene, state, modes)
             model = build(loaded, self.grids.discretisation(loaded))
-            self._models[key] = Placed(model, state, self.given)
+            self._models[key] = Placed(model, state, self.given, modes)
         return self._models[key]
 
     @cached_property

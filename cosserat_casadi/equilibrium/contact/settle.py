@@ -29,6 +29,12 @@ MOST_STATES = 24
 NEAR = 0.03
 """Distance along the rod within which a penetration belongs to a contact."""
 
+AT_TIP = 1e-3
+"""Distance from the tip within which it is the tip that touches."""
+
+LIES_FROM = 0.8
+"""Where a rod that lies down from its tip on is first thought to begin to."""
+
 ALIKE = 0.05
 """Places of contact that differ by less make the same attempt."""
 
@@ -60,10 +66,9 @@ class Found:
     def parts(self) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
         """Each contact, the forces at its ends, and the coefficients of the force along it, without unit."""
         first = 0
-        modes = self.placed.modes
         for touch in self.state.touches:
             last = first + len(touch.ends)
-            count = touch.moment_count(modes) if touch.is_line else 0
+            count = touch.moment_count(self.placed.modes[touch.rod]) if touch.is_line else 0
             yield touch, self.forces[first:last], self.forces[last : last + count]
             first = last + count
 
@@ -266,10 +271,11 @@ def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
         yield ()
         return
     middle = (touch.start + touch.end) / 2
-    first = replace(touch, end=touch.start)
-    last = replace(touch, start=touch.end)
+    first, last, between = (
+        Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle)
+    )
     yield (first, last)
-    yield (replace(touch, start=middle, end=middle),)
+    yield (between,)
     yield (first,)
     yield (last,)
     if touch.end == TIP:
@@ -279,30 +285,28 @@ def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
 
 def _instead_of_entering(penetrated: Penetrated, beside: list[Touch]) -> Iterator[tuple[Touch, ...]]:
     """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
-    here = penetrated.deepest if penetrated.deepest < 1.0 - 1e-3 else TIP
-    point = Touch(penetrated.obstacle, penetrated.rod, here, here)
+    here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
+    point = Touch.point(penetrated.obstacle, penetrated.rod, here)
     if not beside:
         yield (point,)
         return
     (touch,) = beside
-    if touch.is_line:
-        yield (replace(touch, start=min(touch.start, penetrated.start), end=max(touch.end, penetrated.end)),)
-        yield (touch, point)
-        return
-    inner = max(min(here, 1.0 - 2 * NEAR), NEAR)
     start = min(penetrated.start, touch.start)
-    end = max(penetrated.end, touch.start)
-    line = replace(point, start=start, end=TIP if touch.end == TIP else end)
-    if touch.end == TIP:
+    end = max(penetrated.end, touch.end)
+    line = Touch.line(penetrated.obstacle, penetrated.rod, start, end)
+    if touch.is_line:
+        yield (line,)
+        yield (touch, point)
+    elif touch.end == TIP:
         # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
-        yield (replace(point, start=inner, end=inner),)
+        inwards = Touch.point(penetrated.obstacle, penetrated.rod, min(here, TIP - 2 * NEAR))
+        yield (inwards,)
         yield (line,)
-        yield (replace(point, start=inner, end=inner), touch)
-        return
-    if line.is_line:
+        yield (inwards, touch)
+    else:
         yield (line,)
-    yield (touch, point)
-    yield (point,)
+        yield (touch, point)
+        yield (point,)
 
 
 def _otherwise(state: ContactState) -> Iterator[ContactState]:
@@ -313,8 +317,8 @@ def _otherwise(state: ContactState) -> Iterator[ContactState]:
             for option in _instead_of_pulling(touch):
                 yield ContactState.of([*rest, *option])
         elif touch.end == TIP:
-            yield ContactState.of([*rest, replace(touch, start=1.0 - 2 * NEAR, end=1.0 - 2 * NEAR)])
-            yield ContactState.of([*rest, replace(touch, start=0.8)])
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])
+            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.rod, LIES_FROM, TIP)])
         else:
-            yield ContactState.of([*rest, replace(touch, start=TIP, end=TIP)])
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP)])
         yield ContactState.of(rest)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,17 +28,24 @@ class Touch:
         rod: name of the rod.
         start: abscissa X at which contact begins.
         end: abscissa at which it ends; the same for a point.
+        is_line: whether a stretch lies on the obstacle.
     """
 
     obstacle: str
     rod: str
     start: float
     end: float
+    is_line: bool = False
 
-    @property
-    def is_line(self) -> bool:
-        """Whether a stretch lies on the obstacle."""
-        return self.end > self.start
+    @classmethod
+    def point(cls, obstacle: str, rod: str, at: float) -> Touch:
+        """Contact at one section."""
+        return cls(obstacle, rod, at, at)
+
+    @classmethod
+    def line(cls, obstacle: str, rod: str, start: float, end: float) -> Touch:
+        """A stretch that lies on an obstacle."""
+        return cls(obstacle, rod, start, end, is_line=True)
 
     @property
     def ends(self) -> tuple[float, ...]:
@@ -116,8 +123,13 @@ class ContactState:
                 return False
         return True
 
-    def loads(self, scene: scenes.Scene, modes: int) -> list[scenes.LoadRecord]:
-        """The forces of the contacts as loads of the scene, without magnitude yet: at ends first, then along lines."""
+    def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
+        """The forces of the contacts as loads of the scene, without magnitude yet: at its ends, then along it.
+
+        Args:
+            scene: the scene without them.
+            modes: polynomials of the curvature of each rod, by name.
+        """
         obstacles = {obstacle.name: obstacle for obstacle in scene.obstacles}
         loads: list[scenes.LoadRecord] = []
         for touch in self.touches:
@@ -129,7 +141,7 @@ class ContactState:
                     )
                 )
             if touch.is_line:
-                no_force = ((0.0,) * touch.moment_count(modes),)
+                no_force = ((0.0,) * touch.moment_count(modes[touch.rod]),)
                 loads.append(
                     ContactLine.model_construct(
                         name=f"contact {len(loads) + 1}",
@@ -142,7 +154,7 @@ class ContactState:
         return loads
 
 
-def with_contacts(scene: scenes.Scene, state: ContactState, modes: int) -> scenes.Scene:
+def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
     """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
     loads = state.loads(scene, modes)
     changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
@@ -166,3 +178,22 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
 def is_contact(load: scenes.LoadRecord) -> bool:
     """Whether a load is the force of a contact, which no scene file names."""
     return isinstance(load, ContactPoint | ContactLine)
+
+
+def state_in(scene: scenes.Scene) -> ContactState:
+    """The contacts whose forces are among the loads of a scene."""
+    touches = []
+    lines = [load for load in scene.loads if isinstance(load, ContactLine)]
+    for line in lines:
+        start, end = line.span
+        touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
+    for load in scene.loads:
+        if not isinstance(load, ContactPoint):
+            continue
+        of_line = any(
+            touch.is_line and load.rod == touch.rod and load.at in touch.ends and load.obstacle.name == touch.obstacle
+            for touch in touches
+        )
+        if not of_line:
+            touches.append(Touch.point(load.obstacle.name, load.rod, load.at))
+    return ContactState.of(touches)
