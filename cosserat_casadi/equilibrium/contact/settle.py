@@ -134,6 +134,11 @@ class Penetrated:
     deepest: float
     depth: float
 
+    def joined(self, other: Penetrated) -> Penetrated:
+        """One stretch from the start of the first to the end of the last."""
+        deeper = self if self.depth >= other.depth else other
+        return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
+
     def is_at(self, touch: Touch) -> bool:
         """Whether it begins or ends at a contact."""
         if (touch.rod, touch.obstacle) != (self.rod, self.obstacle):
@@ -238,14 +243,13 @@ def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
         if pull > tolerance:
             changes.append(((touch,), list(_instead_of_pulling(touch))))
     pulling = {change[0][0] for change in changes}
-    for penetrated in found.penetrations(tolerance):
-        beside = [touch for touch in touches if penetrated.is_at(touch)]
+    for penetrated, touch in _by_touch(found, tolerance):
         # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
-        if any(touch.is_line and touch.start < penetrated.deepest < touch.end for touch in beside):
+        if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
             continue
-        if any(touch in pulling for touch in beside):
-            continue
-        changes.append((tuple(beside[:1]), list(_instead_of_entering(penetrated, beside[:1]))))
+        if touch not in pulling:
+            replaced = () if touch is None else (touch,)
+            changes.append((replaced, list(_instead_of_entering(penetrated, touch))))
     if not changes:
         return
     # All that is at fault is changed at once; then each in another way.
@@ -254,6 +258,19 @@ def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
         for option in options[1:]:
             others = [(other_old, new[0]) for i, (other_old, new) in enumerate(changes) if i != index]
             yield _changed(touches, [*others, (old, option)])
+
+
+def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
+    """Stretches inside an obstacle, each with the contact that it is at; those on both sides of one contact joined."""
+    alone: list[tuple[Penetrated, Touch | None]] = []
+    joined: dict[Touch, Penetrated] = {}
+    for penetrated in found.penetrations(tolerance):
+        touch = next((touch for touch in found.state.touches if penetrated.is_at(touch)), None)
+        if touch is None:
+            alone.append((penetrated, None))
+        else:
+            joined[touch] = penetrated.joined(joined.get(touch, penetrated))
+    return [*alone, *((penetrated, touch) for touch, penetrated in joined.items())]
 
 
 def _changed(
@@ -283,14 +300,13 @@ def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
         yield (replace(touch, end=touch.start + 0.7 * (touch.end - touch.start)),)
 
 
-def _instead_of_entering(penetrated: Penetrated, beside: list[Touch]) -> Iterator[tuple[Touch, ...]]:
+def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
     """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
     here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
     point = Touch.point(penetrated.obstacle, penetrated.rod, here)
-    if not beside:
+    if touch is None:
         yield (point,)
         return
-    (touch,) = beside
     start = min(penetrated.start, touch.start)
     end = max(penetrated.end, touch.end)
     line = Touch.line(penetrated.obstacle, penetrated.rod, start, end)
