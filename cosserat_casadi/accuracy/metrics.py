@@ -9,6 +9,7 @@ import numpy as np
 from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.preview import SAMPLES, relative_cable_lengths, watched
 from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
@@ -122,10 +123,10 @@ def _element_turn(discrete_rod: DiscreteRod, solution: Solution) -> float:
     """Largest of ℓ ∫ |K| dX over the elements of a rod, rad."""
     grid = discrete_rod.grid
     rod = discrete_rod.properties
-    strain = solution.strain(grid.nodes, rod.name)
+    strain = solution.strain(known(grid.nodes), rod.name)
     curvature = np.linalg.norm(strain[:, :3], axis=1)
     # Weights of the quadrature run over all nodes, element after element.
-    turns = grid.weights * curvature * rod.length
+    turns = known(discrete_rod.node_lengths) * curvature
     by_element = turns.reshape(grid.elements, -1)
     element_turns = by_element.sum(axis=1)
     return float(element_turns.max())

@@ -12,6 +12,7 @@ from math import ceil
 import numpy as np
 
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.numbers import known
 
 BEYOND = 2
 """Modes beyond T/2 from which on the coefficients of a wave show."""
@@ -21,7 +22,7 @@ def node_residual(solution: Solution) -> float:
     """Largest strain by which stress and internal wrench differ at the nodes; curvatures times the length."""
     largest = 0.0
     for name, discrete_rod in solution.model.discrete.rods.items():
-        X = discrete_rod.grid.nodes
+        X = known(discrete_rod.grid.nodes)
         rod = discrete_rod.properties
         fields = solution.model.fields[name](solution.x, solution.inputs)
         wrench = fields[2].full().T

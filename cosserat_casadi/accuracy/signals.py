@@ -16,7 +16,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.discretise import element_ends
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.rod.discretisation import Discretisation

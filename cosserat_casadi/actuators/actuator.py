@@ -73,7 +73,7 @@ class Actuator(ABC, Generic[RecordType]):
         """Whether the actuator acts on the rod of this name."""
         return bool(actuator.rod == rod)
 
-    def breaks(self, actuator: RecordType) -> tuple[float, ...]:
+    def breaks(self, actuator: RecordType) -> tuple[Scalar, ...]:
         """Abscissae at which the stress jumps: where the actuator enters the rod and where it ends."""
         return span_ends(actuator)
 

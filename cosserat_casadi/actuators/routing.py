@@ -10,19 +10,28 @@ from numpy.polynomial import polynomial
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.grid import Grid
-from cosserat_casadi.maths.numbers import Numbers, any_symbolic, as_vector, is_symbolic, stacked_rows
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    is_symbolic,
+    known,
+    stacked_rows,
+)
+from cosserat_casadi.maths.polynomials import power_table
 from cosserat_casadi.rod.cable import Routing
 
 
 def routing(actuator: Any, grid: Grid) -> Routing:
     """Routing of a tendon or a chamber through the nodes of its span."""
     nodes = grid.nodes_in(*actuator.span)
-    offset, slope = offset_at(actuator, grid.nodes[nodes])
+    offset, slope = offset_at(actuator, grid.nodes_at(nodes))
     return Routing(nodes, offset, slope)
 
 
-def offset_at(actuator: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
+def offset_at(actuator: Any, X: Numbers) -> tuple[Numbers, Numbers]:
     """Offset D and its derivative dD/dX at any abscissae, shape (2, k) each, m."""
     helix = getattr(actuator, "helix", None)
     if helix is not None:
@@ -30,32 +39,41 @@ def offset_at(actuator: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
     return _polynomial(actuator.offset, X)
 
 
-def span_ends(actuator: Any) -> tuple[float, ...]:
+def span_ends(actuator: Any) -> tuple[Scalar, ...]:
     """Where an actuator begins and ends: the stress jumps there."""
     start, end = actuator.span
-    return (float(start), float(end))
+    return (start, end)
 
 
-def _polynomial(offset: Any, X: FloatArray) -> tuple[Numbers, Numbers]:
+def _polynomial(offset: Any, X: Numbers) -> tuple[Numbers, Numbers]:
     """Polynomials of X and their derivatives, shape (2, k) each, m."""
     values: list[Numbers] = []
     slopes: list[Numbers] = []
     for component in offset:
-        if any_symbolic([component]):
-            powers = as_vector(component if isinstance(component, tuple) else (component,))
+        if any_symbolic([component]) or (is_symbolic(X) and isinstance(component, tuple)):
+            powers = as_matrix(as_vector(component if isinstance(component, tuple) else (component,)))
             degree = powers.shape[0] - 1
-            values.append(ca.DM(polynomial.polyvander(X, degree)) @ powers)
-            rates = polynomial.polyvander(X, degree)[:, :-1] * np.arange(1, degree + 1)
-            slopes.append(ca.sparsify(ca.DM(rates)) @ powers[1:] if degree else ca.MX(len(X), 1))
+            table = as_matrix(power_table(degree + 1, X))
+            values.append(table @ powers)
+            if degree:
+                rates = table[:, :-1] @ ca.diag(ca.DM(np.arange(1, degree + 1)))
+                slopes.append((rates if is_symbolic(rates) else ca.sparsify(rates)) @ powers[1:])
+            else:
+                slopes.append(ca.MX(X.shape[0], 1))
             continue
         coefficients = np.atleast_1d(np.asarray(component, dtype=float))
+        if is_symbolic(X):
+            values.append(np.full(X.shape[0], coefficients[0]))
+            slopes.append(np.zeros(X.shape[0]))
+            continue
         # A constant polynomial gives one number; all abscissae are wanted.
-        values.append(polynomial.polyval(X, coefficients) + 0.0 * X)
-        slopes.append(polynomial.polyval(X, polynomial.polyder(coefficients)) + 0.0 * X)
+        abscissae = known(X)
+        values.append(polynomial.polyval(abscissae, coefficients) + 0.0 * abscissae)
+        slopes.append(polynomial.polyval(abscissae, polynomial.polyder(coefficients)) + 0.0 * abscissae)
     return stacked_rows(values), stacked_rows(slopes)
 
 
-def _helix(helix: scenes.Helix, X: FloatArray) -> tuple[Numbers, Numbers]:
+def _helix(helix: scenes.Helix, X: Numbers) -> tuple[Numbers, Numbers]:
     """A helix of constant pitch and its derivative, shape (2, k) each, m."""
     angular_rate = 2 * np.pi * helix.turns
     angle = angular_rate * X + helix.phase

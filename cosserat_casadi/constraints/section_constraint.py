@@ -18,6 +18,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.pose import NumericPose, Pose
 from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -92,7 +93,7 @@ class SectionConstraint:
 
     rod: RodProperties
     unit: float
-    at: float
+    at: Scalar
     held: HeldDirections
     place: NumericPose | Pose
 

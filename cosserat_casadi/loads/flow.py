@@ -57,9 +57,9 @@ class FlowLoad(Load[scenes.Flow]):
             moment = -added * turning
         return force, moment
 
-    def profiles(self, load: scenes.Flow, rod: object, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: scenes.Flow, rod: object, X: Numbers, columns: int) -> FloatArray:
         """One all along the rod: its sizes are data of the sections."""
-        return np.ones((columns, len(X)))
+        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Flow, site: Site) -> Numbers:
         """Diameter, m, and area of fluid displaced, m², at the sections."""
@@ -73,7 +73,7 @@ class FlowLoad(Load[scenes.Flow]):
         # A tube displaces what a solid rod would, a rod that is not round its own area.
         if site.rod.diameter is None and site.rod.area is not None:
             displaced = site.rod.area(site.X)
-        return stacked_rows([repeated(diameter, len(site.X)), repeated(displaced, len(site.X))])
+        return stacked_rows([repeated(diameter, site.X.shape[0]), repeated(displaced, site.X.shape[0])])
 
     @staticmethod
     def _drag(load: scenes.Flow, section: Section, stream: Matrix) -> Matrix:

@@ -12,9 +12,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.loads.load import Load, Section, Site, coefficients
-from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
+from cosserat_casadi.loads.load import Load, Section, Site, coefficients, legendre_series
+from cosserat_casadi.maths.numbers import Numbers, Scalar, rows_of, stacked_rows
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 
@@ -24,10 +23,10 @@ class FoundationLoad(Load[scenes.Foundation]):
 
     record = scenes.Foundation
 
-    def span(self, load: scenes.Foundation) -> tuple[float, float]:
+    def span(self, load: scenes.Foundation) -> tuple[Scalar, Scalar]:
         """The part of the rod that lies in the foundation."""
         start, end = load.span
-        return float(start), float(end)
+        return start, end
 
     def energy(self, load: scenes.Foundation, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """½ Σ k_i d_i², J/m."""
@@ -37,18 +36,16 @@ class FoundationLoad(Load[scenes.Foundation]):
             displacement = unloaded.T @ displacement
         return ca.dot(values["stiffness"], displacement**2) / 2
 
-    def profiles(self, load: scenes.Foundation, rod: object, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: scenes.Foundation, rod: object, X: Numbers, columns: int) -> FloatArray:
         """One all along the span."""
-        return np.ones((columns, len(X)))
+        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Foundation, site: Site) -> Numbers:
         """Where the springs are tied to, m, and in the axes of sections their rotation, column after column."""
         if load.curve is None:
             tied_to: Numbers = site.unloaded_position
         else:
-            series = coefficients(load.curve)
-            tied_to = series @ legendre_polynomials(series.shape[1], site.X).T
+            tied_to = legendre_series(coefficients(load.curve), site.X)
         if load.frame == "world":
             return tied_to
-        columns = np.transpose(site.unloaded_rotation, (2, 1, 0)).reshape(9, -1)
-        return stacked_rows([*rows_of(tied_to), *columns])
+        return stacked_rows([*rows_of(tied_to), *rows_of(site.unloaded_rotation)])

@@ -11,7 +11,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import BodyPoint, Load, Section
 from cosserat_casadi.maths.numbers import Numbers, is_symbolic, is_zero
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
 
@@ -36,10 +36,10 @@ class GravityLoad(Load[scenes.Gravity]):
         # Mass comes in by the profile of a rod and the factor of a body.
         return values["acceleration"], ca.DM(3, 1)
 
-    def profiles(self, load: scenes.Gravity, rod: RodProperties, X: FloatArray, columns: int) -> Numbers:
+    def profiles(self, load: scenes.Gravity, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
         """Mass per length, kg/m."""
         # A rod without mass is not weighed, and costs nothing.
         if rod.linear_density is None:
-            return np.zeros((1, len(X)))
+            return np.zeros((1, X.shape[0]))
         density = rod.linear_density(X)
         return density.T if is_symbolic(density) else np.asarray(density[None, :])

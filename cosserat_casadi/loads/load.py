@@ -21,7 +21,17 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.loads.arrow import UNITS, Arrow, Sort
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, is_zero
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    is_symbolic,
+    is_zero,
+    known,
+)
+from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
@@ -33,6 +43,9 @@ RecordType = TypeVar("RecordType", bound=LoadRecord)
 Axes = Literal["world", "section"]
 Poses = tuple[FloatArray, FloatArray]
 """World positions (3, k) in m and rotation matrices world_R_section (k, 3, 3) of k sections."""
+
+UnloadedPoses = tuple[Numbers, Numbers]
+"""World positions (3, k) in m and rotation matrices world_R_section, column after column (9, k), of k sections."""
 
 
 AT_REST = ca.DM(3, 1)
@@ -68,22 +81,22 @@ class Site:
 
     Attributes:
         rod: what the rod is made of.
-        X: abscissae of the sections, shape (k,).
+        X: abscissae of the sections, shape (k,), numbers, or expressions where a parameter moves elements.
         unloaded: poses of the sections in the unloaded scene, found when they are asked for.
     """
 
     rod: RodProperties
-    X: FloatArray
-    unloaded: Callable[[], Poses]
+    X: Numbers
+    unloaded: Callable[[], UnloadedPoses]
 
     @cached_property
-    def unloaded_position(self) -> FloatArray:
+    def unloaded_position(self) -> Numbers:
         """World positions in the unloaded scene, shape (3, k), m."""
         return self.unloaded()[0]
 
     @cached_property
-    def unloaded_rotation(self) -> FloatArray:
-        """World rotation matrices in the unloaded scene, shape (k, 3, 3)."""
+    def unloaded_rotation(self) -> Numbers:
+        """World rotation matrices in the unloaded scene, column after column, shape (9, k)."""
         return self.unloaded()[1]
 
 
@@ -141,7 +154,7 @@ class Load(ABC, Generic[RecordType]):
         frame = getattr(load, "frame", "world")
         return "section" if frame == "body" else "world"
 
-    def abscissa(self, load: RecordType) -> float | None:
+    def abscissa(self, load: RecordType) -> Scalar | None:
         """Abscissa X of the section that the load acts on; None where it acts per length, all along the rod."""
         return None
 
@@ -153,11 +166,11 @@ class Load(ABC, Generic[RecordType]):
         """How the load acts on a rigid body of the scene; None where it does not."""
         return None
 
-    def span(self, load: RecordType) -> tuple[float, float]:
+    def span(self, load: RecordType) -> tuple[Scalar, Scalar]:
         """Abscissae X between which a load per length acts; the whole rod by default."""
         return (0.0, 1.0)
 
-    def breaks(self, load: RecordType) -> tuple[float, ...]:
+    def breaks(self, load: RecordType) -> tuple[Scalar, ...]:
         """Abscissae at which the rod's fields jump, so that its elements must end there."""
         # Under a point load strain and internal force jump, where a load per length begins their derivatives do.
         at = self.abscissa(load)
@@ -169,16 +182,16 @@ class Load(ABC, Generic[RecordType]):
         """What is wrong with a load on an unloaded rod, at many sections of it; nothing by default."""
         yield from ()
 
-    def profiles(self, load: RecordType, rod: RodProperties, X: FloatArray, columns: int) -> Numbers:
+    def profiles(self, load: RecordType, rod: RodProperties, X: Numbers, columns: int) -> Numbers:
         """Factors on the columns of a wrench per length at abscissae X, shape (columns, len(X)).
 
         By default the columns are coefficients of Legendre polynomials in 2X − 1.
         """
-        return np.asarray(legendre_polynomials(columns, X).T)
+        return polynomials_at(columns, X)
 
     def data(self, load: RecordType, site: Site) -> Numbers:
         """Numbers of each section that the wrench depends on, shape (d, k), such as its unloaded position."""
-        return np.zeros((0, len(site.X)))
+        return np.zeros((0, site.X.shape[0]))
 
     def arrows(
         self, load: RecordType, label: str, position: FloatArray, force: FloatArray, moment: FloatArray
@@ -222,6 +235,21 @@ class Load(ABC, Generic[RecordType]):
             legend = f"{label}: {size:.3g} {UNITS[sort]}" if label else ""
             arrows.append(Arrow(position[:, 0], vector, sort, legend))
         return arrows
+
+
+def polynomials_at(count: int, X: Numbers) -> Numbers:
+    """Legendre polynomials in 2X − 1 at abscissae, shape (count, len(X))."""
+    if is_symbolic(X):
+        return as_matrix(legendre_table(count, X)).T
+    return np.asarray(legendre_polynomials(count, known(X)).T)
+
+
+def legendre_series(series: Numbers, X: Numbers) -> Numbers:
+    """Series of Legendre polynomials in 2X − 1 at abscissae, from coefficients (m, k): shape (m, len(X))."""
+    table = polynomials_at(series.shape[1], X)
+    if any_symbolic([series, table]):
+        return as_matrix(series) @ as_matrix(table)
+    return known(series) @ known(table)
 
 
 def coefficients(components: tuple[Scalar | tuple[Scalar, ...], ...]) -> Numbers:

@@ -14,9 +14,8 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
-from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients
-from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.numbers import Numbers, columns_times, is_zero, known
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site, coefficients, legendre_series
+from cosserat_casadi.maths.numbers import Numbers, Scalar, columns_times, is_zero, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 MU_0_OVER_4_PI = 1e-7
@@ -29,11 +28,12 @@ class MagnetLoad(Load[scenes.Magnet]):
 
     record = scenes.Magnet
 
-    def abscissa(self, load: scenes.Magnet) -> float | None:
+    def abscissa(self, load: scenes.Magnet) -> Scalar | None:
         """The section that holds a dipole; None of a magnetised rod."""
         if load.moment is None:
             return None
-        return float(load.at)
+        at: Scalar = load.at
+        return at
 
     def on_body(self, load: scenes.Magnet, body: scenes.Body) -> BodyPoint | None:
         """The point of the body that holds the dipole."""
@@ -50,16 +50,16 @@ class MagnetLoad(Load[scenes.Magnet]):
             field = field + _dipole_field(section.position, values["dipole.position"], values["dipole.moment"])
         return -ca.dot(self._moment(load, section, values), field)
 
-    def profiles(self, load: scenes.Magnet, rod: object, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: scenes.Magnet, rod: object, X: Numbers, columns: int) -> FloatArray:
         """One: what varies along the rod is its magnetisation."""
-        return np.ones((columns, len(X)))
+        return np.ones((columns, X.shape[0]))
 
     def data(self, load: scenes.Magnet, site: Site) -> Numbers:
         """Moment per length in section axes at the sections of a magnetised rod, A m, but for zero components."""
         if load.magnetisation is None:
-            return np.zeros((0, len(site.X)))
+            return np.zeros((0, site.X.shape[0]))
         series = coefficients(load.magnetisation)[_components(load), :]
-        magnetisation = series @ legendre_polynomials(series.shape[1], site.X).T
+        magnetisation = legendre_series(series, site.X)
         # The magnetisation of a rod that has no section is its moment per length already.
         if site.rod.area is None:
             return magnetisation
@@ -70,8 +70,8 @@ class MagnetLoad(Load[scenes.Magnet]):
         if load.dipole is None:
             return
         source = np.asarray(load.dipole.position)[:, None]
-        distances = np.linalg.norm(site.unloaded_position - source, axis=0)
-        reach = np.full(len(site.X), ON_THE_AXIS * site.rod.length)
+        distances = np.linalg.norm(known(site.unloaded_position) - source, axis=0)
+        reach = np.full(site.X.shape[0], ON_THE_AXIS * site.rod.length)
         if site.rod.diameter is not None:
             reach = known(site.rod.diameter(site.X)) / 2
         if np.any(distances <= reach):

@@ -11,6 +11,7 @@ from typing import final
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.load import Load, Section
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 
 
@@ -20,9 +21,10 @@ class PointWrenchLoad(Load[scenes.PointWrench]):
 
     record = scenes.PointWrench
 
-    def abscissa(self, load: scenes.PointWrench) -> float:
+    def abscissa(self, load: scenes.PointWrench) -> Scalar:
         """The loaded section."""
-        return float(load.at)
+        at: Scalar = load.at
+        return at
 
     def wrench(self, load: scenes.PointWrench, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment as given."""

@@ -81,7 +81,7 @@ class TracedLoad:
         ]
         if any_symbolic(rows):
             # One profile may stand for all sections.
-            columns = [repeated(row.T, len(site.X)) if is_symbolic(row) else row.T for row in rows]
+            columns = [repeated(row.T, site.X.shape[0]) if is_symbolic(row) else row.T for row in rows]
             return ca.vertcat(*[as_matrix(own).T for own in columns])
         return np.vstack([known(row) for row in rows])
 

@@ -3,6 +3,9 @@
 An element ends where something jumps (a point load), so every field is smooth inside an element and spectral
 accuracy is kept. The node at a break appears twice, as the left and as the right limit. With one element this is
 the plain Chebyshev grid. See docs/theory.md, section 3.
+
+Elements may end elsewhere on the rod than where the grid was made for, at expressions of parameters even. The grid is
+then a reference: integrals run over its coordinate, along which each element has its own rate dX of the rod.
 """
 
 from __future__ import annotations
@@ -11,11 +14,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_matrix, as_vector, is_symbolic, known
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 
 Indices = npt.NDArray[np.int64]
 """Indices of rows: of nodes, of intervals, of sections."""
@@ -26,12 +31,15 @@ class Grid:
     """Elements on [0, 1] with the same number N of Chebyshev intervals, and so of N + 1 nodes, each.
 
     Attributes:
-        breaks: element ends, ascending, first 0 and last 1.
+        breaks: element ends in the coordinate that integrals run over, ascending, first 0 and last 1.
         intervals: Chebyshev intervals in each element, N ≥ 1.
+        ends: abscissae X of the same element ends on the rod, ascending, numbers or expressions; None where they are
+            the breaks.
     """
 
     breaks: tuple[float, ...]
     intervals: int
+    ends: tuple[Scalar, ...] | None = None
 
     @property
     def elements(self) -> int:
@@ -43,23 +51,87 @@ class Grid:
         """Number of nodes M = E (N + 1)."""
         return self.elements * self._nodes_per_element
 
+    @property
+    def places(self) -> tuple[Scalar, ...]:
+        """Abscissae X of the element ends on the rod, base to tip."""
+        return self.breaks if self.ends is None else self.ends
+
+    @property
+    def known_places(self) -> tuple[float, ...]:
+        """The same of a grid whose element ends are numbers."""
+        return tuple(known(as_vector(self.places)).tolist())
+
     @cached_property
-    def nodes(self) -> FloatArray:
-        """Abscissae of the nodes, base to tip, shape (M,)."""
+    def reference_nodes(self) -> FloatArray:
+        """The nodes in the coordinate that integrals run over, base to tip, shape (M,)."""
         local = chebyshev.nodes(self.intervals)
         parts = [start + (end - start) * local for start, end in self._spans()]
         return np.concatenate(parts)
 
     @cached_property
+    def nodes(self) -> Numbers:
+        """Abscissae X of the nodes on the rod, base to tip, shape (M,)."""
+        return self.on_rod(self.reference_nodes, self.element_of_node)
+
+    def nodes_at(self, indices: Indices) -> Numbers:
+        """Abscissae X of some of the nodes, shape (len(indices),)."""
+        return self.on_rod(self.reference_nodes[indices], self.element_of_node[indices])
+
+    @cached_property
+    def rates(self) -> Numbers | None:
+        """Width of each element on the rod relative to that in the coordinate, shape (E,); None where they are one."""
+        if self.ends is None:
+            return None
+        widths = [end - start for start, end in pairwise(self.ends)]
+        nominal = np.diff(self.breaks)
+        relative = [width / own for width, own in zip(widths, nominal.tolist(), strict=True)]
+        return as_vector(relative)
+
+    @cached_property
+    def element_of_node(self) -> Indices:
+        """Element of each node, shape (M,)."""
+        return np.repeat(np.arange(self.elements, dtype=np.int64), self._nodes_per_element)
+
+    def rates_in(self, elements: Indices) -> Numbers | None:
+        """Rate of the rod's abscissa in elements, shape (len(elements),); None where it is one."""
+        rates = self.rates
+        if rates is None or not is_symbolic(rates):
+            return None if rates is None else known(rates)[elements]
+        chosen: Numbers = rates[elements.tolist()]
+        return chosen
+
+    def on_rod(self, coordinates: FloatArray, elements: Indices) -> Numbers:
+        """Abscissae X of points of elements, given in the coordinate that integrals run over, shape (k,)."""
+        rates = self.rates_in(elements)
+        if self.ends is None or rates is None:
+            return coordinates
+        starts = as_vector(self.ends[:-1])
+        from_start = coordinates - np.asarray(self.breaks)[elements]
+        if any_symbolic([starts, rates]):
+            begins: Matrix = as_matrix(starts)[elements.tolist()]
+            moved: Matrix = begins + from_start * as_matrix(rates)
+            return moved
+        return np.asarray(known(starts)[elements] + from_start * known(rates))
+
+    def in_coordinate(self, X: FloatArray, elements: Indices) -> FloatArray:
+        """Places in the coordinate of abscissae X of the rod that lie in elements with known ends, shape (k,)."""
+        if self.ends is None:
+            return X
+        starts = known(as_vector(self.places[:-1]))[elements]
+        rates = self.rates_in(elements)
+        assert rates is not None
+        return np.asarray(self.breaks)[elements] + (X - starts) / known(rates)
+
+    @cached_property
     def weights(self) -> FloatArray:
-        """Clenshaw–Curtis weights of the whole grid, shape (M,), sum 1."""
+        """Clenshaw–Curtis weights of the whole grid in its coordinate, shape (M,), sum 1."""
         local = chebyshev.quadrature_weights(self.intervals)
         parts = [(end - start) * local for start, end in self._spans()]
         return np.concatenate(parts)
 
     @cached_property
     def integration_matrix(self) -> FloatArray:
-        """Matrix S of the integral from the base, shape (M, M): (S f)_i ≈ ∫₀^{X_i} f dX."""
+        """Matrix S of the integral from the base over the coordinate, shape (M, M): (S f)_i ≈ ∫₀^{X_i} f dX."""
         local = chebyshev.integration_matrix(self.intervals)
         matrix = np.zeros((self.size, self.size))
         for element, (start, end) in enumerate(self._spans()):
@@ -72,13 +144,13 @@ class Grid:
 
     @cached_property
     def left_ends(self) -> FloatArray:
-        """Base-side ends of the E·N intervals between neighbouring nodes."""
+        """Base-side ends of the E·N intervals between neighbouring nodes, in the coordinate."""
         starts = self._nodes_by_element[:, :-1]
         return starts.ravel()
 
     @cached_property
     def right_ends(self) -> FloatArray:
-        """Tip-side ends of the E·N intervals between neighbouring nodes."""
+        """Tip-side ends of the E·N intervals between neighbouring nodes, in the coordinate."""
         ends = self._nodes_by_element[:, 1:]
         return ends.ravel()
 
@@ -102,30 +174,41 @@ class Grid:
         """Index of the node that mirrors each one about the middle of its element, shape (M,)."""
         return self._mirrored(self.size)
 
-    def node_at(self, abscissa: float) -> int:
-        """Index of the node that ends the element whose tip is at ``abscissa`` (a break, not 0)."""
-        elements_before = self.breaks.index(abscissa)
+    def node_at(self, abscissa: Scalar) -> int:
+        """Index of the node that ends the element whose tip is at ``abscissa``: an element end on the rod, not 0."""
+        elements_before = self._end_number(abscissa)
         return elements_before * self._nodes_per_element - 1
 
-    def nodes_in(self, start: float, end: float) -> Indices:
-        """Indices of the nodes of the elements between two breaks, each side of a break with its own."""
-        # An element is inside as a whole or not at all.
-        middles = self._nodes_by_element.mean(axis=1)
-        inside = (middles > start) & (middles < end)
-        return np.flatnonzero(np.repeat(inside, self._nodes_per_element))
+    def nodes_in(self, start: Scalar, end: Scalar) -> Indices:
+        """Indices of the nodes of the elements between two element ends, each side of an end with its own."""
+        first = self._end_number(start)
+        behind_last = self._end_number(end)
+        elements = self.element_of_node
+        return np.flatnonzero((elements >= first) & (elements < behind_last))
+
+    def _end_number(self, abscissa: Scalar) -> int:
+        """Place of an element end among all: an expression is found as that which the grid was given."""
+        for number, place in enumerate(self.places):
+            if is_symbolic(place) or is_symbolic(abscissa):
+                same = is_symbolic(place) and is_symbolic(abscissa) and ca.is_equal(place, abscissa)
+            else:
+                same = place == abscissa
+            if same:
+                return number
+        raise ValueError(f"no element ends at {abscissa}")
 
     def element_of(self, X: FloatArray) -> Indices:
-        """Element in which each abscissa lies; a break belongs to the element it ends."""
-        inner = np.asarray(self.breaks[1:-1])
+        """Element in which each abscissa of the rod lies; an end belongs to the element it ends."""
+        inner = np.asarray(self.known_places[1:-1])
         # From the left: an abscissa that equals a break stands before it.
         elements = np.searchsorted(inner, X, side="left")
         return elements.astype(np.int64)
 
     def interpolation_matrix(self, X: FloatArray) -> FloatArray:
-        """Matrix from nodal values to values at abscissae X in [0, 1], shape (len(X), M)."""
+        """Matrix from nodal values to values at abscissae X of the rod, in [0, 1], shape (len(X), M)."""
         matrix = np.zeros((len(X), self.size))
         elements = self.element_of(X)
-        spans = self._spans()
+        spans = list(pairwise(self.known_places))
         for row, element in enumerate(elements):
             start, end = spans[element]
             local = (X[row] - start) / (end - start)
@@ -140,8 +223,8 @@ class Grid:
 
     @property
     def _nodes_by_element(self) -> FloatArray:
-        """Abscissae of the nodes, one element a row, shape (E, N + 1)."""
-        return self.nodes.reshape(self.elements, self._nodes_per_element)
+        """The nodes in the coordinate, one element a row, shape (E, N + 1)."""
+        return self.reference_nodes.reshape(self.elements, self._nodes_per_element)
 
     def _nodes_of(self, element: int) -> slice:
         """The nodes of an element among all nodes."""
@@ -156,5 +239,5 @@ class Grid:
         return mirrored.ravel()
 
     def _spans(self) -> list[tuple[float, float]]:
-        """Start and end of every element, base to tip."""
+        """Start and end of every element in the coordinate, base to tip."""
         return list(pairwise(self.breaks))

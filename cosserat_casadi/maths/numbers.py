@@ -120,11 +120,32 @@ def columns_times(table: Numbers, factors: Numbers) -> Numbers:
     return as_matrix(table) @ ca.diag(as_matrix(repeated(factors, count)))
 
 
-def row_times(factors: FloatArray, numbers: Numbers) -> Numbers:
-    """A vector, each entry times a known factor; one expression for all entries is repeated."""
-    if not is_symbolic(numbers):
-        return np.asarray(factors * numbers)
-    return ca.DM(factors) * numbers
+def row_times(factors: Numbers, numbers: Numbers) -> Numbers:
+    """A vector, each entry times a factor; one expression for all entries is repeated."""
+    if not any_symbolic([factors, numbers]):
+        return np.asarray(known(factors) * known(numbers))
+    times: Matrix = as_matrix(factors) * as_matrix(numbers)
+    return times
+
+
+def each_times(numbers: Numbers, factors: Numbers | None) -> Numbers:
+    """A vector, or each column of a table, entry by entry times factors, shape (k,); as it is without any."""
+    if factors is None or is_zero(numbers):
+        return numbers
+    if not any_symbolic([numbers, factors]):
+        own = known(numbers)
+        return own * known(factors).reshape(-1, *[1] * (own.ndim - 1))
+    table = as_matrix(repeated(numbers, factors.shape[0]))
+    scaled: Matrix = ca.horzcat(*[part * as_matrix(factors) for part in ca.horzsplit(table)])
+    return scaled
+
+
+def reciprocal(numbers: Numbers | None) -> Numbers | None:
+    """One over each entry; none of none."""
+    if numbers is None:
+        return None
+    inverse: Numbers = 1 / numbers
+    return inverse
 
 
 def repeated(numbers: Numbers, count: int) -> Numbers:
@@ -170,7 +191,10 @@ def without_rounding(entries: FloatArray) -> FloatArray:
 
 def _affine(numbers: Matrix) -> tuple[Matrix, FloatArray, FloatArray] | None:
     """The symbol p, constant and slope of numbers that are constant + slope p; None where they are not affine."""
-    (symbol,) = ca.symvar(numbers)
+    symbols = ca.symvar(numbers)
+    if len(symbols) != 1:
+        return None
+    (symbol,) = symbols
     if any(ca.which_depends(numbers, symbol, 2, False)):
         return None
     at_zero = ca.Function("numbers", [symbol], [numbers, ca.jacobian(numbers, symbol)])

@@ -108,6 +108,10 @@ class Model(functions.ModelFunctions, MotionFunctions):
         """Modes, nodes and element ends of every rod."""
         return {name: discrete_rod.discretisation for name, discrete_rod in self.discrete.rods.items()}
 
+    def element_ends(self, rod: str) -> tuple[float, ...]:
+        """Abscissae X at which the elements of a rod end, base to tip, with its parameters as they are here."""
+        return self.at().discrete.rods[rod].grid.known_places
+
     def operations(self, function: ca.Function) -> int:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
         return functions.operations(function)

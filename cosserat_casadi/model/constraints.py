@@ -83,6 +83,8 @@ def written_constraints(
     """
     before = _given_places(nominal)
     after = _given_places(scene)
+    # The section of a carrier moves along it; all others are tips.
+    carriers = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
     constraints = []
     for entry in placed:
         place = after[entry.where]
@@ -96,7 +98,8 @@ def written_constraints(
             place = Pose(place.position, sign * place.quaternion)
         else:
             place = NumericPose(place.position, sign * place.quaternion)
-        constraints.append(replace(entry, constraint=replace(entry.constraint, place=place)))
+        at = carriers.get(entry.where, entry.constraint.at)
+        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, place=place)))
     return constraints
 
 

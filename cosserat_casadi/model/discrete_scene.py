@@ -21,6 +21,7 @@ from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, Unlo
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout
+from cosserat_casadi.model.places import moved_ends
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.unknowns import Block, BlockKind, Unknowns
@@ -109,7 +110,7 @@ class DiscreteScene:
         record = self.records[rod]
         if any_symbolic([record.length, record.intrinsic.curvature, record.intrinsic.tangent]):
             return True
-        if any_symbolic([record.base.position, record.base.quaternion]):
+        if any_symbolic([record.base.position, record.base.quaternion, record.base.at]):
             return True
         return record.base.rod is not None and self.moves_unloaded(record.base.rod)
 
@@ -283,5 +284,6 @@ def with_numbers(
     for rod in scene.rods:
         scaling = nominal.rods[rod.name]
         properties = rod_properties(rod, scaling.properties)
-        rods[rod.name] = DiscreteRod(properties, scaling.discretisation)
+        ends = moved_ends(nominal.scene, scene, rod.name, scaling.discretisation.breaks)
+        rods[rod.name] = DiscreteRod(properties, scaling.discretisation, ends)
     return DiscreteScene(scene, nominal.layout, rods, parameters, nominal)

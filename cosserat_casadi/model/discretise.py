@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.rod.discretisation import Discretisation
 
 DEFAULT_MODES = 6
@@ -13,20 +13,6 @@ DEFAULT_MODES = 6
 
 DEFAULT_TRANSPORT = "magnus6"
 """Integration method of the rotation where neither the scene nor the caller gives one."""
-
-
-def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae at which a rod is cut: its ends and where a load, or a rod that it carries, makes a jump."""
-    cuts = {0.0, 1.0}
-    for record in scene.causes:
-        member = EFFECTS[record.kind]
-        if member.acts_on(record, rod):
-            cuts.update(member.breaks(record))
-    # The wrench of a carried rod is a point load on its carrier: the internal wrench jumps there.
-    for carried in scene.rods:
-        if carried.base.rod == rod:
-            cuts.add(carried.base.at)
-    return tuple(sorted(cuts))
 
 
 def nodes_for(modes: int) -> int:

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -440,17 +441,16 @@ def _interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matr
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
     rows = []
     for element in range(grid.elements):
-        start = grid.breaks[element]
-        end = grid.breaks[element + 1]
+        start, end = grid.places[element : element + 2]
         local = (X - start) / (end - start)
         weights = ca.DM(to_coefficients).T @ _chebyshev_values(grid.intervals, local)
         if grid.elements > 1:
-            weights = _inside(grid.breaks, element, X) * weights
+            weights = _inside(grid.places, element, X) * weights
         rows.append(weights)
     return ca.vertcat(*rows)
 
 
-def _inside(breaks: tuple[float, ...], element: int, X: Matrix) -> Matrix | int:
+def _inside(breaks: tuple[Scalar, ...], element: int, X: Matrix) -> Matrix | int:
     """1 where X lies in the element, which owns its tip-side end, else 0."""
     above: Matrix | int = 1
     below: Matrix | int = 1

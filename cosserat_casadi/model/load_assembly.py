@@ -12,9 +12,19 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.expressions import expressions_in
-from cosserat_casadi.loads.load import BodyPoint, Poses, Site, constant
+from cosserat_casadi.loads.load import BodyPoint, Site, UnloadedPoses, constant
 from cosserat_casadi.loads.trace import TracedLoad, has_potential, stored, traced
-from cosserat_casadi.maths.numbers import Scalar, among, as_matrix, as_vector, is_zero
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    among,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    is_symbolic,
+    is_zero,
+    known,
+)
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -161,11 +171,11 @@ def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
     at_nodes = np.eye(grid.size)[nodes]
     # A function: few loads ask for the unloaded poses, which take a walk along all carriers.
     poses = partial(unloaded_poses, discrete, rod, at_nodes)
-    return Site(discrete_rod.properties, grid.nodes[nodes], poses)
+    return Site(discrete_rod.properties, grid.nodes_at(nodes), poses)
 
 
-def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> Poses:
-    """World poses of sections in the unloaded scene, at the numbers that the scene gives.
+def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray) -> UnloadedPoses:
+    """World poses of sections in the unloaded scene: expressions where a parameter moves elements of the rod.
 
     Args:
         discrete: the scene.
@@ -179,18 +189,26 @@ def unloaded_poses(discrete: DiscreteScene, rod: str, interpolation: FloatArray)
         problem = "is bound to where the unloaded rod was, which parameters move"
         raise SceneError(Problem(f"a load on {rod!r}", problem, "name no length, base or intrinsic strain of this rod"))
     discrete_rod = discrete.rods[rod]
-    base = discrete.own_unloaded.base(rod)
+    # Where no parameter moves the unloaded rod, its base is where the scene's own numbers put it.
+    own = discrete.nominal if discrete.parameters.size else discrete
+    base = own.own_unloaded.base(rod)
     unloaded = shape(discrete_rod, ca.MX.zeros(discrete_rod.size), discrete_rod.properties.ratio)
-    nodal_position = _numbers(unloaded.position)
-    directors = [_numbers(director) @ interpolation.T for director in unloaded.directors]
+    nodal_position = _constant(unloaded.position)
+    directors = [_constant(director) for director in unloaded.directors]
+    to_sections = interpolation.T
+    if any_symbolic([nodal_position, *directors]):
+        origin = ca.repmat(ca.DM(base.position), 1, to_sections.shape[1])
+        columns = [ca.DM(base.rotation) @ as_matrix(director) @ ca.DM(to_sections) for director in directors]
+        return origin + ca.DM(base.rotation) @ as_matrix(nodal_position) @ ca.DM(to_sections), ca.vertcat(*columns)
+    position = base.position[:, None] + base.rotation @ known(nodal_position) @ to_sections
     # Column a of the rotation matrix is director a.
-    rotations = np.stack(directors, axis=-1).transpose(1, 0, 2)
-    position = base.position[:, None] + base.rotation @ nodal_position @ interpolation.T
-    return position, base.rotation @ rotations
+    return position, np.concatenate([base.rotation @ (known(director) @ to_sections) for director in directors])
 
 
-def _numbers(field: Matrix) -> FloatArray:
-    """Values of a constant expression."""
+def _constant(field: Matrix) -> Numbers:
+    """Values of a constant expression; an expression of parameters as it is."""
+    if is_symbolic(field) and ca.symvar(field):
+        return field
     values: FloatArray = ca.evalf(ca.densify(field)).full()
     return values
 

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -205,7 +206,7 @@ class MotionEnergy:
         rod_shape = self.system.shapes[rod]
         if isinstance(wrench, LineWrench):
             per_length = Statics(rod_shape, [wrench]).line(wrench, vector)
-            return dot(per_length, moved) @ ca.DM(rod_shape.rod.node_lengths)
+            return dot(per_length, moved) @ as_matrix(rod_shape.rod.node_lengths)
         node = rod_shape.rod.grid.node_at(wrench.at)
         if wrench.follower:
             vector = rod_shape.rotation_at(node) @ vector

@@ -8,7 +8,7 @@ that only scales the equations, such as EI/ℓ, is of the scene's own numbers, s
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -16,8 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.errors import Problem
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import any_symbolic
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.places import MovingEnds, moving_ends, places_on, unmovable
 from cosserat_casadi.model.stacked import StackedLayout
 from cosserat_casadi.scene.writing import scene_tables
 
@@ -68,10 +70,28 @@ class Parameter:
 
 @dataclass(frozen=True)
 class ParameterLayout(StackedLayout[Parameter]):
-    """The parameters of a model, stacked into one vector p."""
+    """The parameters of a model, stacked into one vector p.
+
+    Attributes:
+        moving: element ends that some of them move.
+    """
+
+    moving: tuple[MovingEnds, ...] = ()
 
     what = "a parameter"
     several = "parameters"
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked vector, from the scene's values and those given here.
+
+        Raises:
+            SceneError: a name is unknown, a value has another shape or is not finite, or places change their order.
+        """
+        p = super().pack(values)
+        problems = [problem for ends in self.moving for problem in ends.faults(p)]
+        if problems:
+            raise SceneError(*problems)
+        return p
 
     @cached_property
     def symbol(self) -> ca.MX:
@@ -107,8 +127,25 @@ class ParameterLayout(StackedLayout[Parameter]):
 
 
 def parameter_layout(scene: scenes.Scene) -> ParameterLayout:
-    """The parameters that a scene names."""
-    return ParameterLayout(tuple(Parameter(numbers) for numbers in scene.named_parameters()))
+    """The parameters that a scene names.
+
+    Raises:
+        SceneError: one of them would move a place that elements cannot follow.
+    """
+    layout = ParameterLayout(tuple(Parameter(numbers) for numbers in scene.named_parameters()))
+    problems: list[Problem] = []
+    movers: dict[str, tuple[str, ...]] = {}
+    for entry, span in layout:
+        values = [layout.symbol[i] for i in range(span.start, span.stop)]
+        written = scene.with_numbers(entry.numbers, values)
+        problems += unmovable(entry.name, scene, written)
+        for rod in scene.rods:
+            if any_symbolic(places_on(written, rod.name)):
+                movers[rod.name] = (*movers.get(rod.name, ()), entry.name)
+    if problems:
+        raise SceneError(*problems)
+    moving = moving_ends(scene, layout.written(scene, layout.symbol), layout.symbol, movers)
+    return replace(layout, moving=moving)
 
 
 NO_PARAMETERS = ParameterLayout(())

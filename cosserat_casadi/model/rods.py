@@ -23,9 +23,7 @@ from cosserat_casadi.maths.numbers import (
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod import section
-from cosserat_casadi.rod.properties import STRAINS, RodProperties
-
-Field = Callable[[FloatArray], Numbers]
+from cosserat_casadi.rod.properties import STRAINS, Field, RodProperties
 
 SMALLEST_FORCE = 1e-150
 """Least EI/ℓ² that can be computed with, N: its square is still a number."""
@@ -124,14 +122,15 @@ def _coefficients(component: Scalar | Sequence[Scalar]) -> tuple[Scalar, ...]:
 def _linear(value: Scalar | Sequence[Scalar]) -> Field:
     """A size along the rod: constant, or linear from base to tip."""
     if isinstance(value, int | float):
-        return lambda X: value + 0.0 * X
+        return lambda X: np.full(X.shape[0], float(value))
     if is_symbolic(value):
         # One stands for all abscissae.
         expression: Numbers = value
         return lambda X: expression
     assert isinstance(value, tuple)
     base, tip = value
-    return lambda X: base + (tip - base) * X
+    linear: Field = lambda X: base + (tip - base) * X  # noqa: E731
+    return linear
 
 
 def _shared(field: Field, *sizes: Any) -> Field:
@@ -139,7 +138,7 @@ def _shared(field: Field, *sizes: Any) -> Field:
     if any(isinstance(size, tuple) for size in sizes):
         return field
 
-    def at(X: FloatArray) -> Numbers:
+    def at(X: Numbers) -> Numbers:
         anywhere = field(X[:1])
         return anywhere if is_symbolic(anywhere) else field(X)
 
@@ -187,7 +186,7 @@ def _direct(given: scenes.Stiffness | scenes.Damping, left_out: float) -> Field:
 
 def _section_shape(
     shape: scenes.Circle | scenes.Annulus | scenes.Rectangle,
-) -> Callable[[FloatArray], section.SectionShape]:
+) -> Callable[[Numbers], section.SectionShape]:
     if isinstance(shape, scenes.Circle):
         radius = _linear(shape.radius)
         return lambda X: section.circle(_along(radius, X))
@@ -200,12 +199,9 @@ def _section_shape(
     return lambda X: section.rectangle(_along(width, X), _along(height, X))
 
 
-def _along(field: Field, X: FloatArray) -> Numbers:
+def _along(field: Field, X: Numbers) -> Numbers:
     """Values of a field at every abscissa."""
-    values = field(X)
-    if is_symbolic(values):
-        return repeated(values, len(X))
-    return np.broadcast_to(known(values), X.shape)
+    return repeated(field(X), X.shape[0])
 
 
 def _linear_density(rod: scenes.Rod) -> Field | None:
@@ -225,7 +221,7 @@ def _rotary_inertia(rod: scenes.Rod) -> Field | None:
         given = as_vector(rod.rotary_inertia)
         if is_symbolic(given):
             return lambda X: given.T
-        return lambda X: np.tile(known(given), (len(X), 1))
+        return lambda X: np.tile(known(given), (X.shape[0], 1))
     if rod.material is None or rod.section is None or rod.material.density is None:
         return None
     density = rod.material.density

@@ -15,7 +15,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.cable_length import SMOOTHING, CableLength, Elasticity
 from cosserat_casadi.constraints.section_constraint import Poses
-from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero
+from cosserat_casadi.maths.numbers import as_matrix, as_vector, is_zero, known
 from cosserat_casadi.maths.pose import IDENTITY, Pose
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -181,7 +181,7 @@ class System:
         masses = section_masses(rod)
         if masses is None:
             return 0.0
-        return float(rod.node_lengths @ masses.mass) * frame.length**2
+        return float(known(rod.node_lengths) @ masses.mass) * frame.length**2
 
     @cached_property
     def body_inertias(self) -> dict[FrameName, BodyInertia]:

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -135,7 +136,7 @@ def _entries(model: Model, x: FloatArray, inputs: FloatArray, motions: NumberArr
     displacements = []
     rotations = []
     for name, discrete_rod in model.discrete.rods.items():
-        shape = rod_shape(model, name, x, inputs, motions, discrete_rod.grid.nodes)
+        shape = rod_shape(model, name, x, inputs, motions, known(discrete_rod.grid.nodes))
         displacements.append(shape.position / discrete_rod.properties.length)
         rotations.append(shape.rotation)
     parts = [np.concatenate(displacements, axis=1), np.concatenate(rotations, axis=1)]

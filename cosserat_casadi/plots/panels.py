@@ -76,7 +76,7 @@ def draw_panel(panel: Any, solution: Solution, quantity: Quantity) -> None:
             labelled.add(label)
             axes.plot(SAMPLES, curve, label=shown_label, **style)
         # Fields may jump where one element ends and the next begins.
-        for element_end in discrete_rod.grid.breaks[1:-1]:
+        for element_end in discrete_rod.grid.known_places[1:-1]:
             panel.axvline(element_end, color="0.6", linewidth=0.8)
 
     panel.set_xlim(-0.01, 1.01)

@@ -37,8 +37,8 @@ def _mode_entries(modes: Modes) -> list[dict[str, Any]]:
     if not modes.modes:
         return []
     shapes: dict[str, RodShape] = {}
-    for name, discretisation in modes.model.discretisation.items():
-        shapes[name] = modes.shape(listed_abscissae(discretisation.breaks), name)
+    for name in modes.model.discretisation:
+        shapes[name] = modes.shape(listed_abscissae(modes.model.element_ends(name)), name)
     return [_mode_entry(mode, index, shapes) for index, mode in enumerate(modes.modes)]
 
 

@@ -141,7 +141,7 @@ def _inputs_over_time(motion: Motion) -> dict[str, FloatArray]:
 
 
 def _rod_entry(motion: Motion, name: str) -> dict[str, Any]:
-    X = listed_abscissae(motion.model.discretisation[name].breaks)
+    X = listed_abscissae(motion.model.element_ends(name))
     sections = motion.section(name, X)
     return {
         "tip": _pose_entry(motion.tip(name)),
@@ -168,7 +168,7 @@ def _columns(motion: Motion) -> Iterator[Column]:
         yield column, motion.inputs[:, index]
     for name in model.discrete.rods:
         yield from _pose_columns(f"{name}.tip", motion.tip(name))
-        X = listed_abscissae(model.discretisation[name].breaks)
+        X = listed_abscissae(model.element_ends(name))
         positions = motion.section(name, X).position
         for index, abscissa in enumerate(X.tolist()):
             yield from _vector_columns(f"{name}.X={abscissa:g}", positions[:, index], POSITION_COLUMNS)

@@ -60,7 +60,7 @@ def write_result(solution: Solution, path: str | Path) -> None:
 
 def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
     """Fields of a rod at its abscissae, its tip, and what its clamp exerts."""
-    breaks = solution.model.discretisation[name].breaks
+    breaks = solution.model.element_ends(name)
     X = listed_abscissae(breaks)
     pose = solution.pose(X, name)
     tip = solution.tip(name)

@@ -108,11 +108,10 @@ def _strain_coordinates(model: Model, data: Mapping[str, Any]) -> FloatArray:
         intrinsic = rod.properties.intrinsic_strain(X)
         # Strain coordinates are of the reference length, strains of the length that the rod has.
         deviation = (strain - intrinsic) * model.length_ratio(name, stacked)
-        elements = rod.grid.element_of(X)
         q = x[model.discrete.unknowns.strain(name)]
         for component, columns in rod.columns.items():
-            shape_functions = rod.shape_functions(component, X, elements)
-            q[columns] = np.linalg.lstsq(shape_functions, deviation[:, component], rcond=None)[0]
+            strain_of = rod.strain_of(component, X)
+            q[columns] = np.linalg.lstsq(strain_of, deviation[:, component], rcond=None)[0]
     return x
 
 

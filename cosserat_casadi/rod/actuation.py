@@ -160,5 +160,5 @@ class StrainSumOnRod(Lossless):
     @property
     def _weighted(self) -> list[Numbers]:
         """ℓ w g of each component, shape (M,)."""
-        lengths = self.shape.rod.node_lengths
+        lengths = self.shape.rod.reference_lengths
         return [row_times(lengths, row) for row in rows_of(self.quantity.densities)]

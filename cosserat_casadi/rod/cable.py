@@ -15,7 +15,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.grid import Indices
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_zero, rows_of
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_zero, rows_of
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Lossless
@@ -68,7 +68,8 @@ class RoutedCable(Lossless):
         kx, ky, kz, gx, gy, gz = self._strain
         dx, dy = self._offset
         length = self.shape.rod.length
-        slope_x, slope_y = (_constant(row / length) for row in rows_of(self.routing.slope))
+        rates = self.shape.rod.grid.rates_in(self._node_elements)
+        slope_x, slope_y = (_constant(each_times(row / length, rates)) for row in rows_of(self.routing.slope))
         return (
             added(gx, negative(product(kz, dy)), slope_x),
             added(gy, product(kz, dx), slope_y),
@@ -198,8 +199,13 @@ class RoutedCable(Lossless):
 
     @property
     def _node_lengths(self) -> FloatArray:
-        """Length of rod that each node of the routing stands for, ℓ w, shape (k,), m."""
-        return self.shape.rod.node_lengths[self.routing.nodes]
+        """What each node of the routing stands for in sums of what is per reference length, ℓ w, shape (k,), m."""
+        return self.shape.rod.reference_lengths[self.routing.nodes]
+
+    @property
+    def _node_elements(self) -> Indices:
+        """Element of each node of the routing, shape (k,)."""
+        return self.shape.rod.grid.element_of_node[self.routing.nodes]
 
 
 def _constant(row: Numbers) -> Row:

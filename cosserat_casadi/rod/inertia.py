@@ -56,13 +56,13 @@ def section_masses(rod: DiscreteRod) -> SectionMasses | None:
     if properties.linear_density is None:
         return None
     X = rod.grid.nodes
-    mass = repeated(properties.linear_density(X), len(X))
+    mass = repeated(properties.linear_density(X), X.shape[0])
     if properties.rotary_inertia is None:
         return SectionMasses(mass, {})
     along_axes = second_moments(properties.rotary_inertia(X))
     moments = {}
     for axis in _axes_with_moment(properties, along_axes):
-        moments[axis] = repeated(column(along_axes, axis), len(X))
+        moments[axis] = repeated(column(along_axes, axis), X.shape[0])
     return SectionMasses(mass, moments)
 
 

@@ -28,7 +28,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, cumulative_sum, hat_operator, sum_of_products
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, row_times
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, is_symbolic, known, product, row_times
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.inertia import RodInertia
 from cosserat_casadi.rod.motion import RodMotion, motion_kernels
@@ -217,12 +217,17 @@ class MotionTangent:
         integrate = rod.grid.integration_matrix
         if self.floating:
             integrate = np.hstack([integrate, np.ones((rod.grid.size, 1))])
-        mass = self.inertia.masses.mass
+        mass = self._node_mass
         if is_symbolic(mass):
             return self._symbolic_gram(integrate, mass)
         relative = known(mass) / self._largest_mass
         weighted = (rod.grid.weights * relative)[:, None] * integrate
         return np.asarray(integrate.T @ weighted)
+
+    @property
+    def _node_mass(self) -> Numbers:
+        """Mass at the nodes per length of the grid's coordinate, shape (M,), kg/m."""
+        return each_times(self.inertia.masses.mass, self.tangent.rod.node_rates)
 
     @property
     def _mass(self) -> float:
@@ -232,7 +237,7 @@ class MotionTangent:
     @property
     def _largest_mass(self) -> float:
         """Of any node, kg/m; one for a rod without mass, and where masses are expressions."""
-        mass = self.inertia.masses.mass
+        mass = self._node_mass
         if is_symbolic(mass):
             return 1.0
         return float(known(mass).max()) or 1.0
@@ -403,7 +408,7 @@ class MotionTangent:
         """P₂, P₁ and P₀ of the module's docstring on stacked fields, 3m×3m, times the lengths of the nodes."""
         nodes = self._nodes
         totals: list[Matrix] = [ca.DM(3 * len(nodes), 3 * len(nodes))] * 3
-        lengths = self.tangent.rod.node_lengths / self.unit
+        lengths: Numbers = self.tangent.rod.node_lengths / self.unit
         for axis, second_moment in self.inertia.masses.second_moments.items():
             weights = row_times(lengths, second_moment)[nodes]
             director = self.motion.shape.directors[axis][:, nodes]

@@ -15,8 +15,8 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.blocks import block_diagonal, unstack
-from cosserat_casadi.maths.numbers import as_matrix
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.numbers import Numbers, as_matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Wrench
 
@@ -50,11 +50,12 @@ class LoadedSections:
         return len(self.nodes) == self.shape.rod.grid.size
 
     @cached_property
-    def weights(self) -> FloatArray:
+    def weights(self) -> Numbers:
         """Weights of the sections in sums, shape (k,): metres of rod, or one."""
         if self.load.at is not None:
             return np.ones(1)
-        return self.shape.rod.node_lengths[self.nodes]
+        lengths: Numbers = self.shape.rod.node_lengths[self.nodes]
+        return lengths
 
     @cached_property
     def position(self) -> Matrix:
@@ -89,7 +90,7 @@ class LoadedSections:
         if function is None:
             return None
         (densities,) = self._mapped(function)
-        return self.load.scale * (densities @ ca.DM(self.weights))
+        return self.load.scale * (densities @ as_matrix(self.weights))
 
     @cached_property
     def stiffness(self) -> Matrix:
@@ -111,7 +112,7 @@ class LoadedSections:
     def weighted(self, variation: Matrix) -> Matrix:
         """Rows of stacked fields, 3k×n or 6k×n, each times the weight of its section."""
         components = variation.shape[0] // len(self.nodes)
-        weights = ca.DM(np.tile(self.weights, components))
+        weights = ca.repmat(as_matrix(self.weights), components, 1)
         return ca.diag(weights) @ variation
 
     @cached_property

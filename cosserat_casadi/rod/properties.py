@@ -5,12 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import casadi as ca
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from cosserat_casadi.maths.numbers import Numbers, Scalar, any_symbolic, as_vector, is_zero, known, side_by_side
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    Scalar,
+    any_symbolic,
+    as_matrix,
+    as_vector,
+    is_symbolic,
+    is_zero,
+    known,
+    side_by_side,
+)
+from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 
 Array = npt.NDArray[np.float64]
@@ -19,12 +29,17 @@ STRAINS = ("bending_x", "bending_y", "torsion", "shear_x", "shear_y", "extension
 """Names of the six strain components, in the order K_x, K_y, K_z, Γ_x, Γ_y, Γ_z."""
 
 
+Field = Callable[[Numbers], Numbers]
+"""A field along the rod: abscissae (k,) ↦ its values there."""
+
+
 @dataclass(frozen=True)
 class RodProperties:
     """A rod in its unloaded state.
 
-    The fields along the rod are arrays, or expressions of parameters with one row for each abscissa; a field that is
-    the same all along the rod may give one row for all.
+    The fields along the rod are functions of abscissae, which are numbers, or expressions where elements move. They
+    are arrays, or expressions of parameters with one row for each abscissa; a field that is the same all along the rod
+    may give one row for all.
 
     Attributes:
         name: the rod's name.
@@ -50,37 +65,38 @@ class RodProperties:
     length: float
     admitted: tuple[int, ...]
     basis: str
-    hooke: Callable[[Array], Numbers]
+    hooke: Field
     intrinsic: tuple[tuple[Scalar, ...], ...]
-    linear_density: Callable[[Array], Numbers] | None = None
-    rotary_inertia: Callable[[Array], Numbers] | None = None
-    damping: Callable[[Array], Numbers] | None = None
-    area: Callable[[Array], Numbers] | None = None
-    diameter: Callable[[Array], Numbers] | None = None
+    linear_density: Field | None = None
+    rotary_inertia: Field | None = None
+    damping: Field | None = None
+    area: Field | None = None
+    diameter: Field | None = None
     plane_sections: bool = False
     ratio: Matrix | None = None
     nominal: RodProperties | None = None
 
-    def intrinsic_strain(self, X: Array) -> Numbers:
+    def intrinsic_strain(self, X: Numbers) -> Numbers:
         """ξ⁰ at abscissae X, shape (len(X), 6)."""
         return self._along(self.intrinsic, X)
 
-    def intrinsic_curvature(self, X: Array) -> Numbers:
+    def intrinsic_curvature(self, X: Numbers) -> Numbers:
         """The three angular components of ξ⁰ at abscissae X, shape (len(X), 3), 1/m."""
         return self._along(self.intrinsic[:3], X)
 
     @staticmethod
-    def _along(components: tuple[tuple[Scalar, ...], ...], X: Array) -> Numbers:
+    def _along(components: tuple[tuple[Scalar, ...], ...], X: Numbers) -> Numbers:
         """Legendre series at abscissae, one column a component."""
+        count = X.shape[0]
         columns: list[Numbers] = []
         for coefficients in components:
-            if any_symbolic(coefficients):
-                polynomials = legendre.legvander(2 * X - 1, len(coefficients) - 1)
-                columns.append(ca.DM(polynomials) @ as_vector(coefficients))
-                continue
-            values = legendre.legval(2 * X - 1, np.asarray(coefficients))
-            # A constant gives one number for all abscissae.
-            columns.append(np.broadcast_to(values, X.shape))
+            if len(coefficients) == 1 and not any_symbolic(coefficients):
+                # A constant gives one number for all abscissae.
+                columns.append(np.full(count, coefficients[0]))
+            elif any_symbolic(coefficients) or is_symbolic(X):
+                columns.append(as_matrix(legendre_table(len(coefficients), X)) @ as_matrix(as_vector(coefficients)))
+            else:
+                columns.append(np.asarray(legendre.legval(2 * known(X) - 1, np.asarray(coefficients))))
         return side_by_side(columns)
 
     @property

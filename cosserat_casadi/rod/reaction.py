@@ -15,6 +15,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.blocks import hat_operator
+from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
@@ -143,7 +144,7 @@ class Reaction:
         """Sum over the sections of variations of a vector, 3×n."""
         if isinstance(wrench, PointWrench):
             return variation
-        lengths = ca.DM(self.tangent.rod.node_lengths).T
+        lengths = as_matrix(self.tangent.rod.node_lengths).T
         sums = ca.kron(ca.DM.eye(3), lengths)
         return sums @ variation
 
@@ -153,7 +154,7 @@ class Reaction:
         if isinstance(wrench, PointWrench):
             node = shape.rod.grid.node_at(wrench.at)
             return hat(shape.position_at(node))
-        lengths = ca.DM(shape.rod.node_lengths).T
+        lengths = as_matrix(shape.rod.node_lengths).T
         weighted = shape.position * ca.repmat(lengths, 3, 1)
         return _hat_row(weighted)
 

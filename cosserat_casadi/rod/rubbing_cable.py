@@ -240,12 +240,12 @@ class RubbingCable(RoutedCable):
 
     @property
     def _elements(self) -> FloatArray:
-        """Widths of the elements that the cable passes, shape (E,)."""
+        """Widths of the elements that the cable passes, in the grid's coordinate, shape (E,)."""
         grid = self.shape.rod.grid
         nodes = self.routing.nodes
         first = nodes[:: grid.intervals + 1]
         last = nodes[grid.intervals :: grid.intervals + 1]
-        return np.asarray(grid.nodes[last] - grid.nodes[first])
+        return np.asarray(grid.reference_nodes[last] - grid.reference_nodes[first])
 
     @property
     def _sections(self) -> list[int]:

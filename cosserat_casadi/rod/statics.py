@@ -175,7 +175,10 @@ class Statics:
             # δr of the node is this row of S times the variations of the tangents.
             row = grid.integration_matrix[grid.node_at(wrench.at)]
             return self._resultant(wrench, force) @ ca.DM(row).T
-        to_covector = rod.node_lengths[:, None] * grid.integration_matrix
+        if is_symbolic(rod.node_lengths):
+            per_node = self.line(wrench, force) @ ca.diag(rod.node_lengths)
+            return per_node @ ca.DM(grid.integration_matrix)
+        to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
         if wrench.follower or wrench.profiles is None:
             return self.line(wrench, force) @ ca.DM(to_covector)
         # Profiles are numbers: a dead force per length needs no product with S at run time.
@@ -192,13 +195,13 @@ class Statics:
             # The couple stands at one node alone.
             to_node = ca.DM(ca.Sparsity.triplet(1, grid.size, [0], [node]), 1.0)
             return self._resultant(wrench, moment) @ to_node
-        lengths = ca.DM(self.shape.rod.node_lengths)
+        lengths = as_matrix(self.shape.rod.node_lengths)
         return self.line(wrench, moment) @ ca.diag(lengths)
 
     def _resultant(self, wrench: Wrench, vector: Matrix) -> Matrix:
         """Sum of the forces or moments of a wrench, 3×1, base frame."""
         if isinstance(wrench, LineWrench):
-            lengths = ca.DM(self.shape.rod.node_lengths)
+            lengths = as_matrix(self.shape.rod.node_lengths)
             return self.line(wrench, vector) @ lengths
         if not wrench.follower:
             return vector
@@ -220,7 +223,11 @@ class Statics:
                 total = total + self._resultant(wrench, vector) @ ca.DM(before).T
             else:
                 to_tip = self.shape.rod.length * self._from_tip
-                total = total + self.line(wrench, vector) @ ca.DM(to_tip).T
+                per_length = self.line(wrench, vector)
+                rates = self.shape.rod.node_rates
+                if rates is not None:
+                    per_length = per_length @ ca.diag(as_matrix(rates))
+                total = total + per_length @ ca.DM(to_tip).T
         return total
 
     def _at_sections(self, covector: Matrix) -> Matrix:

@@ -4,7 +4,7 @@ See docs/theory.md section 2.
 
 A rod whose length ℓ is drawn out of a reference length ℓ₀ by a ratio ℓ/ℓ₀ is written in the strain per reference length
 (ℓ/ℓ₀) ξ: coordinates and constant matrices stay those of ℓ₀, the intrinsic strain takes the ratio, and the stiffness
-its inverse.
+its inverse. An element whose ends are elsewhere than in the grid is drawn out in the same way, by its own rate.
 
 The coordinates q are without unit. Φ carries a strain scale of its own for every component, √(EI/(ℓ² H)), so that
 the stiffness matrix divided by EI/ℓ has entries of order one whatever the slenderness: a rod with EA ℓ²/EI = 1e8
@@ -14,7 +14,7 @@ is as well conditioned as one with 1e2.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -24,23 +24,29 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from cosserat_casadi.maths import chebyshev, magnus
-from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.grid import Grid, Indices
 from cosserat_casadi.maths.numbers import (
     Numbers,
+    Scalar,
     any_symbolic,
     as_matrix,
     as_vector,
     column,
+    each_times,
     is_symbolic,
     is_zero,
     known,
     product,
+    reciprocal,
+    repeated,
+    row_times,
     without_rounding,
 )
+from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
-from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.rod.properties import Field, RodProperties
 
 Array = npt.NDArray[np.float64]
 
@@ -68,15 +74,17 @@ class DiscreteRod:
     Attributes:
         properties: what the rod is made of.
         discretisation: polynomials and grid.
+        ends: abscissae of the element ends, numbers or expressions; None where they are those of the discretisation.
     """
 
     properties: RodProperties
     discretisation: Discretisation
+    ends: tuple[Scalar, ...] | None = None
 
     @cached_property
     def grid(self) -> Grid:
         """The nodes of the rod."""
-        return self.discretisation.grid
+        return replace(self.discretisation.grid, ends=self.ends)
 
     @property
     def size(self) -> int:
@@ -133,8 +141,8 @@ class DiscreteRod:
             start = end
         return columns
 
-    def shape_functions(self, component: int, X: Array, element: npt.NDArray[np.int64]) -> Array:
-        """Φ_c at abscissae X seen from the given elements, report (2.4): shape (len(X), n_c)."""
+    def shape_functions(self, component: int, X: Array, element: Indices) -> Array:
+        """Φ_c at places X of the grid's coordinate, seen from the given elements, report (2.4): shape (len(X), n_c)."""
         number = self.admitted.index(component)
         modes = self.discretisation.modes[number]
         polynomials = _POLYNOMIALS[self.properties.basis]
@@ -150,7 +158,7 @@ class DiscreteRod:
             result[row, own] = values[row]
         return result
 
-    def degrees(self, component: int) -> npt.NDArray[np.int64]:
+    def degrees(self, component: int) -> Indices:
         """Degree of the polynomial of each coordinate of a component, shape (n_c,)."""
         number = self.admitted.index(component)
         degrees = np.arange(self.discretisation.modes[number])
@@ -191,16 +199,34 @@ class DiscreteRod:
     def at_nodes(self) -> dict[int, Array]:
         """Φ_c at the nodes, shape (M, n_c) for each admitted component c."""
         grid = self.grid
-        element = np.repeat(np.arange(grid.elements), grid.intervals + 1)
         values = {}
         for c in self.admitted:
-            values[c] = self.shape_functions(c, grid.nodes, element)
+            values[c] = self.shape_functions(c, grid.reference_nodes, grid.element_of_node)
         return values
 
     @cached_property
-    def node_lengths(self) -> Array:
-        """Length of rod that each node stands for in sums, ℓ w, shape (M,), m."""
+    def reference_lengths(self) -> Array:
+        """What each node stands for in sums over the coordinate that strains are per, ℓ w, shape (M,), m."""
         return np.asarray(self.length * self.grid.weights)
+
+    @cached_property
+    def node_lengths(self) -> Numbers:
+        """Length of rod that each node stands for in sums, shape (M,), m."""
+        return each_times(self.reference_lengths, self.node_rates)
+
+    @cached_property
+    def node_rates(self) -> Numbers | None:
+        """Rate dX of the rod's abscissa at the nodes, shape (M,); None where it is one."""
+        return self.grid.rates_in(self.grid.element_of_node)
+
+    def strain_of(self, component: int, X: Array) -> Array:
+        """Strain by each coordinate of a component at abscissae of a rod whose elements have known ends, (len(X), n_c).
+
+        A break is seen from the element it ends.
+        """
+        element = self.grid.element_of(X)
+        per_reference = self.shape_functions(component, self.grid.in_coordinate(X, element), element)
+        return known(each_times(per_reference, reciprocal(self.grid.rates_in(element))))
 
     def node_matrix(self, component: int) -> FoldedMatrix:
         """Φ_c at the nodes, M×n_c: modes meet sums or differences of mirrored nodes."""
@@ -220,12 +246,12 @@ class DiscreteRod:
             return np.zeros((self.size, self.size))
         return self._section_matrix(self.properties.damping)
 
-    def _section_matrix(self, diagonal: Callable[[Array], Numbers]) -> Numbers:
+    def _section_matrix(self, diagonal: Field) -> Numbers:
         """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n)."""
         points = [self._gauss_points(e) for e in range(self.grid.elements)]
-        coefficients = [diagonal(X) for X, _ in points]
+        coefficients = [self._per_element(diagonal, e, X) for e, (X, _) in enumerate(points)]
         if any_symbolic(coefficients):
-            return self._symbolic_section_matrix(diagonal)
+            return self._symbolic_section_matrix(coefficients)
         result = np.zeros((self.size, self.size))
         for e, (X, weight) in enumerate(points):
             weighted = known(coefficients[e]) * weight[:, None]
@@ -237,7 +263,7 @@ class DiscreteRod:
         return without_rounding(result)
 
     def _gauss_points(self, element: int) -> tuple[Array, Array]:
-        """Abscissae of an element, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
+        """Places of an element in the grid's coordinate, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
 
         Enough for the product of two polynomials with a section stiffness of degree four.
         """
@@ -248,13 +274,29 @@ class DiscreteRod:
         lengths = weights * width / 2 * self.length
         return X, lengths / self.energy_unit
 
-    def _symbolic_section_matrix(self, diagonal: Callable[[Array], Numbers]) -> Matrix:
+    def _per_element(self, diagonal: Field, element: int, X: Array) -> Numbers:
+        """Coefficients of strains per coordinate at places of an element, shape (k, 6) or one row for all."""
+        elements = np.full(len(X), element)
+        coefficients = diagonal(self.grid.on_rod(X, elements))
+        rate = self.grid.rates_in(elements)
+        if rate is None:
+            return coefficients
+        # One row for all times the one rate of the element.
+        return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))
+
+    def _symbolic_section_matrix(self, by_element: Sequence[Numbers]) -> Matrix:
         """The same where the coefficients are expressions: its entries are linear in them."""
         points = [self._gauss_points(e) for e in range(self.grid.elements)]
         element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
         X = np.concatenate([X for X, _ in points])
         weights = np.concatenate([weight for _, weight in points])
-        coefficients = as_matrix(diagonal(X))
+        alike = all(part.shape[0] == 1 for part in by_element) and self.ends is None
+        if alike:
+            # One row stands for all points of all elements.
+            coefficients = as_matrix(by_element[0])
+        else:
+            rows = [repeated(part, len(own)) for part, (own, _) in zip(by_element, points, strict=True)]
+            coefficients = ca.vertcat(*map(as_matrix, rows))
         blocks = []
         for c in self.columns:
             phi = self.shape_functions(c, X, element)
@@ -279,20 +321,22 @@ class DiscreteRod:
 
     def at(self, q: Matrix, X: Array, ratio: Matrix | float = 1.0) -> Matrix:
         """Strain ξ at any abscissae, 6×k, report (2.1); a break is seen from the element it ends."""
-        element = self.grid.element_of(X)
         intrinsic = self.properties.intrinsic_strain(X)
         rows = []
         for c in range(6):
             row = as_matrix(column(intrinsic, c)).T
             if c in self.columns:
-                phi = ca.DM(self.shape_functions(c, X, element))
+                phi = ca.DM(self.strain_of(c, X))
                 strain = phi @ q[self.columns[c]]
                 row = row + strain.T / ratio
             rows.append(row)
         return ca.vertcat(*rows)
 
     def strain_rows(self, q: Matrix, components: Sequence[int], ratio: Ratio = None) -> list[Matrix | None]:
-        """Components of (ℓ/ℓ₀) ξ at the nodes as 1×M rows; None for a row that is zero whatever the load."""
+        """Components of (ℓ/ℓ₀) ξ, times the rates of the elements, at the nodes as 1×M rows.
+
+        None for a row that is zero whatever the load.
+        """
         intrinsic = self.properties.intrinsic_strain(self.grid.nodes)
         # Strains that are neither admitted nor intrinsic stay zero, and cost nothing below.
         rows: list[Matrix | None] = []
@@ -300,7 +344,7 @@ class DiscreteRod:
             row = None
             own = column(intrinsic, c)
             if not is_zero(own):
-                row = per_reference_length(as_matrix(own).T, ratio)
+                row = per_reference_length(as_matrix(each_times(own, self.node_rates)).T, ratio)
             if c in self.columns:
                 varying = (self.node_matrix(c) @ q[self.columns[c]]).T
                 row = varying if row is None else row + varying
@@ -333,11 +377,13 @@ class DiscreteRod:
         """
         axes = list(self.properties.turning_axes)
         curvatures = self.properties.intrinsic[:3]
+        if is_symbolic(self.grid.nodes):
+            return self._moved_intrinsic_turn()
         if not any_symbolic(curvatures):
             return np.concatenate([taylor[:, axes].T for taylor in self.intrinsic_taylor])
         # The turn is linear in the Legendre coefficients.
-        highest = max(map(len, curvatures)) - 1
-        turns = self._taylor(lambda X, element: np.asarray(legendre.legvander(2 * X - 1, highest), dtype=float))
+        highest = max(map(len, curvatures))
+        turns = self._taylor(lambda X, element: self._on_rod(lambda at: legendre_table(highest, at), X, element))
         rows = []
         for order, turn in enumerate(turns):
             for axis in axes:
@@ -351,11 +397,33 @@ class DiscreteRod:
     @cached_property
     def intrinsic_taylor(self) -> list[Array]:
         """Taylor coefficients of an unloaded turn that is known: one (intervals, 3) array for each l."""
+        return self._taylor(lambda X, element: self._on_rod(self.properties.intrinsic_curvature, X, element))
 
-        def curvature(X: Array, element: npt.NDArray[np.int64]) -> Array:
-            return known(self.properties.intrinsic_curvature(X))
+    def _on_rod(self, field: Field, X: Array, element: Indices) -> Array:
+        """A field per length of the rod, per length of the grid's coordinate at places of it; all are known."""
+        values = field(self.grid.on_rod(X, element))
+        return known(each_times(values, self.grid.rates_in(element)))
 
-        return self._taylor(curvature)
+    def _moved_intrinsic_turn(self) -> Matrix:
+        """The same where element ends are expressions: the unloaded curvature is sampled where its elements are."""
+        X, element, lengths, to_taylor = self._taylor_samples
+        intrinsic = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
+        rates = self.grid.rates_in(element)
+        assert rates is not None, "asked for where elements move"
+        rates_of_intervals: Numbers = rates[:: len(X) // len(lengths)]
+        rows: list[Matrix] = []
+        for order, weights in enumerate(to_taylor):
+            summed = ca.sparsify(ca.DM(np.kron(np.diag(lengths), weights)))
+            for axis in self.properties.turning_axes:
+                own = self.properties.intrinsic[axis]
+                if len(own) <= order or is_zero(own):
+                    # A polynomial has no Taylor coefficient beyond its degree.
+                    rows.append(ca.DM(1, len(lengths)))
+                elif len(own) == 1:
+                    rows.append(as_matrix(row_times(lengths, rates_of_intervals)).T * own[0])
+                else:
+                    rows.append((summed @ as_matrix(each_times(column(intrinsic, axis), rates))).T)
+        return ca.vertcat(*rows)
 
     @cached_property
     def taylor_count(self) -> int:
@@ -364,14 +432,26 @@ class DiscreteRod:
             return 1
         return magnus.coefficient_count(self.magnus_order)
 
-    def _sampled_modes(self, X: Array, element: npt.NDArray[np.int64]) -> Array:
+    def _sampled_modes(self, X: Array, element: Indices) -> Array:
         samples = np.zeros((len(X), self.size))
         for c in self.angular:
             samples[:, self.columns[c]] = self.shape_functions(c, X, element)
         return samples
 
-    def _taylor(self, field: Callable[[Array, npt.NDArray[np.int64]], Array]) -> list[Array]:
+    def _taylor(self, field: Callable[[Array, Indices], Array]) -> list[Array]:
         """Taylor coefficients over every interval of ℓ h times a field sampled at Gauss points."""
+        X, element, lengths, to_taylor = self._taylor_samples
+        samples = field(X, element)
+        samples = samples.reshape(len(lengths), -1, samples.shape[1])
+        scaled = samples * lengths[:, None, None]
+        return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]
+
+    @cached_property
+    def _taylor_samples(self) -> tuple[Array, Indices, Array, Array]:
+        """Gauss points of all intervals with their elements, lengths ℓ h of the intervals, and samples ↦ coefficients.
+
+        Places are in the grid's coordinate; the matrix is one for all intervals, shape (count, points).
+        """
         degree = max([*self.discretisation.modes, *map(len, self.properties.intrinsic)])
         # Enough Gauss points for the field's own polynomials, so that ∫ K is exact.
         points = max(self.taylor_count, degree // 2 + 1)
@@ -382,9 +462,5 @@ class DiscreteRod:
         middle = (left + right) / 2
         X = middle[:, None] + width[:, None] * tau
         element = np.repeat(np.arange(self.grid.elements), self.grid.intervals * points)
-        samples = field(X.ravel(), element)
-        samples = samples.reshape(len(width), points, -1)
         # ∫ K ds over an interval: per X times ℓ, per interval times its width.
-        lengths = self.length * width
-        scaled = samples * lengths[:, None, None]
-        return [np.einsum("p,ipn->in", row, scaled) for row in to_taylor]
+        return X.ravel(), element, self.length * width, to_taylor

@@ -13,6 +13,7 @@ from functools import cached_property
 import casadi as ca
 
 from cosserat_casadi.maths.grid import Indices
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, each_times, reciprocal
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.actuation import Lossless
 from cosserat_casadi.rod.kinematics import Shape
@@ -33,7 +34,7 @@ class StrainDensity:
 
     density: Density
     nodes: Indices
-    data: FloatArray
+    data: Numbers
 
     def on(self, shape: Shape) -> StrainDensityOnRod:
         """The quantity on a rod of this shape."""
@@ -56,7 +57,8 @@ class StrainDensityOnRod(Lossless):
     def value(self) -> Matrix:
         """L, 1×1."""
         density, _, _ = self._at_nodes
-        return density @ ca.DM(self._node_lengths)
+        lengths = each_times(self._reference_lengths, self._rates)
+        return density @ as_matrix(lengths)
 
     @cached_property
     def gradient(self) -> Matrix:
@@ -66,7 +68,7 @@ class StrainDensityOnRod(Lossless):
         parts = []
         for c in rod.admitted:
             phi = rod.at_nodes[c][self.quantity.nodes]
-            weighted = phi * self._node_lengths[:, None]
+            weighted = phi * self._reference_lengths[:, None]
             parts.append(ca.DM(weighted).T @ gradient[c, :].T)
         return ca.vertcat(*parts)
 
@@ -77,7 +79,8 @@ class StrainDensityOnRod(Lossless):
         if not row.nnz():
             return None
         whole = type(row)(1, self.shape.rod.grid.size)
-        whole[self.quantity.nodes.tolist()] = row * ca.DM(self._node_lengths).T
+        weights = each_times(self._reference_lengths, reciprocal(self._rates))
+        whole[self.quantity.nodes.tolist()] = row * as_matrix(weights).T
         return whole
 
     @cached_property
@@ -88,8 +91,11 @@ class StrainDensityOnRod(Lossless):
         present = [c for c, row in enumerate(rows) if row is not None]
         zero = ca.DM(1, len(nodes))
         strain = ca.vertcat(*[zero if row is None else row[nodes] for row in rows])
+        if self._rates is not None:
+            # Rows are per length of the grid's coordinate, densities of strains per length of the rod.
+            strain = strain @ ca.diag(as_matrix(1 / self._rates))
         kernel = self._kernel(present).map(len(nodes))
-        density, gradient, second = kernel.call([strain, ca.DM(self.quantity.data)])
+        density, gradient, second = kernel.call([strain, as_matrix(self.quantity.data)])
         return density, gradient, second
 
     def _kernel(self, present: list[int]) -> ca.Function:
@@ -98,7 +104,7 @@ class StrainDensityOnRod(Lossless):
         first_column = [0] * len(present)
         pattern = ca.Sparsity.triplet(6, 1, present, first_column)
         strain = ca.SX.sym("strain", pattern)
-        data = ca.SX.sym("data", len(self.quantity.data))
+        data = ca.SX.sym("data", self.quantity.data.shape[0])
         # Called with symbols once; the map below evaluates what is differentiated here.
         density = self.quantity.density(strain, data)
         gradient = ca.jacobian(density, strain).T
@@ -107,6 +113,12 @@ class StrainDensityOnRod(Lossless):
         return ca.Function("density", [strain, data], results)
 
     @property
-    def _node_lengths(self) -> FloatArray:
-        """Length of rod that each node of the span stands for, ℓ w, shape (k,), m."""
-        return self.shape.rod.node_lengths[self.quantity.nodes]
+    def _reference_lengths(self) -> FloatArray:
+        """What each node of the span stands for in sums of what is per reference length, ℓ w, shape (k,), m."""
+        return self.shape.rod.reference_lengths[self.quantity.nodes]
+
+    @property
+    def _rates(self) -> Numbers | None:
+        """Rate of the rod's abscissa at the nodes of the span, shape (k,); None where it is one."""
+        grid = self.shape.rod.grid
+        return grid.rates_in(grid.element_of_node[self.quantity.nodes])

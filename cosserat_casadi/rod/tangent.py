@@ -32,6 +32,7 @@ from cosserat_casadi.maths.blocks import (
     hat_operator,
     reversed_places,
 )
+from cosserat_casadi.maths.numbers import is_symbolic, known
 from cosserat_casadi.maths.rotation import cross, hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix
@@ -306,7 +307,11 @@ class Tangent:
         grid = self.rod.grid
         per_length = self.igm.statics.line(wrench, force)
         turned = -(hat_operator(per_length) @ self.rotation)
-        to_covector = ca.DM(self.rod.node_lengths[:, None] * grid.integration_matrix).T
+        lengths = self.rod.node_lengths
+        if is_symbolic(lengths):
+            to_covector = ca.DM(grid.integration_matrix).T @ ca.diag(lengths)
+        else:
+            to_covector = ca.DM(known(lengths)[:, None] * grid.integration_matrix).T
         components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]
         return ca.vertcat(*components)
 

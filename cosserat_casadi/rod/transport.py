@@ -15,7 +15,7 @@ import casadi as ca
 
 from cosserat_casadi.maths import magnus
 from cosserat_casadi.maths.blocks import unstack
-from cosserat_casadi.maths.numbers import as_matrix, column
+from cosserat_casadi.maths.numbers import as_matrix, column, each_times
 from cosserat_casadi.maths.permuted import permuted_system
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_rate_matrix, quaternion_to_matrix
 from cosserat_casadi.maths.typing import Matrix
@@ -276,7 +276,8 @@ def _curvature(rod: DiscreteRod, q: Matrix, ratio: Ratio) -> Matrix:
     intrinsic = rod.properties.intrinsic_curvature(rod.grid.nodes)
     rows = []
     for axis in range(3):
-        row = per_reference_length(as_matrix(column(intrinsic, axis)).T, ratio)
+        own = each_times(column(intrinsic, axis), rod.node_rates)
+        row = per_reference_length(as_matrix(own).T, ratio)
         if axis in rod.columns:
             varying = ca.DM(rod.at_nodes[axis]) @ q[rod.columns[axis]]
             row = row + varying.T

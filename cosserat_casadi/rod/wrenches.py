@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cosserat_casadi.maths.numbers import Numbers
+from cosserat_casadi.maths.numbers import Numbers, Scalar
 from cosserat_casadi.maths.shapes import check_shape
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.motion import RodMotion
@@ -20,13 +20,13 @@ class PointWrench:
     """Force and moment on one section.
 
     Attributes:
-        at: abscissa X of the section, a break of the rod's grid.
+        at: abscissa X of the section, an element end of the rod's grid.
         force: 3×1, N, or None.
         moment: 3×1, N m, or None.
         follower: whether the wrench turns with the section.
     """
 
-    at: float
+    at: Scalar
     force: Matrix | None
     moment: Matrix | None
     follower: bool
@@ -65,8 +65,8 @@ class PoseWrench:
     """A wrench that depends on the position or the rotation of its section, in any way but turning with it.
 
     Attributes:
-        at: abscissa X of the section, a break of the rod's grid; None for a wrench per metre of undeformed length.
-        span: abscissae X between which a wrench per metre acts, breaks of the grid.
+        at: abscissa X of the section, an element end of the grid; None for a wrench per metre of undeformed length.
+        span: abscissae X between which a wrench per metre acts, element ends of the grid.
         kernel: force and moment as a function of a section's pose.
         base_position: world position of the rod's base, 3×1, m.
         base_rotation: world_R_base, 3×3.
@@ -76,8 +76,8 @@ class PoseWrench:
         motion: of the rod; None at rest, and for a kernel that does not depend on rates.
     """
 
-    at: float | None
-    span: tuple[float, float]
+    at: Scalar | None
+    span: tuple[Scalar, Scalar]
     kernel: SectionKernel
     base_position: Matrix
     base_rotation: Matrix

@@ -26,6 +26,9 @@ from cosserat_casadi.scene.spelling import closest
 PARAMETER_LISTS = ("loads", "actuators", "rods", "bodies", "joints", "supports")
 """Lists of a scene whose numbers may be parameters; of entries with one name, that which has the key is meant."""
 
+SPAN = ("start", "end")
+"""Names of the two abscissae of a span."""
+
 Cell = tuple[int, int]
 """A number of a key: its component, and its place along the rod."""
 
@@ -212,7 +215,7 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
     if remaining and rows > 1:
-        words = AXES.get(rows, AXES[3][:rows])
+        words = SPAN if form is Form.VECTOR and rows == len(SPAN) else AXES.get(rows, AXES[3][:rows])
         row = _part(remaining.pop(0), words, rows, "component")
         chosen_rows = [row]
         columns = lengths[row]

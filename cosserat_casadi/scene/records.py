@@ -97,9 +97,6 @@ class Record(BaseModel):
 
     def parameter_refusal(self, key: str) -> tuple[str, str] | None:
         """Why the numbers of a key cannot be a parameter, and what to do instead; None where they can."""
-        # Elements end at abscissae, and constant matrices are made for the elements.
-        if key in ("at", "span"):
-            return "is where elements end: they do not move", "build a scene for each value"
         return None
 
     @model_validator(mode="wrap")

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from typing import Any, ClassVar, Literal
 
 import casadi as ca
-import numpy as np
 
 from cosserat_casadi import Scene, scene_from_dict
 from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.numbers import Numbers, rows_of, stacked_rows
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
@@ -148,9 +148,8 @@ class Bed(Load[Any]):
         turned = 3 - ca.dot(ca.vec(section.rotation), section.data[3:])
         return values["strength"] * (ca.sumsqr(apart) / 2 + 0.1 * turned)
 
-    def data(self, load: Any, site: Site) -> FloatArray:
-        columns = np.transpose(site.unloaded_rotation, (2, 1, 0)).reshape(9, -1)
-        return np.vstack([site.unloaded_position, columns])
+    def data(self, load: Any, site: Site) -> Numbers:
+        return stacked_rows([*rows_of(site.unloaded_position), *rows_of(site.unloaded_rotation)])
 
 
 class Whirl(Load[Any]):

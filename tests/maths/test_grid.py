@@ -1,5 +1,6 @@
 """Grids of one or several elements: exact on polynomials, with both sides of every break."""
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
@@ -7,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import known
 
 BREAKS = [(0.0, 1.0), (0.0, 0.3, 1.0), (0.0, 0.125, 0.5, 0.9, 1.0)]
 GRIDS = [Grid(breaks, N) for breaks in BREAKS for N in (1, 2, 5, 12)]
@@ -99,7 +101,7 @@ def test_node_at_vs_the_last_node_of_its_element(grid):
 
 
 def test_node_at_vs_an_abscissa_that_is_no_break():
-    with pytest.raises(ValueError, match="not in tuple"):
+    with pytest.raises(ValueError, match="no element ends at"):
         Grid((0.0, 0.5, 1.0), 4).node_at(0.3)
 
 
@@ -127,3 +129,42 @@ def test_mirrored_nodes_and_intervals_vs_reflected_abscissae(grid):
 
     assert_allclose(grid.nodes[grid.mirrored_nodes], reflected(grid.nodes), rtol=1e-14, atol=1e-15)
     assert_allclose(grid.left_ends[grid.mirrored_intervals], reflected(grid.right_ends), rtol=1e-14, atol=1e-15)
+
+
+# Element ends elsewhere than the breaks.
+
+MOVED = Grid((0.0, 0.3, 0.7, 1.0), 6, (0.0, 0.42, 0.55, 1.0))
+THERE = Grid((0.0, 0.42, 0.55, 1.0), 6)
+
+
+def test_a_moved_grid_vs_one_made_there():
+    rates = known(MOVED.rates_in(MOVED.element_of_node))
+    X = np.linspace(0, 1, 23)
+    assert_allclose(MOVED.nodes, THERE.nodes, rtol=0, atol=1e-15)
+    assert_allclose(MOVED.weights * rates, THERE.weights, rtol=1e-14, atol=0)
+    assert_allclose(MOVED.integration_matrix * rates, THERE.integration_matrix, rtol=1e-13, atol=1e-16)
+    assert_allclose(MOVED.interpolation_matrix(X), THERE.interpolation_matrix(X), rtol=1e-13, atol=1e-14)
+    assert MOVED.node_at(0.42) == THERE.node_at(0.42)
+    assert MOVED.nodes_in(0.42, 1.0).tolist() == THERE.nodes_in(0.42, 1.0).tolist()
+
+
+def test_places_of_a_moved_grid_there_and_back():
+    X = np.linspace(0, 1, 23)
+    elements = MOVED.element_of(X)
+    in_coordinate = MOVED.in_coordinate(X, elements)
+    assert np.all(MOVED.element_of(X) == Grid(MOVED.breaks, 6).element_of(in_coordinate))
+    assert_allclose(MOVED.on_rod(in_coordinate, elements), X, rtol=0, atol=1e-15)
+
+
+def test_ends_that_are_expressions_vs_their_numbers():
+    s = ca.MX.sym("s", 2)
+    first, second = s[0], s[1]
+    grid = Grid(MOVED.breaks, 6, (0.0, first, second, 1.0))
+    values = ca.Function("values", [s], [grid.nodes, grid.rates])
+    nodes, rates = values([0.42, 0.55])
+    assert_allclose(nodes.full()[:, 0], THERE.nodes, rtol=0, atol=1e-15)
+    assert_allclose(rates.full()[:, 0], MOVED.rates, rtol=1e-14, atol=0)
+    assert grid.node_at(first) == THERE.node_at(0.42)
+    assert grid.nodes_in(first, second).tolist() == THERE.nodes_in(0.42, 0.55).tolist()
+    with pytest.raises(ValueError, match="no element ends at"):
+        grid.node_at(0.42)

@@ -101,6 +101,26 @@ PLATFORM: dict[str, Any] = {
     "inputs": ["pull.force"],
 }
 
+POKES = [
+    {"name": "poke", "kind": "point_wrench", "rod": "wire", "at": 0.4, "force": [0.5, 0.2, -0.3]},
+    {"name": "prod", "kind": "point_wrench", "rod": "wire", "at": 0.7, "moment": [0.02, 0.1, 0.05], "frame": "body"},
+]
+
+WIND = {
+    "name": "wind",
+    "kind": "distributed_wrench",
+    "rod": "wire",
+    "force": [[0.3, -0.2, 0.1], 0.1, 0.0],
+    "moment": [0.0, 0.0, [0.02, 0.01]],
+    "frame": "body",
+}
+
+SPANNED = [
+    {**CABLES[0], "span": [0.0, 0.6]},
+    {**CABLES[1], "span": [0.4, 0.8]},
+    {**CABLES[2], "span": [0.2, 1.0]},
+]
+
 ROPES = [
     {"name": "rope", "kind": "tendon", "rod": "wire", "length": 0.8, "offset": [8e-3, 0.0]},
     {"name": "line", "kind": "tendon", "rod": "wire", "length": 0.82, "slack": True, "offset": [0.0, 8e-3]},
@@ -188,6 +208,67 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "place of a branch": (
         {"schema": 1, **BRANCH},
         {"twig.base.position": [0.01, 0.02, 0], "twig.base.quaternion": [0.6, 0, 0.8, 0], "tip.position.y": 0.02},
+    ),
+    "places of loads": (
+        tables(WIRE, loads=[*POKES, WIND, WEIGHT], inputs=["poke.force", "wind.force"]),
+        {"poke.at": 0.5, "prod.at": 0.77},
+    ),
+    "spans of tendons and chambers": (
+        tables(ELASTIC, actuators=SPANNED),
+        {"east.span[1]": 0.55, "coil.span": [0.3, 0.75], "air.span[0]": 0.24},
+    ),
+    "span of a rubbing tendon": (
+        tables(ELASTIC, actuators=[{**SPANNED[1], "friction": 0.2}]),
+        {"coil.span[1]": 0.8},
+    ),
+    "span of a cable of given length": (
+        tables(ELASTIC, actuators=[{**ROPES[0], "length": 0.5, "span": [0.0, 0.65]}]),
+        {"rope.span[1]": 0.6, "rope.length": 0.47, "wire.length": 0.77},
+    ),
+    "place of a carried rod": (
+        {"schema": 1, **BRANCH},
+        {"twig.base.at": 0.62},
+    ),
+    "span of a foundation": (
+        streaming(
+            {**WIRE, "base": {"position": [0.1, 0, 0.2], "quaternion": [0.8, 0, 0.6, 0]}},
+            {
+                "name": "bed",
+                "kind": "foundation",
+                "rod": "wire",
+                "stiffness": [40.0, 30.0, 10.0],
+                "frame": "body",
+                "span": [0.35, 0.7],
+            },
+        ),
+        {"bed.span": [0.25, 0.8], "wire.material.youngs_modulus": 1.7e9},
+    ),
+    "place of a magnet, past other loads": (
+        tables(
+            WIRE,
+            loads=[
+                {
+                    "name": "magnet",
+                    "kind": "magnet",
+                    "rod": "wire",
+                    "at": 0.6,
+                    "moment": [0, 0, 0.4],
+                    "field": [0.1, 0.02, 0.01],
+                },
+                {
+                    "name": "stream",
+                    "kind": "flow",
+                    "density": 900.0,
+                    "velocity": [0.4, 0.1, 0],
+                    "normal": 1.1,
+                    "tangential": 0.02,
+                    "added_mass": 1.0,
+                    "gravity": [0, 0, -9.81],
+                },
+            ],
+            inputs=[],
+        ),
+        {"magnet.at": 0.72},
     ),
     "a stream": (
         streaming(
@@ -281,7 +362,10 @@ def scene_of(case: str) -> Scene:
 
 
 def model_of(case: str) -> Model:
-    scene = scene_of(case)
+    return resolved(scene_of(case))
+
+
+def resolved(scene: Scene) -> Model:
     # Parameters of an assembly are those of its rods and frames: few modes show them.
     modes, nodes = (2, 4) if len(scene.rods) > 1 else (4, 8)
     return build(scene, discretise(scene, modes, nodes), moving=True)
@@ -426,6 +510,13 @@ EQUILIBRIA = (
     "places of hinges and slides",
     "place of a branch",
     "bodies",
+    "places of loads",
+    "spans of tendons and chambers",
+    "span of a rubbing tendon",
+    "span of a cable of given length",
+    "place of a carried rod",
+    "span of a foundation",
+    "place of a magnet, past other loads",
 )
 """Cases whose parameters move an equilibrium."""
 
@@ -436,8 +527,7 @@ def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
     model = model_of(case)
     values = CASES[case][1]
     found = solve(model, parameters=values)
-    rebuilt = build(model.parameters.set_in(model.scene, values), model.discretisation, moving=True)
-    wanted = solve(rebuilt)
+    wanted = solve(resolved(model.parameters.set_in(model.scene, values)))
     assert found.converged
     assert wanted.converged
     for rod in model.discrete.rods:
@@ -496,6 +586,69 @@ def test_values_that_the_scene_refuses_are_refused() -> None:
         model.at([0.01, 0.02])
     with pytest.raises(SceneError, match="is not a parameter of this model"):
         model.at().at({"wire.section.inner_radius": 0.004})
+
+
+def test_places_keep_their_order() -> None:
+    given, values = CASES["places of loads"]
+    model = build(scene_from_dict({**given, "parameters": list(values)}))
+    sentence = r"poke.at, prod.at: the elements of 'wire' would end at X = 0, 0\.8, 0\.75, 1: .*keep their order"
+    for refuse in (model.at, model.parameters.pack, lambda values: solve(model, parameters=values)):
+        with pytest.raises(SceneError, match=sentence):
+            refuse({"poke.at": 0.8, "prod.at": 0.75})
+    with pytest.raises(SceneError, match="keep their order"):
+        model.at({"prod.at": 1.0})
+    with pytest.raises(SceneError, match="keep their order"):
+        model.at({"poke.at": 0.0})
+
+
+def test_places_that_cannot_move_are_refused_with_what_to_do() -> None:
+    given, _ = CASES["spans of tendons and chambers"]
+    scene = scene_from_dict({**given, "parameters": ["east.span", "air.span.end"]})
+    with pytest.raises(SceneError, match="which does not move along it") as refused:
+        build(scene)
+    assert [problem.where for problem in refused.value.problems] == ["east.span", "air.span.end"]
+    loads = [{**POKES[0], "at": 0.7}, POKES[1], WEIGHT]
+    with pytest.raises(SceneError, match="where something else is that does not move with it"):
+        build(scene_from_dict(tables(WIRE, "poke.at", loads=loads, inputs=[])))
+
+
+def test_the_response_of_the_tip_to_a_place_against_scenes_of_their_own() -> None:
+    """dx/ds = −J⁻¹ ∂r/∂s, and the tip moves with x and with s: all of it by differences of other models."""
+    name = "poke.at"
+    given, _ = CASES["places of loads"]
+    model = resolved(scene_from_dict({**given, "parameters": [name]}))
+    found = solve(model)
+    p = model.parameters.pack()
+    jacobian, _ = model.jacobian(found.x, found.inputs, p)
+    by_place = -np.linalg.solve(jacobian.full(), model.parameter_jacobian(found.x, found.inputs, p).full())
+    x, s = ca.MX.sym("x", model.size), model.parameters.symbol
+    tip = model.tip["wire"](x, found.inputs, s)[0]
+    at_equilibrium = ca.Function("tip", [x, s], [ca.jacobian(tip, x), ca.jacobian(tip, s)])
+    with_x, with_s = (part.full() for part in at_equilibrium(found.x, p))
+    response = (with_x @ by_place + with_s)[:, 0]
+    step = 1e-4
+    tips = [
+        solve(resolved(model.parameters.set_in(model.scene, {name: p[0] + sign * step}))).tip("wire").position
+        for sign in (1, -1)
+    ]
+    difference = (tips[0] - tips[1]).ravel() / (2 * step)
+    assert_allclose(response, difference, rtol=1e-6, atol=1e-7 * np.abs(difference).max())
+
+
+def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
+    """Errors of the tip against many modes, at a place that a parameter has moved far."""
+    values = {"poke.at": 0.62, "prod.at": 0.9}
+    given, _ = CASES["places of loads"]
+    scene = scene_from_dict({**given, "parameters": list(values)})
+
+    def tip(modes: int) -> FloatArray:
+        model = build(scene, discretise(scene, modes, 2 * modes + 4))
+        return solve(model, parameters=values).tip("wire").position
+
+    finest = tip(8)
+    errors = [np.linalg.norm(tip(modes) - finest) for modes in (2, 3, 4, 5)]
+    # Spectral: every further mode gains more than a digit, as on a grid that was made there.
+    assert np.all(np.diff(np.log10(errors)) < -1.0)
 
 
 def test_functions_in_c_are_refused_with_what_to_do(tmp_path: Path) -> None:

@@ -51,6 +51,10 @@ NAMED = {
     "plate.mass": ("kg", [[0.1]]),
     "joints[0].position.z": ("m", [[0]]),
     "push.moment": ("N m", [[0], [0], [0]]),
+    "push.at": ("1", [[0.5]]),
+    "coil.span": ("1", [[0], [1]]),
+    "coil.span.end": ("1", [[1]]),
+    "coil.span[0]": ("1", [[0]]),
     "east.tension": ("N", [[1]]),
 }
 
@@ -96,8 +100,7 @@ REFUSED = {
     "wire.intrinsic.curvature.x[1]": ("has no part '1'", "give it in the scene: it may be zero"),
     "wire.length[1]": ("has no part '1'", "give it in the scene: it may be zero"),
     "accuracy.modes": ("no rod, load, actuator, body, joint or support is named 'accuracy'", ""),
-    "push.at": ("is where elements end: they do not move", "build a scene for each value"),
-    "coil.span": ("is where elements end: they do not move", ""),
+    "coil.span.middle": ("has no component 'middle'", "components: start, end"),
     "side.base.quaternion": ("is given by a direction", "give the quaternion instead, and name that"),
     "side.base.tangent.x": ("is given by a direction", ""),
     "joints[0].axis": ("is an axis, which decides the directions that the joint holds", ""),
