@@ -12,9 +12,9 @@ from typing import Any, ClassVar, Literal, final
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.loads.load import Load, Section, Site
-from cosserat_casadi.maths.chebyshev import legendre_polynomials
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.loads.load import Load, Section, Site, polynomials_at
+from cosserat_casadi.maths.numbers import Numbers, Scalar
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.loads import LoadRecord
@@ -28,7 +28,7 @@ class ContactLine(LoadRecord):
     kind: Literal["contact_line"] = "contact_line"
     rod: str
     obstacle: Any
-    span: tuple[float, float]
+    span: Any
     force: tuple[tuple[float, ...]]
 
 
@@ -38,7 +38,7 @@ class ContactLineLoad(Load[ContactLine]):
 
     record = ContactLine
 
-    def span(self, load: ContactLine) -> tuple[float, float]:
+    def span(self, load: ContactLine) -> tuple[Scalar, Scalar]:
         """The stretch that lies on the obstacle."""
         return load.span
 
@@ -47,12 +47,11 @@ class ContactLineLoad(Load[ContactLine]):
         force = ca.mtimes(values["force"], section.data)
         return -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
 
-    def profiles(self, load: ContactLine, rod: object, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: ContactLine, rod: object, X: Numbers, columns: int) -> Numbers:
         """One: λ varies with the data of the sections."""
-        return np.ones((columns, len(X)))
+        return np.ones((columns, X.shape[0]))
 
-    def data(self, load: ContactLine, site: Site) -> FloatArray:
+    def data(self, load: ContactLine, site: Site) -> Numbers:
         """Values of the Legendre polynomials over the stretch."""
         start, end = load.span
-        local = (site.X - start) / (end - start)
-        return np.asarray(legendre_polynomials(len(load.force[0]), local).T)
+        return polynomials_at(len(load.force[0]), (site.X - start) / (end - start))

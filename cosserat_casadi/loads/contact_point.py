@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, final
 
 from cosserat_casadi.loads.load import Load, Section
+from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.scene.inputs import InputField
@@ -24,7 +25,7 @@ class ContactPoint(LoadRecord):
     kind: Literal["contact_point"] = "contact_point"
     rod: str
     obstacle: Any
-    at: float
+    at: Any
     force: float
 
 
@@ -34,7 +35,7 @@ class ContactPointLoad(Load[ContactPoint]):
 
     record = ContactPoint
 
-    def abscissa(self, load: ContactPoint) -> float:
+    def abscissa(self, load: ContactPoint) -> Scalar:
         """The section that is touched."""
         return load.at
 

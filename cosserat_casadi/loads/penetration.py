@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.rod.properties import RodProperties
@@ -43,13 +44,13 @@ class PenetrationLoad(Load[Penetration]):
         depth = ca.fmax(section.data[0] - distance, 0.0)
         return values["stiffness"] / 3 * depth**3
 
-    def profiles(self, load: Penetration, rod: object, X: FloatArray, columns: int) -> FloatArray:
+    def profiles(self, load: Penetration, rod: object, X: Numbers, columns: int) -> Numbers:
         """One all along the rod."""
-        return np.ones((columns, len(X)))
+        return np.ones((columns, X.shape[0]))
 
     def data(self, load: Penetration, site: Site) -> FloatArray:
         """Radius of the sections, m."""
-        return section_radius(site.rod, site.X)[None, :]
+        return section_radius(site.rod, known(site.X))[None, :]
 
 
 def section_radius(rod: RodProperties, X: FloatArray) -> FloatArray:

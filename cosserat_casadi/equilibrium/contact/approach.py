@@ -21,7 +21,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import Penetration
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.model.discretise import element_ends
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
 from cosserat_casadi.numerics.progress import Progress

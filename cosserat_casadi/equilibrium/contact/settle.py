@@ -207,15 +207,15 @@ class Settling:
     def solve(self, state: ContactState, near: Solution) -> Found | None:
         """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
         equations = ContactEquations(self.scene, self.given, self.grids, state)
-        placed = equations.placed(state.places)
-        x = projected(near, placed.model)
-        start = np.concatenate([x, placed.fitting_forces(x), state.places])
+        x = projected(near, equations.nominal.model)
+        start = np.concatenate([x, equations.nominal.fitting_forces(x), state.places])
         result = newton(equations.equations, start, self.newton)
         self.iterations += result.iterations
         if result.outcome is not Outcome.CONVERGED:
             return None
         x, forces, places = equations.parts(result.x)
-        placed = equations.placed(places)
+        placed = equations.placed(state.at(places.tolist()))
+        x = equations.fixed_in(x, places, placed)
         solution = Solution(
             placed.model,
             placed.inputs(forces),

@@ -10,6 +10,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
+from cosserat_casadi.maths.numbers import Scalar, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
 
 TIP = 1.0
@@ -33,8 +34,8 @@ class Touch:
 
     obstacle: str
     rod: str
-    start: float
-    end: float
+    start: Scalar
+    end: Scalar
     is_line: bool = False
 
     @classmethod
@@ -48,23 +49,33 @@ class Touch:
         return cls(obstacle, rod, start, end, is_line=True)
 
     @property
-    def ends(self) -> tuple[float, ...]:
+    def ends(self) -> tuple[Scalar, ...]:
         """Abscissae of the one point, or of both ends."""
         return (self.start, self.end) if self.is_line else (self.start,)
 
     @property
-    def moving(self) -> tuple[float, ...]:
-        """Those of its ends that are sought: all but the tip."""
-        return tuple(end for end in self.ends if end < TIP)
+    def moves(self) -> tuple[bool, ...]:
+        """Whether each of its ends is sought: all but the tip."""
+        return tuple(is_symbolic(end) or end < TIP for end in self.ends)
+
+    @property
+    def moving(self) -> tuple[Scalar, ...]:
+        """Those of its ends that are sought."""
+        return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
+
+    @property
+    def reaches_tip(self) -> bool:
+        """Whether it ends at the tip."""
+        return not self.moves[-1]
 
     @property
     def kind(self) -> str:
         """The word of the result file."""
         return "line" if self.is_line else "point"
 
-    def moved(self, places: Sequence[float]) -> Touch:
+    def moved(self, places: Sequence[Scalar]) -> Touch:
         """The same contact at other places, one for each that is sought."""
-        ends = [*map(float, places), TIP][: len(self.ends)]
+        ends = [*places, TIP][: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
 
     def moment_count(self, modes: int) -> int:
@@ -95,20 +106,20 @@ class ContactState:
     @property
     def signature(self) -> tuple[tuple[str, str, str, bool], ...]:
         """What of the state is discrete: two states with the same differ in their places alone."""
-        return tuple((touch.rod, touch.obstacle, touch.kind, touch.end == TIP) for touch in self.touches)
+        return tuple((touch.rod, touch.obstacle, touch.kind, touch.reaches_tip) for touch in self.touches)
 
     @property
     def places(self) -> FloatArray:
         """All abscissae that are sought, shape (k,)."""
-        return np.array([place for touch in self.touches for place in touch.moving])
+        return np.array([float(place) for touch in self.touches for place in touch.moving])
 
-    def at(self, places: FloatArray) -> ContactState:
-        """The same contacts at other places."""
+    def at(self, places: Sequence[Scalar]) -> ContactState:
+        """The same contacts at other places: numbers, or expressions."""
         touches = []
         first = 0
         for touch in self.touches:
             last = first + len(touch.moving)
-            touches.append(touch.moved([float(place) for place in places[first:last]]))
+            touches.append(touch.moved(places[first:last]))
             first = last
         return ContactState(tuple(touches))
 

@@ -103,7 +103,7 @@ def _eigenvalues(found: Found) -> FloatArray:
     model = placed.model
     inputs = found.solution.inputs
     jacobian = model.path_jacobian(found.x, inputs, 1.0).full()
-    rows = placed.gaps_by_x(found.x, inputs).full()
+    rows = placed.gaps(found.x, inputs)[1].full()
     held: list[FloatArray] = []
     first = 0
     for touch, ends, line in found.parts():
