@@ -15,6 +15,7 @@ import casadi as ca
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.newton import NewtonSettings
 
 CERTIFIED = NewtonSettings().tolerance
@@ -45,6 +46,7 @@ def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None
         inputs: stacked inputs, any expressions, shape (model.inputs.size,).
         near: an equilibrium to start from; the unloaded rods by default.
     """
+    refuse_obstacles(model.scene, "an embedded model")
     start = model.unloaded() if near is None else near.x
     model = model.at()
     return Lifted(x, model.residual(x, inputs), start)
@@ -65,6 +67,7 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
         Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
+    refuse_obstacles(model.scene, "an embedded model")
     model = model.at()
     options = {
         # A decimal below what the excess certifies, so that Newton's last step does not decide.

@@ -40,12 +40,14 @@ class ContactLineLoad(Load[ContactLine]):
 
     def span(self, load: ContactLine) -> tuple[Scalar, Scalar]:
         """The stretch that lies on the obstacle."""
-        return load.span
+        start, end = load.span
+        return start, end
 
     def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−λ d(r), J/m."""
         force = ca.mtimes(values["force"], section.data)
-        return -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        energy: Matrix = -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        return energy
 
     def profiles(self, load: ContactLine, rod: object, X: Numbers, columns: int) -> Numbers:
         """One: λ varies with the data of the sections."""

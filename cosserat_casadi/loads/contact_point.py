@@ -37,8 +37,10 @@ class ContactPointLoad(Load[ContactPoint]):
 
     def abscissa(self, load: ContactPoint) -> Scalar:
         """The section that is touched."""
-        return load.at
+        at: Scalar = load.at
+        return at
 
     def energy(self, load: ContactPoint, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−N d(r), J."""
-        return -values["force"] * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        energy: Matrix = -values["force"] * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        return energy

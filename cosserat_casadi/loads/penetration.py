@@ -42,7 +42,8 @@ class PenetrationLoad(Load[Penetration]):
         """k/3 (ρ − d)³, J/m."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
         depth = ca.fmax(section.data[0] - distance, 0.0)
-        return values["stiffness"] / 3 * depth**3
+        energy: Matrix = values["stiffness"] / 3 * depth**3
+        return energy
 
     def profiles(self, load: Penetration, rod: object, X: Numbers, columns: int) -> Numbers:
         """One all along the rod."""

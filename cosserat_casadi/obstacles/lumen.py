@@ -151,7 +151,8 @@ class LumenObstacle(Obstacle[Lumen]):
         bend = _sharpest_bend(centre_line, s)
         if bend * float(radii.max()) >= 1.0:
             problem = f"bend to a radius of {1 / bend:.4g} m, less than the radius of the lumen"
-            yield Problem(f"{where}.points", problem, "a lumen must not bend about its own walls: move the points apart")
+            remedy = "a lumen must not bend about its own walls: move the points apart"
+            yield Problem(f"{where}.points", problem, remedy)
 
     def mesh(self, obstacle: Lumen, near: FloatArray, size: float) -> FloatArray:
         """Rings about the line."""
@@ -201,7 +202,7 @@ def _farthest_start(line: CentreLine, point: Matrix) -> Matrix:
     return chosen
 
 
-def _sharpest_bend(centre_line: Splines, s: FloatArray) -> float:
+def _sharpest_bend(centre_line: CentreLine, s: FloatArray) -> float:
     """Largest curvature of the line, 1/m."""
     line, _ = centre_line.at(s)
     first = np.gradient(line, s, axis=0)

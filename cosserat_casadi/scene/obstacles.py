@@ -195,4 +195,3 @@ radius = [6e-3, 6e-3, 5e-3, 5e-3]
 
 
 Obstacle = Annotated[Plane | Sphere | Capsule | Lumen, OBSTACLES]
-

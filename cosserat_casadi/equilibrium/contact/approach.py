@@ -89,7 +89,7 @@ class Pressure:
 
 def cushioned(scene: scenes.Scene) -> Model:
     """The scene with cushions for obstacles, on coarse elements."""
-    cushions = []
+    cushions: list[Penetration] = []
     for rod in scene.rods:
         for obstacle in scene.obstacles:
             if obstacle.concerns(rod.name):
@@ -171,9 +171,9 @@ def first_state(solution: Solution) -> ContactState:
     """The contacts that the pressure of cushions looks like."""
     touches = []
     for rod, obstacle, gaps in _all_gaps(solution):
-        for stretch in runs(gaps < 0.0):
-            # Quadratic in the depth, as the cushions are.
-            touches.append(Pressure(rod, obstacle.name, DENSE[stretch], gaps[stretch] ** 2).touch())
+        # Quadratic in the depth, as the cushions are.
+        pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
+        touches += [pressure.touch() for pressure in pressed]
     return ContactState.of(touches)
 
 

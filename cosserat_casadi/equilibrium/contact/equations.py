@@ -1,14 +1,14 @@
 """Equations of rods in known contact: their balance, no gap where they touch, no slope of the gap where contact moves.
 
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
-are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a stretch gives the same at its
-ends, and the moments of d − ρ with the polynomials of its force. Elements end at p and move with it, so that every
+are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a stretch gives the same at
+its ends, and the moments of d − ρ with the polynomials of its force. Elements end at p and move with it, so that every
 field is smooth inside an element and the accuracy of the polynomials is kept. See docs/contact.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.state import SHORTEST, ContactState, is_contact, with_contacts
+from cosserat_casadi.equilibrium.contact.state import SHORTEST, ContactState, Place, contact_loads, with_contacts
 from cosserat_casadi.equilibrium.contact.surfaces import surface
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.loads.contact_line import ContactLine
@@ -84,7 +84,7 @@ class Placed:
     @cached_property
     def force_entries(self) -> list[int]:
         """Entries of the forces in the stacked inputs, in the order of the loads."""
-        names = {load.name for load in self.model.scene.loads if is_contact(load)}
+        names = {load.name for load in contact_loads(self.model.scene)}
         entries: list[int] = []
         for entry, span in self.model.inputs:
             if entry.owner in names:
@@ -95,9 +95,7 @@ class Placed:
     def force_units(self) -> FloatArray:
         """What one unit of each force stands for, shape (k,): EI/ℓ² of its rod, in N, or EI/ℓ³, in N/m."""
         units = []
-        for load in self.model.scene.loads:
-            if not is_contact(load):
-                continue
+        for load in contact_loads(self.model.scene):
             unit = self.model.discrete.tension_unit(load.rod)
             if isinstance(load, ContactLine):
                 length = self.model.discrete.rods[load.rod].length
@@ -205,11 +203,11 @@ class Distances:
         """Radius at base and tip, between which it is linear, shape (2,), m."""
         return section_radius(self._discrete_rod.properties, np.array([0.0, 1.0]))
 
-    def _radius(self, X: Matrix | float) -> Matrix | float:
+    def _radius(self, X: Place) -> Place:
         base, tip = self._radii.tolist()
         return base + X * (tip - base)
 
-    def _gap(self, node: int, X: Matrix | float) -> tuple[Matrix, Matrix]:
+    def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
         """Distance of the surface at a node, m, and the normal of the obstacle there."""
         shape = self.system.shapes[self.rod]
         position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
@@ -280,7 +278,7 @@ class ContactEquations:
 
     @cached_property
     def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """z ↦ residual, and z ↦ its derivative."""
+        """Z ↦ residual, and z ↦ its derivative."""
         nominal = self.nominal
         x = ca.MX.sym("x", nominal.model.size)
         f = ca.MX.sym("f", len(nominal.force_units))

@@ -11,7 +11,7 @@ from cosserat_casadi.model.unknowns import BlockKind
 
 
 def projected(solution: Solution, model: Model) -> FloatArray:
-    """Unknowns of a model of the same rods on other elements, shape (model.size,): strains fitted element by element."""
+    """Unknowns of a model of the same rods on other elements, shape (model.size,): strains are fitted in each."""
     old = solution.model.discrete
     blocks = []
     for name, rod in model.discrete.rods.items():

@@ -143,7 +143,7 @@ class Penetrated:
         """Whether it begins or ends at a contact."""
         if (touch.rod, touch.obstacle) != (self.rod, self.obstacle):
             return False
-        return touch.start - NEAR <= self.end and self.start <= touch.end + NEAR
+        return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
 
 def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
@@ -273,9 +273,7 @@ def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | 
     return [*alone, *((penetrated, touch) for touch, penetrated in joined.items())]
 
 
-def _changed(
-    touches: list[Touch], changes: list[tuple[tuple[Touch, ...], tuple[Touch, ...]]]
-) -> ContactState:
+def _changed(touches: list[Touch], changes: list[tuple[tuple[Touch, ...], tuple[Touch, ...]]]) -> ContactState:
     """The state with some contacts replaced by others."""
     gone = {touch for old, _ in changes for touch in old}
     come = [touch for _, new in changes for touch in new]
@@ -288,9 +286,7 @@ def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
         yield ()
         return
     middle = (touch.start + touch.end) / 2
-    first, last, between = (
-        Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle)
-    )
+    first, last, between = (Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle))
     yield (first, last)
     yield (between,)
     yield (first,)

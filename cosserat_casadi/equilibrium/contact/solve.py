@@ -61,5 +61,10 @@ def solve_contact(
     if found is None:
         found = settling.solve(ContactState(()), cushioned)
     if found is None:
-        return replace(cushioned, iterations=settling.iterations, outcome=Outcome.CONTACT_UNSETTLED, message=Outcome.CONTACT_UNSETTLED.value)
+        return replace(
+            cushioned,
+            iterations=settling.iterations,
+            outcome=Outcome.CONTACT_UNSETTLED,
+            message=Outcome.CONTACT_UNSETTLED.value,
+        )
     return judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)

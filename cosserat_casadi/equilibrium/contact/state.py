@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
-from cosserat_casadi.maths.numbers import Scalar, is_symbolic
+from cosserat_casadi.maths.numbers import is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
+
+Place = Any
+"""An abscissa X: a number, or an expression while it is sought."""
 
 TIP = 1.0
 """Abscissa of the section that contact cannot move beyond."""
@@ -34,8 +38,8 @@ class Touch:
 
     obstacle: str
     rod: str
-    start: Scalar
-    end: Scalar
+    start: Place
+    end: Place
     is_line: bool = False
 
     @classmethod
@@ -49,7 +53,7 @@ class Touch:
         return cls(obstacle, rod, start, end, is_line=True)
 
     @property
-    def ends(self) -> tuple[Scalar, ...]:
+    def ends(self) -> tuple[Place, ...]:
         """Abscissae of the one point, or of both ends."""
         return (self.start, self.end) if self.is_line else (self.start,)
 
@@ -59,7 +63,7 @@ class Touch:
         return tuple(is_symbolic(end) or end < TIP for end in self.ends)
 
     @property
-    def moving(self) -> tuple[Scalar, ...]:
+    def moving(self) -> tuple[Place, ...]:
         """Those of its ends that are sought."""
         return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
 
@@ -73,7 +77,7 @@ class Touch:
         """The word of the result file."""
         return "line" if self.is_line else "point"
 
-    def moved(self, places: Sequence[Scalar]) -> Touch:
+    def moved(self, places: Sequence[Place]) -> Touch:
         """The same contact at other places, one for each that is sought."""
         ends = [*places, TIP][: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
@@ -113,7 +117,7 @@ class ContactState:
         """All abscissae that are sought, shape (k,)."""
         return np.array([float(place) for touch in self.touches for place in touch.moving])
 
-    def at(self, places: Sequence[Scalar]) -> ContactState:
+    def at(self, places: Sequence[Place]) -> ContactState:
         """The same contacts at other places: numbers, or expressions."""
         touches = []
         first = 0
@@ -174,37 +178,33 @@ def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, 
     return scene.model_copy(update=changes)
 
 
+def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine]:
+    """The forces of contacts among the loads of a scene, which no scene file names."""
+    loads: Sequence[scenes.LoadRecord] = scene.loads
+    return [load for load in loads if isinstance(load, ContactPoint | ContactLine)]
+
+
 def without_contacts(scene: scenes.Scene) -> scenes.Scene:
     """The scene as its file has it."""
-    found = [load for load in scene.loads if is_contact(load)]
-    if not found:
+    names = {load.name for load in contact_loads(scene)}
+    if not names:
         return scene
-    changes: dict[str, object] = {"loads": tuple(load for load in scene.loads if not is_contact(load))}
+    changes: dict[str, object] = {"loads": tuple(load for load in scene.loads if load.name not in names)}
     if scene.inputs is not None:
-        names = {f"{load.name}.force" for load in found}
-        changes["inputs"] = tuple(name for name in scene.inputs if name not in names)
+        inputs = {f"{name}.force" for name in names}
+        changes["inputs"] = tuple(name for name in scene.inputs if name not in inputs)
     return scene.model_copy(update=changes)
-
-
-def is_contact(load: scenes.LoadRecord) -> bool:
-    """Whether a load is the force of a contact, which no scene file names."""
-    return isinstance(load, ContactPoint | ContactLine)
 
 
 def state_in(scene: scenes.Scene) -> ContactState:
     """The contacts whose forces are among the loads of a scene."""
     touches = []
-    lines = [load for load in scene.loads if isinstance(load, ContactLine)]
-    for line in lines:
-        start, end = line.span
-        touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
-    for load in scene.loads:
-        if not isinstance(load, ContactPoint):
-            continue
-        of_line = any(
-            touch.is_line and load.rod == touch.rod and load.at in touch.ends and load.obstacle.name == touch.obstacle
-            for touch in touches
-        )
-        if not of_line:
-            touches.append(Touch.point(load.obstacle.name, load.rod, load.at))
-    return ContactState.of(touches)
+    loads = contact_loads(scene)
+    for line in loads:
+        if isinstance(line, ContactLine):
+            start, end = line.span
+            touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
+    ends_of_lines = {(touch.rod, touch.obstacle, end) for touch in touches for end in touch.ends}
+    points = [point for point in loads if isinstance(point, ContactPoint)]
+    alone = [point for point in points if (point.rod, point.obstacle.name, point.at) not in ends_of_lines]
+    return ContactState.of([*touches, *(Touch.point(point.obstacle.name, point.rod, point.at) for point in alone)])

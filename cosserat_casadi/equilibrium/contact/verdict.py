@@ -21,6 +21,7 @@ from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.newton import relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
@@ -90,7 +91,7 @@ def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line
     """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
     grid = found.placed.model.discrete.rods[touch.rod].grid
     nodes = grid.nodes_in(touch.start, touch.end)
-    X = grid.nodes[nodes]
+    X = known(grid.nodes_at(nodes))
     width = touch.end - touch.start
     along = legendre_polynomials(len(line), (X - touch.start) / width) @ line
     normal = normals(found.solution, touch.rod, obstacle, X)
@@ -125,9 +126,7 @@ def _eigenvalues(found: Found) -> FloatArray:
     return admissible_eigenvalues(*_restricted(jacobian, held, variations(model)))
 
 
-def _restricted(
-    jacobian: FloatArray, held: list[FloatArray], allowed: Variations
-) -> tuple[FloatArray, Variations]:
+def _restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations) -> tuple[FloatArray, Variations]:
     """A Jacobian with further rows that restrict the variations."""
     size = len(jacobian)
     bordered = np.zeros((size + len(held), size + len(held)))
