@@ -29,6 +29,9 @@ MOST_STATES = 24
 NEAR = 0.03
 """Distance along the rod within which a penetration belongs to a contact."""
 
+ROUNDING = 1e-12
+"""Force, relative to the largest, that is zero."""
+
 AT_TIP = 1e-3
 """Distance from the tip within which it is the tip that touches."""
 
@@ -214,6 +217,8 @@ class Settling:
         if result.outcome is not Outcome.CONVERGED:
             return None
         x, forces, places = equations.parts(result.x)
+        # What only rounding presses does not press.
+        forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
         placed = equations.placed(state.at(places.tolist()))
         x = equations.fixed_in(x, places, placed)
         solution = Solution(
