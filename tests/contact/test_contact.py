@@ -1,0 +1,339 @@
+"""Rods in contact: shooting, closed forms, sums of forces, complementarity between the nodes, energy, refusals."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+
+from cosserat_casadi import Solution, build, discretise, parse_scene, read_scene, solve, solve_scene
+from cosserat_casadi.equilibrium.contact.gaps import gap_along
+from cosserat_casadi.equilibrium.contact.settle import pairs
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.results.solution_file import result
+from tests.conftest import CASES
+
+EFFECTS = CASES / "effects"
+
+TABLE = """
+schema = 1
+title = "A heavy rod on a table"
+accuracy = { tolerance = 1e-7 }
+[[rods]]
+name = "rod"
+length = 1.2
+strain = "planar"
+stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }
+linear_density = 0.1
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 2]
+"""
+
+ROD = """
+schema = 1
+accuracy = { tolerance = 1e-6 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "kirchhoff"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+"""
+
+PUSH = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -3.0]
+"""
+
+TWO_BARS = """
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.4, -1.0, -0.07]
+to = [0.4, 1.0, -0.07]
+radius = 0.05
+[[obstacles]]
+name = "second"
+kind = "capsule"
+from = [0.75, -1.0, -0.2]
+to = [0.75, 1.0, -0.2]
+radius = 0.05
+"""
+
+WIRE = """
+schema = 1
+title = "A guide wire in a bent vessel"
+accuracy = { tolerance = 1e-6 }
+[[rods]]
+name = "wire"
+length = 0.2
+strain = "kirchhoff"
+material = { youngs_modulus = 60.0e9, poisson_ratio = 0.3 }
+section = { shape = "circle", radius = 4e-4 }
+[[obstacles]]
+name = "vessel"
+kind = "lumen"
+points = [[0, 0, -0.02], [0, 0, 0.04], [0.012, 0.003, 0.10], [0.045, 0.015, 0.16], [0.09, 0.03, 0.2]]
+radius = [4e-3, 4e-3, 5e-3, 4e-3, 4e-3]
+"""
+
+DENSE = np.linspace(0.0, 1.0, 3001)
+
+
+def solved(text: str, modes: int = 7, **inputs: object) -> Solution:
+    scene = parse_scene(text)
+    return solve(build(scene, discretise(scene, modes)), inputs or None)
+
+
+def check_complementary(solution: Solution, tolerance: float) -> None:
+    """No section is inside an obstacle, no force pulls, and forces act where the gap is zero alone."""
+    assert solution.converged, solution.message
+    for rod, obstacle in pairs(solution.model.scene):
+        assert gap_along(solution, rod, obstacle, DENSE).min() >= -tolerance
+    obstacles = {obstacle.name: obstacle for obstacle in solution.model.scene.obstacles}
+    for contact in solution.contacts:
+        assert min(contact.ends) >= 0.0
+        touching = np.linspace(contact.start, contact.end, 101)
+        assert_allclose(
+            gap_along(solution, contact.rod, obstacles[contact.obstacle], touching), 0.0, rtol=0, atol=tolerance
+        )
+
+
+def check_forces_sum(solution: Solution, loads: np.ndarray) -> None:
+    total = sum((contact.force for contact in solution.contacts), start=np.asarray(loads, dtype=float))
+    assert_allclose(solution.base_wrench().force, -total, rtol=0, atol=1e-9 * np.abs(total).max())
+
+
+@pytest.fixture(scope="module")
+def table() -> Solution:
+    return solved(TABLE, modes=9)
+
+
+@pytest.fixture(scope="module")
+def bars() -> Solution:
+    return solved(ROD + PUSH + TWO_BARS, modes=9)
+
+
+@pytest.fixture(scope="module")
+def wire() -> Solution:
+    return solved(WIRE)
+
+
+def free_span() -> tuple[float, float, float]:
+    """Length of the span that hangs free, reaction where it meets the table, and x there, by shooting.
+
+    θ′ = κ, EI κ′ = −F cos θ with F the vertical force of what is beyond a section on what is before it, F′ = w; at the
+    table z = −h, θ = 0 and κ = 0: beyond it the rod is straight.
+    """
+    bending, weight, height = 0.03, 0.1 * 9.81, 0.08
+
+    def span(unknown: np.ndarray) -> np.ndarray:
+        length, curvature, force = unknown
+
+        def rate(s: float, y: np.ndarray) -> list[float]:
+            _, _, theta, kappa = y
+            return [np.cos(theta), np.sin(theta), kappa, -(force + weight * s) * np.cos(theta) / bending]
+
+        return solve_ivp(rate, (0.0, length), [0.0, 0.0, 0.0, curvature], rtol=1e-12, atol=1e-13).y[:, -1]
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        _, z, theta, kappa = span(unknown)
+        return np.array([z + height, theta, kappa])
+
+    found = fsolve(missed, [0.6, -1.6, -0.35], xtol=1e-13)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)
+    length, _, force = found
+    return length, force + weight * length, span(found)[0]
+
+
+def test_heavy_rod_on_a_table(table: Solution) -> None:
+    length, reaction, x = free_span()
+    (contact,) = table.contacts
+    assert contact.kind == "line"
+    assert contact.end == 1.0
+    assert_allclose(contact.start * 1.2, length, rtol=0, atol=1e-7)
+    assert_allclose(contact.ends, [reaction, 0.0], rtol=0, atol=1e-7)
+    assert_allclose(table.tip().position[0], [x + 1.2 - length, 0.0, -0.08], rtol=0, atol=1e-7)
+    # What lies on the table presses by its weight, and by the reaction at lift-off.
+    on_table = (1.2 - length) * 0.1 * 9.81
+    assert_allclose(contact.force, [0.0, 0.0, reaction + on_table], rtol=0, atol=1e-6)
+    check_complementary(table, 1e-8)
+    check_forces_sum(table, np.array([0.0, 0.0, -0.1 * 9.81 * 1.2]))
+    assert table.stable
+
+
+def test_two_points_of_contact(bars: Solution) -> None:
+    first, second = bars.contacts
+    assert (first.obstacle, first.kind, second.obstacle, second.kind) == ("bar", "point", "second", "point")
+    check_complementary(bars, 1e-8)
+    check_forces_sum(bars, np.array([0.0, 0.0, -3.0]))
+    assert bars.stable
+    # Without friction a force stands on the rod.
+    for contact in bars.contacts:
+        tangent = bars.pose([contact.start]).rotation[0][:, 2]
+        assert_allclose(contact.force @ tangent, 0.0, rtol=0, atol=1e-9)
+
+
+def test_the_internal_wrench_knows_of_contact(bars: Solution) -> None:
+    """Beyond the last contact it is the push alone."""
+    beyond = np.array([0.9, 1.0])
+    rotations = bars.pose(beyond).rotation
+    force = np.einsum("kij,kj->ki", rotations, bars.internal_wrench(beyond)[:, 3:])
+    assert_allclose(force, [[0.0, 0.0, -3.0]] * 2, rtol=0, atol=1e-9)
+
+
+def test_result_names_contacts(bars: Solution, table: Solution) -> None:
+    data = result(bars)
+    assert list(data["inputs"]) == ["push.force"]
+    entries = data["contacts"]
+    assert [entry["obstacle"] for entry in entries] == ["bar", "second"]
+    assert entries[0]["from"] == entries[0]["to"] == bars.contacts[0].start
+    assert_allclose(entries[0]["force"], bars.contacts[0].force, rtol=0, atol=0)
+    (line,) = result(table)["contacts"]
+    assert (line["kind"], line["to"], len(line["point_forces"])) == ("line", 1.0, 2)
+    json.dumps(data)
+
+
+def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
+    harder = solve(bars.model, {"push.force": [0.0, 0.0, -3.3]}, start=bars)
+    check_complementary(harder, 1e-8)
+    check_forces_sum(harder, np.array([0.0, 0.0, -3.3]))
+    # No load grows from zero once more: a few steps from the old contacts.
+    assert harder.iterations < 10
+    again = solve(harder.model, bars.inputs * 0 + harder.inputs, start=harder)
+    assert_allclose(again.tip().position, harder.tip().position, rtol=0, atol=1e-10)
+
+
+def test_tip_on_a_table() -> None:
+    """A cantilever whose tip is held up: for small deflections R = P (a²/2)(3 − a)/1 at a = 0.6, less P h EI."""
+    text = ROD + PUSH.replace("tip_wrench", "point_wrench").replace("force", "at = 0.6\nforce").replace("-3.0", "-0.02")
+    table = '[[obstacles]]\nname = "table"\nkind = "plane"\npoint = [0, 0, -2e-3]\nnormal = [0, 0, 1]\n'
+    tip = solved(text + table)
+    (contact,) = tip.contacts
+    assert (contact.kind, contact.start) == ("point", 1.0)
+    expected = 0.02 * 0.6**2 / 2 * (3 - 0.6) - 3 * 0.5 * 2e-3
+    assert_allclose(contact.force, [0.0, 0.0, expected], rtol=1e-4, atol=1e-12)
+    check_complementary(tip, 1e-9)
+    # Pushed with less it stays clear of the table.
+    clear = solve(tip.model, {"push.force": [0.0, 0.0, -1e-3]})
+    assert clear.converged
+    assert clear.contacts == ()
+    assert_allclose(clear.base_wrench().force, [0.0, 0.0, 1e-3], rtol=0, atol=1e-12)
+
+
+def test_wire_in_a_lumen(wire: Solution) -> None:
+    assert len(wire.contacts) >= 2
+    check_complementary(wire, 1e-8)
+    check_forces_sum(wire, np.zeros(3))
+    assert wire.stable
+
+
+def test_energy_of_a_wedged_wire_is_least(wire: Solution) -> None:
+    """No admissible perturbation out of a hundred has less elastic energy."""
+    generator = np.random.default_rng(5)
+    (rod,) = wire.model.discrete.rods
+    (obstacle,) = wire.model.scene.obstacles
+    least = float(wire.model.energy(wire.x, wire.inputs))
+    looked_at = np.union1d(np.linspace(0.0, 1.0, 201), [contact.start for contact in wire.contacts])
+    admissible = 0
+    for _ in range(1500):
+        x = wire.x + 10.0 ** generator.uniform(-4, -1) * generator.normal(size=wire.model.size)
+        perturbed = Solution(wire.model, wire.inputs, x, Outcome.CONVERGED, "", 0.0, 0)
+        if gap_along(perturbed, rod, obstacle, looked_at).min() < 0.0:
+            continue
+        admissible += 1
+        assert float(wire.model.energy(x, wire.inputs)) >= least
+        if admissible == 100:
+            break
+    assert admissible == 100
+
+
+CHANGES: dict[str, Callable[[str], str]] = {
+    "clamp": lambda text: text.replace("point = [0, 0, -0.08]", "point = [0, 0, 0.01]"),
+    "normal": lambda text: text.replace("normal = [0, 0, 2]", "normal = [0, 0, 0]"),
+    "shear": lambda text: text.replace('strain = "planar"', 'strain = "reissner"').replace(
+        "torsion = 0.02", "torsion = 0.02, shear_x = 1e3, shear_y = 1e3, extension = 1e3"
+    ),
+    "rods": lambda text: text + 'rods = ["other"]\n',
+    "name": lambda text: text + text[text.index("[[obstacles]]") :],
+    "kind": lambda text: text.replace('kind = "plane"', 'kind = "wall"'),
+    "square": lambda text: text.replace(
+        "stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }",
+        'material = { youngs_modulus = 1e9, poisson_ratio = 0.3 }\nsection = { shape = "rectangle", width = 1e-2, '
+        "height = 1e-3 }",
+    ),
+    "narrow": lambda text: WIRE.replace("radius = [4e-3, 4e-3, 5e-3, 4e-3, 4e-3]", "radius = 3e-4"),
+    "radii": lambda text: WIRE.replace("radius = [4e-3, ", "radius = ["),
+    "points": lambda text: WIRE.replace("[[0, 0, -0.02], [0, 0, 0.04],", "[[0, 0, 0.04], [0, 0, 0.04],"),
+    "axis": lambda text: ROD + TWO_BARS.replace("to = [0.4, 1.0, -0.07]", "to = [0.4, -1.0, -0.07]"),
+}
+
+REFUSALS = {
+    "clamp": ("obstacles.table", "starts 0.01 m inside it"),
+    "normal": ("obstacles[0].normal", "must not be zero"),
+    "shear": ("obstacles[0]", "admits shear"),
+    "rods": ("obstacles[0].rods[0]", "no rod is named"),
+    "name": ("obstacles[1].name", "already the name"),
+    "kind": ("obstacles[0].kind", "must be one of 'plane'"),
+    "square": ("obstacles[0]", "is not round"),
+    "narrow": ("obstacles.vessel.radius", "has the radius"),
+    "radii": ("obstacles[0].radius", "one radius for each of 5 points"),
+    "points": ("obstacles[0].points[1]", "must differ from the point before it"),
+    "axis": ("obstacles[0].to", "must differ from from"),
+}
+
+
+@pytest.mark.parametrize("change", REFUSALS)
+def test_refused_scenes(change: str) -> None:
+    where, problem = REFUSALS[change]
+    with pytest.raises(SceneError) as refused:
+        build(parse_scene(CHANGES[change](TABLE)))
+    found = {fault.where: fault.problem for fault in refused.value.problems}
+    assert problem in found[where]
+
+
+def test_refused_starts(bars: Solution) -> None:
+    with pytest.raises(ValueError, match="found by continuation"):
+        solve(bars.model, method="rootfinder")
+    with pytest.raises(ValueError, match="unknowns name no contacts"):
+        solve(bars.model, start=bars.x)
+
+
+@pytest.mark.parametrize("name", ["over_a_bar", "lying_on_plane"])
+@pytest.mark.slow
+def test_reference_cases(name: str) -> None:
+    if not EFFECTS.is_dir():
+        pytest.skip("the reference cases are not at hand")
+    expected = json.loads((EFFECTS / f"{name}.json").read_text())["expected"]
+    found = solve_scene(read_scene(EFFECTS / f"{name}.toml"))
+    assert found.converged
+    assert found.stable
+    assert found.error_estimate is not None
+    assert found.error_estimate <= 1e-7
+    assert_allclose(found.tip().position[0], expected["tip"]["position"], rtol=0, atol=1e-8)
+    assert_allclose(found.base_wrench().force, expected["base_wrench"]["force"], rtol=0, atol=1e-7)
+    assert_allclose(found.base_wrench().moment, expected["base_wrench"]["moment"], rtol=0, atol=1e-7)
+    (contact,) = found.contacts
+    place = expected["contact"].get("at", expected["contact"].get("from"))
+    force = expected["contact"].get("force", expected["contact"].get("point_force"))
+    assert_allclose(contact.start, place, rtol=0, atol=1e-8)
+    assert_allclose(contact.end, expected["contact"].get("to", place), rtol=0, atol=1e-8)
+    assert_allclose(contact.ends[0], force, rtol=0, atol=1e-7)
+    check_complementary(found, 1e-7)
