@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -56,7 +56,7 @@ def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shapes: RodShapes) -> No
     points[:, :, up] = rows[:, None]
     points[:, :, across] = across_at
     world = points.reshape(-1, 3) @ canvas.view_axes
-    distance, _, _ = surface(obstacle).map(len(world))(world.T)
+    distance = distance_from(obstacle).map(len(world))(world.T)
     values = distance.full().reshape(RESOLUTION, RESOLUTION)
     if not np.any(values < 0.0):
         return

@@ -217,8 +217,6 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     check_forces_sum(harder, np.array([0.0, 0.0, -3.3]))
     # No load grows from zero once more: a few steps from the old contacts.
     assert harder.iterations < 10
-    again = solve(harder.model, bars.inputs * 0 + harder.inputs, start=harder)
-    assert_allclose(again.tip().position, harder.tip().position, rtol=0, atol=1e-10)
 
 
 def test_tip_on_a_table() -> None:
@@ -238,6 +236,7 @@ def test_tip_on_a_table() -> None:
     assert_allclose(clear.base_wrench().force, [0.0, 0.0, 1e-3], rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_wire_in_a_lumen(wire: Solution) -> None:
     assert len(wire.contacts) >= 2
     check_complementary(wire, 1e-8)
@@ -245,21 +244,33 @@ def test_wire_in_a_lumen(wire: Solution) -> None:
     assert wire.stable
 
 
+@pytest.mark.slow
 def test_energy_of_a_wedged_wire_is_least(wire: Solution) -> None:
     """No admissible perturbation out of a hundred has less elastic energy."""
     generator = np.random.default_rng(5)
     (rod,) = wire.model.discrete.rods
     (obstacle,) = wire.model.scene.obstacles
+    contacts = np.array([contact.start for contact in wire.contacts])
+
+    def gaps(x: np.ndarray, X: np.ndarray) -> np.ndarray:
+        return gap_along(Solution(wire.model, wire.inputs, x, Outcome.CONVERGED, "", 0.0, 0), rod, obstacle, X)
+
+    step = 1e-6
+    columns = [(gaps(wire.x + step * unit, contacts) - gaps(wire.x, contacts)) / step for unit in np.eye(len(wire.x))]
+    by_x = np.transpose(columns)
+    looked_at = np.union1d(np.linspace(0.0, 1.0, 101), (contacts[:, None] + np.linspace(-0.02, 0.02, 9)).clip(0, 1))
     least = float(wire.model.energy(wire.x, wire.inputs))
-    looked_at = np.union1d(np.linspace(0.0, 1.0, 201), [contact.start for contact in wire.contacts])
     admissible = 0
-    for _ in range(1500):
-        x = wire.x + 10.0 ** generator.uniform(-4, -1) * generator.normal(size=wire.model.size)
-        perturbed = Solution(wire.model, wire.inputs, x, Outcome.CONVERGED, "", 0.0, 0)
-        if gap_along(perturbed, rod, obstacle, looked_at).min() < 0.0:
+    for _ in range(400):
+        size = 10.0 ** generator.uniform(-4, -2)
+        change = size * generator.normal(size=wire.model.size)
+        # Where it would enter the wall it leaves it by some random way instead.
+        wanted = size * generator.uniform(0.0, 0.1, len(contacts))
+        change += np.linalg.pinv(by_x) @ (wanted - by_x @ change)
+        if gaps(wire.x + change, looked_at).min() < 0.0:
             continue
         admissible += 1
-        assert float(wire.model.energy(x, wire.inputs)) >= least
+        assert float(wire.model.energy(wire.x + change, wire.inputs)) >= least
         if admissible == 100:
             break
     assert admissible == 100

@@ -82,7 +82,8 @@ def test_the_line_of_a_lumen() -> None:
         before = around[0] - 2 * around[1] + around[2]
         after = around[2] - 2 * around[3] + around[4]
         assert_allclose(after - before, 0.0, rtol=0, atol=1e-9)
-        assert_allclose(radius[3] - radius[1], (radius[4] - radius[0]) / 2, rtol=0, atol=1e-9)
+        # Beyond the ends the radius is constant: its second derivative alone jumps there.
+        assert_allclose(radius[3] - radius[1], (radius[4] - radius[0]) / 2, rtol=0, atol=1e-8)
     beyond, _ = line.at(line.knots[-1] + np.array([0.0, 0.1, 0.2]))
     assert_allclose(beyond[0] - 2 * beyond[1] + beyond[2], 0.0, rtol=0, atol=1e-15)
 

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
@@ -20,7 +20,7 @@ DENSE = np.linspace(0.0, 1.0, 801)
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
     positions = solution.pose(X, rod).position
-    distance, _, _ = surface(obstacle).map(len(X))(positions.T)
+    distance = distance_from(obstacle).map(len(X))(positions.T)
     properties = solution.model.discrete.rods[rod].properties
     return np.asarray((distance.full()[0] - section_radius(properties, X)) / properties.length)
 
