@@ -32,6 +32,9 @@ SCENES = (
     "needle_in_tissue",
     "rod_in_stream",
     "rubbing_tendon",
+    "rod_on_table",
+    "rod_over_bar",
+    "wire_in_vessel",
 )
 
 WITH_TARGETS = ("finger_to_point",)
