@@ -276,6 +276,87 @@ def test_energy_of_a_wedged_wire_is_least(wire: Solution) -> None:
     assert admissible == 100
 
 
+BALL = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0.1, -0.5]
+[[obstacles]]
+name = "ball"
+kind = "sphere"
+centre = [0.6, -0.1, -0.2]
+radius = 0.15
+"""
+
+TURNED_BALL = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0.5, 0.1]
+[[obstacles]]
+name = "ball"
+kind = "sphere"
+centre = [0.6, 0.2, -0.1]
+radius = 0.15
+"""
+
+UPRIGHT_BAR = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 1.0, 0]
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.45, 0.12, -1.0]
+to = [0.45, 0.12, 1.0]
+radius = 0.1
+"""
+
+
+@pytest.mark.slow
+def test_turned_copies() -> None:
+    """Turned by a quarter about its axis the rod does the same; a bar touches it as its middle ball does."""
+    ball = solved(ROD + BALL)
+    turned = solved(ROD + TURNED_BALL)
+    # y becomes z, and z becomes −y.
+    quarter = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    assert_allclose(turned.tip().position[0], quarter @ ball.tip().position[0], rtol=0, atol=1e-10)
+    (contact,) = ball.contacts
+    (same,) = turned.contacts
+    assert_allclose(same.start, contact.start, rtol=0, atol=1e-9)
+    assert_allclose(same.force, quarter @ contact.force, rtol=0, atol=1e-9)
+    check_complementary(ball, 1e-9)
+    check_forces_sum(ball, np.array([0.0, 0.1, -0.5]))
+    bar = solved(ROD + UPRIGHT_BAR)
+    in_its_place = 'kind = "sphere"\ncentre = [0.45, 0.12, 0]\nradius = 0.1\n'
+    middle = solved(ROD + UPRIGHT_BAR[: UPRIGHT_BAR.index('kind = "capsule"')] + in_its_place)
+    assert_allclose(middle.contacts[0].force, bar.contacts[0].force, rtol=0, atol=1e-9)
+    assert_allclose(middle.contacts[0].start, bar.contacts[0].start, rtol=0, atol=1e-9)
+    # Off a ball the rod slides aside, off a bar it does not.
+    assert bar.stable
+    assert not middle.stable
+
+
+@pytest.mark.slow
+def test_a_stretch_between_two_ends() -> None:
+    """A heavy rod whose tip is lifted lies on the table in between: weight and lift are what it is held up by."""
+    lift = '[[loads]]\nname = "lift"\nkind = "tip_wrench"\nrod = "rod"\nforce = [0, 0, 0.15]\n'
+    lifted = solved(TABLE.replace("length = 1.2", "length = 1.6") + lift, modes=9)
+    (contact,) = lifted.contacts
+    assert contact.kind == "line"
+    assert 0.2 < contact.start < contact.end < 0.95
+    check_complementary(lifted, 1e-8)
+    check_forces_sum(lifted, np.array([0.0, 0.0, 0.15 - 0.1 * 9.81 * 1.6]))
+    # The free end does not know of the clamp: a longer rod on the table has the same.
+    longer = solved(TABLE.replace("length = 1.2", "length = 1.8") + lift, modes=9)
+    assert_allclose((1 - longer.contacts[0].end) * 1.8, (1 - contact.end) * 1.6, rtol=0, atol=1e-7)
+    assert_allclose(longer.contacts[0].ends, contact.ends, rtol=0, atol=1e-7)
+
+
 CHANGES: dict[str, Callable[[str], str]] = {
     "clamp": lambda text: text.replace("point = [0, 0, -0.08]", "point = [0, 0, 0.01]"),
     "normal": lambda text: text.replace("normal = [0, 0, 2]", "normal = [0, 0, 0]"),

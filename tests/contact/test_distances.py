@@ -22,7 +22,7 @@ RECORDS = {
     "lumen": Lumen(name="vessel", kind="lumen", radius=(6e-3, 7e-3, 5e-3, 5e-3), **BENT),
 }
 
-POINTS = np.random.default_rng(3).normal(0.0, 0.03, (6, 3)) + [0.0, 0.0, 0.1]
+POINTS = np.random.default_rng(3).normal([0.0, 0.0, 0.1], 0.03, (6, 3))
 
 
 @pytest.mark.parametrize("kind", RECORDS)

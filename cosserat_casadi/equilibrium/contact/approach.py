@@ -17,6 +17,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
+from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import Penetration
 from cosserat_casadi.maths.typing import FloatArray
@@ -133,6 +134,10 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
     end = follow(load_path(model, model.pack(values)), settings, progress)
     inputs = model.pack(values)
     found = _judged(model, inputs, end)
+    if not found.converged and can_relax(model) and model.has_potential(inputs):
+        # The rod snaps on the way: it is let settle to less energy where the path ended.
+        settled = relaxed(found, settings.newton, progress)
+        found = found if settled is None else settled
     stiffening = 0
     while found.converged and depth(found) > SHALLOW and stiffening < MOST_STIFFENINGS:
         # Pressure grows with the square of the depth.

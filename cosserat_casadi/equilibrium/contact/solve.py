@@ -13,6 +13,7 @@ from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings
@@ -61,10 +62,9 @@ def solve_contact(
     if found is None:
         found = settling.solve(ContactState(()), cushioned)
     if found is None:
-        return replace(
-            cushioned,
-            iterations=settling.iterations,
-            outcome=Outcome.CONTACT_UNSETTLED,
-            message=Outcome.CONTACT_UNSETTLED.value,
-        )
-    return judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
+        unsettled = Outcome.CONTACT_UNSETTLED
+        return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=unsettled.value)
+    solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
+    if solution.converged and PATH_OF_ENERGY in cushioned.message:
+        return replace(solution, message=solution.message + PATH_OF_ENERGY)
+    return solution
