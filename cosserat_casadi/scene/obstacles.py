@@ -51,19 +51,29 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that shear, or are not round, and scenes of more than rods that start in the world."""
+        """Rods that shear, that are not round, and rods of assemblies."""
         named = given.get("rods")
+        tied = _tied_rods(scene)
         for name, (_, rod) in scene.named("rods").items():
-            if isinstance(named, list | tuple) and name not in named:
-                continue
-            yield from _unfit_rod(name, rod)
-        if scene.tables("bodies") or scene.tables("joints"):
-            problem = "an obstacle stands beside bodies or joints: contact of assemblies is not found"
-            yield Fault((), problem, "leave one of the two out")
+            if not isinstance(named, list | tuple) or name in named:
+                yield from _unfit_rod(name, rod)
+                if name in tied:
+                    problem = f"the rod {name!r} is one of an assembly, or free: its contact is not found"
+                    yield Fault((), problem, "leave it out of rods, or give it a base in the world and no joint")
+
+
+def _tied_rods(scene: SceneTables) -> set[str]:
+    """Names of rods that joints hold, that carry others or are carried, or that nothing holds."""
+    tied = {joint.get("rod") for _, joint in scene.tables("joints")}
+    for name, (_, rod) in scene.named("rods").items():
+        base = rod.get("base")
+        if isinstance(base, Mapping) and (base.get("rod") is not None or base.get("free")):
+            tied |= {name, base.get("rod")}
+    return {name for name in tied if isinstance(name, str)}
 
 
 def _unfit_rod(name: str, rod: Table) -> Iterator[Fault]:
-    """What keeps the contact of a rod from being found."""
+    """What in a rod keeps its contact from being found."""
     if SHEARS & set(admitted_strains(rod.get("strain"))):
         # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
         # contact spreads over a stretch as short as the section is high, which is not resolved.
@@ -73,10 +83,6 @@ def _unfit_rod(name: str, rod: Table) -> Iterator[Fault]:
     if isinstance(section, Mapping) and section.get("shape") not in ("circle", "annulus"):
         problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
         yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
-    base = rod.get("base")
-    if isinstance(base, Mapping) and (base.get("rod") is not None or base.get("free")):
-        problem = f"the rod {name!r} does not start in the world: contact of assemblies is not found"
-        yield Fault((), problem, "give its base in the world, or leave it out of rods")
 
 
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
@@ -93,6 +99,7 @@ name = "table"
 kind = "plane"
 point = [0, 0, -0.1]
 normal = [0, 0, 1]
+rods = ["finger"]
 """
 
     kind: Literal["plane"] = Field(description="half of space")
@@ -110,6 +117,7 @@ name = "ball"
 kind = "sphere"
 centre = [0.05, 0, 0.1]
 radius = 0.02
+rods = ["finger"]
 """
 
     kind: Literal["sphere"] = Field(description="ball")
@@ -128,6 +136,7 @@ kind = "capsule"
 from = [0.03, -0.1, 0.1]
 to = [0.03, 0.1, 0.1]
 radius = 0.01
+rods = ["finger"]
 """
 
     kind: Literal["capsule"] = Field(description="round bar")
@@ -163,6 +172,7 @@ name = "vessel"
 kind = "lumen"
 points = [[0, 0, -0.02], [0, 0, 0.05], [0.01, 0, 0.12], [0.05, 0, 0.22]]
 radius = [6e-3, 6e-3, 5e-3, 5e-3]
+rods = ["finger"]
 """
 
     kind: Literal["lumen"] = Field(description="inside of a tube")
