@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
-import shlex
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
+from tests.commands import cosserat_line
 from tests.conftest import ROOT
 
 DOCS = ROOT / "docs"
@@ -33,7 +36,16 @@ def commands(page: Path) -> list[str]:
 
 
 def run_python(code: str) -> str:
-    """Run a block as a program of its own in the root of the repository; return what it prints."""
+    """Run a block in the root of the repository, in this process; return what it prints."""
+    printed = io.StringIO()
+    with contextlib.chdir(ROOT), contextlib.redirect_stdout(printed), warnings.catch_warnings():
+        warnings.simplefilter("default")
+        exec(compile(code, "block of a page", "exec"), {"__name__": "__main__"})
+    return printed.getvalue()
+
+
+def run_program(code: str) -> str:
+    """Run a block as a program of its own, as one that registers kinds of its own needs; return what it prints."""
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
@@ -42,8 +54,5 @@ def run_python(code: str) -> str:
 
 def run_command(line: str, folder: Path) -> None:
     """Run a command in a folder, with the examples of the repository."""
-    words = shlex.split(line.replace("examples/", f"{ROOT}/examples/"))
-    code = "from cosserat_casadi.cli.main import main; main()"
-    command = [sys.executable, "-c", code, *words[1:]]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
+    done = cosserat_line(line.replace("examples/", f"{ROOT}/examples/"), folder)
     assert done.returncode == 0, done.stderr + done.stdout

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.commands import cosserat_line
 from tests.conftest import ROOT
 
 MADE = {
@@ -35,10 +36,21 @@ def blocks(page: str) -> list[tuple[str, str, str]]:
 
 
 def run_lines(text: str, folder: Path) -> None:
-    words = {"cosserat": f'"{sys.executable}" -c "from cosserat_casadi.cli.main import main; main()"'}
-    lines = "\n".join(re.sub(r"^cosserat\b", lambda _: words["cosserat"], line) for line in text.splitlines())
-    done = subprocess.run(["sh", "-e", "-c", lines], cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
+    """Run the lines of a block; those of the shell together, as they may lead to each other."""
+    for is_ours, lines in itertools.groupby(whole_lines(text), lambda line: line.startswith("cosserat ")):
+        if is_ours:
+            for line in lines:
+                done = cosserat_line(line, folder)
+                assert done.returncode == 0, f"{line}\n{done.stdout}\n{done.stderr}"
+        else:
+            command = ["sh", "-e", "-c", "\n".join(lines)]
+            ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+            assert ended.returncode == 0, f"{command[-1]}\n{ended.stdout}\n{ended.stderr}"
+
+
+def whole_lines(text: str) -> list[str]:
+    """Lines, those that go on behind a backslash as one, without comments."""
+    return [re.split(r" +#", line)[0] for line in text.replace("\\\n", " ").splitlines()]
 
 
 @pytest.mark.parametrize("page", MADE)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT
-from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command, run_python
+from tests.pages import BLOCK, DOCS, PAGES, blocks, commands, prose, run_command, run_program, run_python
 
 ELSEWHERE = {
     "guide.md": "test_guide.py",
@@ -24,7 +24,6 @@ ELSEWHERE = {
 """Pages that a test of their own runs."""
 
 ONE_PROGRAM = ("extending.md", "contact.md")
-"""Pages whose blocks of Python go on from each other."""
 
 RUN_HERE = [page for page in PAGES if page.name not in ELSEWHERE]
 
@@ -42,9 +41,9 @@ def of_all(language_or_commands: str) -> list[object]:
     """Every block or command of the pages that are run here, with its page as the name of the test."""
     found = []
     for page in RUN_HERE:
-        texts = commands(page) if language_or_commands == "commands" else blocks(page, language_or_commands)
         if page.name in ONE_PROGRAM:
-            texts = ["\n".join(texts)] if texts else []
+            continue
+        texts = commands(page) if language_or_commands == "commands" else blocks(page, language_or_commands)
         found += [pytest.param(text, id=f"{name_of(page)}-{i}") for i, text in enumerate(texts)]
     return found
 
@@ -52,6 +51,12 @@ def of_all(language_or_commands: str) -> list[object]:
 @pytest.mark.parametrize("code", of_all("python"))
 def test_python_runs(code: str) -> None:
     run_python(code)
+
+
+@pytest.mark.parametrize("name", ONE_PROGRAM)
+def test_one_program_runs(name: str) -> None:
+    assert commands(DOCS / name) == []
+    run_program("\n".join(blocks(DOCS / name, "python")))
 
 
 @pytest.mark.parametrize(

@@ -22,9 +22,6 @@ from docs.site.functions_in_c import functions_page
 from docs.site.gallery import ExampleError, draw_examples, run_example, write_gallery
 from examples.demo import arguments_of
 
-pytestmark = pytest.mark.xdist_group("site")
-"""On one worker, so that what they share is made once."""
-
 EXAMPLES = ("planar_strip", "nitinol_wire")
 """Few, because each is solved and drawn."""
 

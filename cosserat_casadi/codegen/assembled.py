@@ -8,6 +8,7 @@ import casadi as ca
 
 from cosserat_casadi.codegen.blocks import Blocks, blocks
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.model.build import Model
 
@@ -20,7 +21,7 @@ class Assembled:
         blocks: of the Jacobian.
         residual: the residual in parts.
         jacobian: entries of ∂ residual / ∂x in parts.
-        input_jacobian: ∂ residual / ∂ inputs in parts, entries by their index in the dense matrix.
+        input_jacobian: ∂ residual / ∂ (inputs, parameters) in parts, entries by their index in the dense matrix.
     """
 
     blocks: Blocks
@@ -39,8 +40,9 @@ def assembled(model: Model, names: Names) -> Assembled | None:
     partition = blocks(model.discrete, model.path_jacobian.sparsity_out(0))
     if partition is None:
         return None
-    residual = _path_function(model.path_residual, dense=True)
-    inputs = model.input_jacobian
+    residual = _path_function(with_parameters_behind_inputs(model.path_residual), dense=True)
+    jacobian = with_parameters_behind_inputs(model.path_jacobian)
+    inputs = input_jacobian(model)
     rows, columns = inputs.sparsity_out(0).get_triplet()
     by_inputs = parted(_path_function(inputs), [partition.owners[i] for i in rows], names.kernel("input_jacobian"))
     dense_indices = [i + j * model.size for i, j in zip(rows, columns, strict=True)]
@@ -48,7 +50,7 @@ def assembled(model: Model, names: Names) -> Assembled | None:
     return Assembled(
         partition,
         parted(residual, partition.owners, names.kernel("residual")),
-        parted(model.path_jacobian, partition.entry_owners, names.kernel("jacobian")),
+        parted(jacobian, partition.entry_owners, names.kernel("jacobian")),
         replace(by_inputs, parts=parts),
     )
 

@@ -24,11 +24,12 @@ from cosserat_casadi.codegen.compiled_motion import CompiledMotion
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
+from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.function_table import SCALAR_ARGUMENTS, Owner
+from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, Owner
 from cosserat_casadi.numerics.outcome import Outcome
 
 REMEDY = "install gcc or clang, or name one in the environment variable CC"
@@ -79,8 +80,26 @@ class CompiledSolution:
 
 
 @dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives of an equilibrium with some numbers, a column for each.
+
+    Attributes:
+        x: of the unknowns, shape (size, columns).
+        tips: of position and quaternion of the tip of each rod, shape (7, columns).
+        bodies: of each rigid body, likewise.
+    """
+
+    x: FloatArray
+    tips: dict[str, FloatArray]
+    bodies: dict[str, FloatArray]
+
+
+@dataclass(frozen=True)
 class Compiled(CompiledMotion):
     """An exported folder as compiled functions.
+
+    Where the scene names parameters, functions and methods take them: by name, those not named keeping the scene's
+    values, or all of them stacked. Functions take them behind the inputs, as those of a model do.
 
     Every function of the header in C is a member under its name in :class:`Model`: ``tip``, ``shape``, ``igm``,
     ``tip_jacobian`` by rod, ``actuator`` by actuator, ``body`` and ``body_jacobian`` by body, with the results that
@@ -103,7 +122,10 @@ class Compiled(CompiledMotion):
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`."""
+        """(x, inputs) ↦ residual; with exact first and second derivatives where :attr:`differentiable`.
+
+        In a scene with parameters (x, inputs, p).
+        """
         if self.differentiable:
             return ca.external(self._names.differentiable("residual"), str(self.library))
         in_c = self._function("residual")
@@ -114,6 +136,8 @@ class Compiled(CompiledMotion):
             return [residual]
 
         arguments = {"x": (self.size, 1), "inputs": (len(self.defaults), 1)}
+        if self.parameters.size:
+            arguments[PARAMETERS] = (self.parameters.size, 1)
         return PlainFunction("residual", arguments, {"residual": (self.size, 1)}, evaluate, EXPORT_WITH)
 
     def __getattr__(self, name: str) -> Any:
@@ -139,86 +163,160 @@ class Compiled(CompiledMotion):
         """The scene's own inputs, stacked."""
         return np.concatenate([np.zeros(0), *[entry["value"] for entry in self.manifest["inputs"]]])
 
-    def solve(self, inputs: npt.ArrayLike | None = None, start: npt.ArrayLike | None = None) -> CompiledSolution:
+    @cached_property
+    def parameters(self) -> ListedParameters:
+        """Names, units and default values of the parameters; often none."""
+        return listed_parameters(self.manifest.get("parameters", []))
+
+    def solve(
+        self,
+        inputs: npt.ArrayLike | None = None,
+        start: npt.ArrayLike | None = None,
+        *,
+        parameters: ParameterValues = None,
+    ) -> CompiledSolution:
         """Equilibrium by the solver in C.
 
         Args:
             inputs: stacked inputs; the scene's own by default.
             start: unknowns to start from; the unloaded rod by default.
+            parameters: by name or stacked; the scene's own by default.
 
         Raises:
-            ValueError: inputs or start are of the wrong size.
+            ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
         """
         given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
         info = _Info()
-        self._function("solve")(pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        p = self.parameters.passed(parameters)
+        self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
         return _solution(x, info)
 
-    def follow(self, before: npt.ArrayLike, inputs: npt.ArrayLike, start: npt.ArrayLike) -> CompiledSolution:
+    def follow(
+        self,
+        before: npt.ArrayLike,
+        inputs: npt.ArrayLike,
+        start: npt.ArrayLike,
+        *,
+        parameters_before: ParameterValues = None,
+        parameters: ParameterValues = None,
+    ) -> CompiledSolution:
         """Equilibrium by the solver in C, along the straight line from inputs for which ``start`` is one.
+
+        Args:
+            before: stacked inputs that ``start`` is an equilibrium for.
+            inputs: stacked inputs to go to.
+            start: unknowns.
+            parameters_before: parameters that ``start`` is an equilibrium for; the scene's own by default.
+            parameters: parameters to go to; likewise.
 
         Raises:
             ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
         """
         old = vector(before, len(self.defaults), "before")
         given = vector(inputs, len(self.defaults), "inputs")
         x = vector(start, self.size, "start").copy()
         info = _Info()
-        self._function("follow")(pointer(old), pointer(given), pointer(x), self._workspace(), ctypes.byref(info))
+        old_p = self.parameters.passed(parameters_before)
+        p = self.parameters.passed(parameters)
+        work = self._workspace()
+        self._function("follow")(pointer(old), *old_p, pointer(given), *p, pointer(x), work, ctypes.byref(info))
         return _solution(x, info)
 
-    def solve_batch(self, inputs: npt.ArrayLike) -> list[CompiledSolution]:
-        """Equilibria of many load cases, inputs of shape (count, size of the inputs).
+    def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ParameterValues = None) -> list[CompiledSolution]:
+        """Equilibria of many load cases.
+
+        Args:
+            inputs: shape (count, size of the inputs), or those of all rows.
+            parameters: shape (count, size of the parameters), or those of all rows, by name or stacked.
 
         Raises:
-            ValueError: the inputs are of the wrong size.
+            ValueError: inputs or parameters are of the wrong size, or of different numbers of rows.
+            SceneError: the names of parameters are not those of the scene.
         """
-        given = np.atleast_2d(np.ascontiguousarray(inputs, dtype=np.float64))
+        given = np.atleast_2d(np.asarray(inputs, dtype=np.float64))
         if given.ndim != 2 or given.shape[1] != len(self.defaults):
             raise ValueError(f"inputs must have shape (count, {len(self.defaults)}), got {given.shape}")
-        x = np.zeros((len(given), self.size))
-        infos = (_Info * len(given))()
-        self._function("solve_batch")(len(given), pointer(given), pointer(x), self._workspace(), 1, infos)
+        p = self.parameters.rows(parameters)
+        count = len(p) if len(given) == 1 else len(given)
+        if len(p) not in (1, count):
+            raise ValueError(f"there are {len(p)} rows of parameters for {len(given)} rows of inputs")
+        given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
+        p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
+        x = np.zeros((count, self.size))
+        infos = (_Info * count)()
+        passed = [pointer(p)] if self.parameters.size else []
+        self._function("solve_batch")(count, pointer(given), *passed, pointer(x), self._workspace(), 1, infos)
         return [_solution(row, info) for row, info in zip(x, infos, strict=True)]
 
-    def sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, dict[str, FloatArray]] | None:
+    def sensitivity(
+        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+    ) -> tuple[FloatArray, dict[str, FloatArray]] | None:
         """The dx/dinputs, and d(position, quaternion)/dinputs of each tip; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
         """
-        sensitivity = self._sensitivity(inputs, x)
-        if sensitivity is None:
-            return None
-        d_x, d_poses = sensitivity
-        return d_x, dict(zip(self._names.rods, d_poses[: len(self._names.rods)], strict=True))
+        found = self._sensitivities(inputs, x, parameters)
+        return None if found is None else (found[0].x, found[0].tips)
 
-    def body_sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> dict[str, FloatArray] | None:
+    def body_sensitivity(
+        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+    ) -> dict[str, FloatArray] | None:
         """The d(position, quaternion)/dinputs of each rigid body; None where x is no regular equilibrium.
 
         Raises:
             ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
         """
-        sensitivity = self._sensitivity(inputs, x)
-        if sensitivity is None:
-            return None
-        _, d_poses = sensitivity
-        return dict(zip(self._names.bodies, d_poses[len(self._names.rods) :], strict=True))
+        found = self._sensitivities(inputs, x, parameters)
+        return None if found is None else found[0].bodies
 
-    def _sensitivity(self, inputs: npt.ArrayLike, x: npt.ArrayLike) -> tuple[FloatArray, list[FloatArray]] | None:
-        """The dx/dinputs, and d(position, quaternion)/dinputs of each tip, then of each body."""
+    def parameter_sensitivity(
+        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+    ) -> Sensitivity | None:
+        """Derivatives of an equilibrium with the parameters; None where x is no regular equilibrium.
+
+        Args:
+            inputs: stacked inputs.
+            x: the equilibrium for these inputs and parameters.
+            parameters: by name or stacked; the scene's own by default.
+
+        Raises:
+            ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
+        """
+        found = self._sensitivities(inputs, x, parameters)
+        return None if found is None else found[1]
+
+    def _sensitivities(
+        self, inputs: npt.ArrayLike, x: npt.ArrayLike, parameters: ParameterValues
+    ) -> tuple[Sensitivity, Sensitivity] | None:
+        """Derivatives with inputs and with parameters, which have no column where there are none."""
         given = vector(inputs, len(self.defaults), "inputs")
         unknowns = vector(x, self.size, "x")
-        count = len(self._names.rods) + len(self._names.bodies)
-        d_x = np.zeros((len(given), self.size))
-        d_poses = np.zeros((count, len(given), 7))
-        status = self._function("solve_sensitivity")(
-            pointer(given), pointer(unknowns), pointer(d_x), pointer(d_poses), self._workspace()
-        )
+        p = self.parameters.passed(parameters)
+        rods, bodies = self._names.rods, self._names.bodies
+        d_x = [np.zeros((count, self.size)) for count in (len(given), self.parameters.size)]
+        d_poses = [np.zeros((len(rods) + len(bodies), len(columns), 7)) for columns in d_x]
+        # A scene without parameters has no derivative with them to be passed.
+        kinds = 2 if p else 1
+        results = [*map(pointer, d_x[:kinds]), *map(pointer, d_poses[:kinds])]
+        status = self._function("solve_sensitivity")(pointer(given), *p, pointer(unknowns), *results, self._workspace())
         if status != 0:
             return None
-        return d_x.T, [pose.T for pose in d_poses]
+        by_inputs, by_parameters = (
+            Sensitivity(
+                x=columns.T,
+                tips={rod: pose.T for rod, pose in zip(rods, poses, strict=False)},
+                bodies={body: pose.T for body, pose in zip(bodies, poses[len(rods) :], strict=True)},
+            )
+            for columns, poses in zip(d_x, d_poses, strict=True)
+        )
+        return by_inputs, by_parameters
 
     @cached_property
     def _handle(self) -> ctypes.CDLL:

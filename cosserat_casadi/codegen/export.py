@@ -16,7 +16,6 @@ from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -50,7 +49,6 @@ def export(
     Raises:
         ExportError: the name, the folder or a motion of this scene is refused; nothing was written.
     """
-    refuse_parameters(model.scene)
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)

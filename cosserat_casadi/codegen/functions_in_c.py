@@ -16,9 +16,11 @@ from typing import Any
 import casadi as ca
 
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameters import solver_function
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import (
     ARGUMENT_UNITS,
+    PARAMETERS,
     SCALAR_ARGUMENTS,
     FunctionSpec,
     Output,
@@ -28,8 +30,14 @@ from cosserat_casadi.model.function_table import (
 
 Render = Callable[[str, dict[str, Any]], str]
 
-COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS", "v": "UNKNOWNS", "inputs_rate": "INPUTS"}
+COUNTS = {"x": "UNKNOWNS", "inputs": "INPUTS", "v": "UNKNOWNS", "inputs_rate": "INPUTS", PARAMETERS: "PARAMETERS"}
 """Macros of the header with the number of entries of an argument."""
+
+TANGENT = "path_tangent"
+"""The function whose kernel is a table of numbers."""
+
+WORDS_IN_C = {PARAMETERS: "parameters"}
+"""Names of arguments that say more in C than in Python."""
 
 WIDTH = 119
 """Characters of the longest line of the header."""
@@ -68,8 +76,15 @@ class FunctionInC:
 
     @cached_property
     def function(self) -> ca.Function:
-        """What it computes, with the outputs that it has in C."""
+        """What it computes, with the outputs that it has in C; to the solver parameters are further inputs."""
+        if self.spec.kernel and not self.spec.public:
+            return solver_function(self.model, self.spec)
         return self.spec.function_in_c(self.model, self.owner or "")
+
+    @cached_property
+    def arguments(self) -> list[str]:
+        """Names of the arguments, with the parameters that the scene names."""
+        return self.spec.arguments_of(self.model.discrete)
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
@@ -80,7 +95,7 @@ class FunctionInC:
     @property
     def units(self) -> dict[str, str]:
         """Units of arguments and results by name."""
-        arguments = {name: ARGUMENT_UNITS.get(name, "1") for name in self.spec.arguments}
+        arguments = {name: ARGUMENT_UNITS.get(name, "1") for name in self.arguments}
         return arguments | {output.name: output.unit for output in self.outputs}
 
     @property
@@ -104,7 +119,7 @@ class FunctionInC:
 
     def wrapper(self, render: Render) -> str:
         """Definition: a call of the kernel."""
-        arguments = [f"&{name}" if name in SCALAR_ARGUMENTS else name for name in self.spec.arguments]
+        arguments = [f"&{name}" if name in SCALAR_ARGUMENTS else _word(name) for name in self.arguments]
         words = {
             "signature": _wrapped(f"void {self.symbol}(", self._parameters("real"), ") {"),
             "kernel": self.kernel,
@@ -115,15 +130,15 @@ class FunctionInC:
 
     def _parameters(self, real: str) -> list[str]:
         parameters = []
-        for name in self.spec.arguments:
-            declared = f"{real} {name}" if name in SCALAR_ARGUMENTS else f"const {real} *{name}"
+        for name in self.arguments:
+            declared = f"{real} {name}" if name in SCALAR_ARGUMENTS else f"const {real} *{_word(name)}"
             parameters.append(declared)
         return parameters + [f"{real} *{output.name}" for output in self.outputs]
 
     def _given(self) -> list[str]:
         """Arguments beyond unknowns and inputs, with size and unit."""
         described = []
-        for i, name in enumerate(self.spec.arguments):
+        for i, name in enumerate(self.arguments):
             if name not in COUNTS:
                 size = self.function.size1_in(i)
                 described.append(_with_facts(name, str(size) if size > 1 else "", self.units[name]))
@@ -143,7 +158,11 @@ class FunctionInC:
 
 def functions_in_c(model: Model, names: Names) -> list[FunctionInC]:
     """All functions with a kernel: of the scene, then rod by rod, actuator by actuator, body by body."""
-    return _functions(model, names, [spec for spec in names.functions if spec.kernel])
+    specs = [spec for spec in names.functions if spec.kernel]
+    if model.parameters.size:
+        # The unloaded scene depends on the parameters: the solver solves for its tangent.
+        specs = [spec for spec in specs if spec.name != TANGENT]
+    return _functions(model, names, specs)
 
 
 def public_functions(model: Model, names: Names) -> list[FunctionInC]:
@@ -162,6 +181,11 @@ def _functions(model: Model, names: Names, specs: Sequence[FunctionSpec]) -> lis
         for owner in owners(model.discrete, kind):
             functions += [FunctionInC(spec, owner or None, model, names) for spec in specs if spec.owner is kind]
     return functions
+
+
+def _word(argument: str) -> str:
+    """What an argument is called in C."""
+    return WORDS_IN_C.get(argument, argument)
 
 
 def _with_facts(name: str, shape: str, unit: str) -> str:

@@ -19,8 +19,17 @@ from cosserat_casadi.codegen.memory import largest_room, stack_bytes, workspace_
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES, WITHOUT, motion_words
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameter_sources import parameter_words
+from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.status import status_words
-from cosserat_casadi.codegen.structs import input_macro, input_struct_words, pose_name, result_struct_words
+from cosserat_casadi.codegen.structs import (
+    initialiser,
+    input_macro,
+    input_struct_words,
+    listed,
+    pose_name,
+    result_struct_words,
+)
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import first_step
 from cosserat_casadi.model.build import Model
@@ -129,11 +138,10 @@ def _words(
     motion: MotionInC | None,
 ) -> dict[str, Any]:
     sizes = _sizes(model, names, generated)
+    sizes |= parameter_words(render, sizes, model, names, dynamics=motion is not None)
     linear = dense_words(render, sizes) if parts is None else block_words(render, sizes, parts)
     in_motion = WITHOUT if motion is None else motion_words(render, sizes, model, names, motion)
     functions = public_functions(model, names)
-    pose_derivatives = [names.function("tip_jacobian", rod) for rod in names.rods]
-    pose_derivatives += [names.function("body_jacobian", body) for body in names.bodies]
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
@@ -156,7 +164,6 @@ def _words(
         "prototypes": "".join(function.prototype(render) for function in functions),
         "functions": "".join(function.wrapper(render) for function in functions),
         "function_rows": _function_rows(functions),
-        "pose_derivatives": "".join(f"    {function},\n" for function in pose_derivatives),
         "title": _comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
         **_version_words(),
@@ -179,8 +186,8 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
         "rods": len(names.rods),
         "bodies": len(names.bodies),
         "poses": len(names.rods) + len(names.bodies),
-        # C has no array without entries.
-        "input_room": max(model.inputs.size, 1),
+        # C has no array without entries; parameters are behind the inputs.
+        "input_room": max(given_size(model), 1),
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
         "max_reuses": newton.MAX_REUSES,
@@ -191,7 +198,8 @@ def _sizes(model: Model, names: Names, generated: Mapping[str, str]) -> dict[str
 def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict[str, Any]) -> str:
     room = (sizes["kernel_reals"] + in_motion["motion_reals"], sizes["kernel_integers"] + in_motion["motion_integers"])
     counts = (sizes["unknowns"], sizes["input_room"], linear["factor_count"], sizes["max_reuses"])
-    return f"{workspace_bytes(*counts, room, linear['linear_reals']) / 1000:.1f}"
+    extra = linear["linear_reals"] + sizes["parameter_reals"]
+    return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
 
 
 def _solver_constants() -> dict[str, Any]:
@@ -229,7 +237,7 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
         macros.append(f"#define {macro} {entry['first']} /* {numbered}, {entry['unit']}{axes} */")
         macros.append(f"#define {macro}_SIZE {count}")
         span = f"{entry['first']} … {entry['first'] + count - 1}" if count > 1 else f"{entry['first']}"
-        rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {_listed(entry['value'])} |")
+        rows.append(f"| {span} | `{entry['name']}`{axes} | {entry['unit']} | {listed(entry['value'])} |")
     values = [number for entry in entries for number in entry["value"]]
     polynomial = any(entry["shape"][1] > 1 for entry in entries)
     named = {"name": names.name, **input_struct_words(names, entries)}
@@ -240,7 +248,7 @@ def _input_words(model: Model, names: Names) -> dict[str, str]:
         "inputs_functions": render("inputs.c.in", named) if entries else "\n",
         "input_rows": "\n".join(rows) or "| | none: everything is fixed | | |",
         "input_words": " ".join(entry["name"] for entry in entries) or "none",
-        "defaults": ", ".join(_initialiser(value, names) for value in values) or "0",
+        "defaults": ", ".join(initialiser(value, names) for value in values) or "0",
         "axes_note": "Polynomials along the rod are Legendre coefficients in 2X − 1, three numbers for each degree."
         if polynomial
         else "Section axes turn with the rod.",
@@ -300,16 +308,6 @@ def _accuracy_note(model: Model, error_estimate: float | None) -> str:
         f"{tolerance} The discretisation was judged at the scene's own inputs: estimated error {error_estimate:.1e}. "
         "Far larger loads need it judged anew."
     )
-
-
-def _listed(numbers: list[float]) -> str:
-    return ", ".join(f"{number:g}" if float(f"{number:g}") == number else repr(number) for number in numbers)
-
-
-def _initialiser(value: float, names: Names) -> str:
-    """A number that float and double take without a word from the compiler."""
-    written = _listed([value])
-    return written if float(np.float32(value)) == value else f"({names.name}_real){written}"
 
 
 def _comment(text: str) -> str:

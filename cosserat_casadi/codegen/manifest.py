@@ -34,6 +34,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
         "title": model.scene.title,
         "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
         "inputs": input_entries(model),
+        **({"parameters": parameter_entries(model)} if model.parameters.size else {}),
         **_output_entries(model),
         "unknowns": unknown_entries(model),
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
@@ -55,6 +56,20 @@ def input_entries(model: Model) -> list[dict[str, Any]]:
             "value": entry.default.ravel(order="F").tolist(),
         }
         for entry, indices in model.inputs
+    ]
+
+
+def parameter_entries(model: Model) -> list[dict[str, Any]]:
+    """Parameters in the order of their vector."""
+    return [
+        {
+            "name": entry.name,
+            "unit": entry.unit,
+            "first": indices.start,
+            "shape": list(entry.shape),
+            "value": entry.default.ravel(order="F").tolist(),
+        }
+        for entry, indices in model.parameters
     ]
 
 

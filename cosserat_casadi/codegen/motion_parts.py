@@ -13,9 +13,11 @@ import casadi as ca
 
 from cosserat_casadi.codegen.blocks import INTERFACE, Blocks, blocks
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.codegen.parts import Parted, parted
 from cosserat_casadi.errors import ExportError
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.simulate import immovable
 
 MATRICES = ("stiffness", "damping", "mass")
@@ -79,13 +81,18 @@ def check_motion(model: Model) -> None:
 
 
 def _symbols(model: Model) -> tuple[ca.MX, ca.MX, ca.MX, list[ca.MX]]:
-    """State, inputs and a factor that nothing depends on; and the arguments of the model's functions in motion."""
-    size, count = model.size, model.inputs.size
+    """State, inputs and a factor that nothing depends on; and the arguments of the model's functions in motion.
+
+    Parameters are behind the inputs; so they have places behind rates and accelerations too, which nothing reads.
+    """
+    size, count, given = model.size, model.inputs.size, given_size(model)
     state = ca.MX.sym("state", 3 * size)
-    inputs = ca.MX.sym("inputs", 3 * count)
+    inputs = ca.MX.sym("inputs", 3 * given)
     arguments = [state[k * size : (k + 1) * size] for k in range(3)]
-    arguments += [inputs[k * count : (k + 1) * count] for k in range(3)]
-    return state, inputs, ca.MX.sym("factor"), arguments
+    moving = [inputs[k * given : k * given + count] for k in range(3)]
+    if model.parameters.size:
+        moving.insert(1, inputs[count:given])
+    return state, inputs, ca.MX.sym("factor"), arguments + moving
 
 
 def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca.MX], name: str) -> Parted:
@@ -104,12 +111,16 @@ def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca
 
 
 def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
-    """Derivatives by inputs and by their rates."""
+    """Derivatives by inputs and by their rates, those with parameters behind the inputs."""
     state, inputs, factor, arguments = _symbols(model)
     # In the function's own symbols CasADi sees through the call, and writes a quarter of the derivatives.
     given = model.inverse_dynamics.mx_in()
     residual = model.inverse_dynamics.call(given)[0]
-    by_each = [ca.jacobian(residual, given[i]) for i in (3, 4)]
+    symbols = dict(zip(model.inverse_dynamics.name_in(), given, strict=True))
+    moving = [symbols["inputs"], symbols["inputs_rate"]]
+    if model.parameters.size:
+        moving.insert(1, symbols[PARAMETERS])
+    by_each = [ca.jacobian(residual, symbol) for symbol in moving]
     by_inputs = ca.Function("by_inputs", given, [ca.horzcat(*by_each)])
     matrix = by_inputs.call(arguments)[0]
     rows, columns = matrix.sparsity().get_triplet()

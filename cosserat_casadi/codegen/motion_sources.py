@@ -64,6 +64,8 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "motion_matrix": motion.matrices,
         "motion_input": motion.input_matrices,
     }
+    # Displacements are measured by the scene's own numbers, whatever the parameters are.
+    lengths = np.where(model.discrete.unknowns.differential, displacements(model.at()), 0.0)
     words = {
         **basics,
         **_limits(),
@@ -74,7 +76,7 @@ def motion_words(render: Render, basics: Words, model: Model, names: Names, moti
         "front_room": max(sum(fronts.orders), model.size),
         "interface_room": max(len(fronts.interface), 1),
         "most_motion_entries": max(len(part.entries) for parted in parteds.values() for part in parted.parts),
-        "displacements": numbers(np.where(model.discrete.unknowns.differential, displacements(model), 0.0).tolist()),
+        "displacements": numbers(lengths.tolist()),
         "units": numbers(model.discrete.unknowns.units.tolist()),
         "motion_part_functions": "".join(part_functions(render, parted) for parted in parteds.values()),
         "motion_part_tables": "".join(part_tables("motion_part", word, parted) for word, parted in parteds.items()),

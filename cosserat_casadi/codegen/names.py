@@ -114,7 +114,15 @@ def scene_names(name: str, scene: Scene, functions: tuple[FunctionSpec, ...] = F
     rods, actuators, bodies = (
         tuple(entry.name for entry in table) for table in (scene.rods, scene.actuators, scene.bodies)
     )
-    return library_names(name, rods, scene.input_names(), actuators=actuators, bodies=bodies, functions=functions)
+    return library_names(
+        name,
+        rods,
+        scene.input_names(),
+        parameters=scene.parameters,
+        actuators=actuators,
+        bodies=bodies,
+        functions=functions,
+    )
 
 
 def library_names(
@@ -122,6 +130,7 @@ def library_names(
     rods: tuple[str, ...] = (),
     inputs: tuple[str, ...] = (),
     *,
+    parameters: tuple[str, ...] = (),
     actuators: tuple[str, ...] = (),
     bodies: tuple[str, ...] = (),
     functions: tuple[FunctionSpec, ...] = FUNCTIONS,
@@ -132,6 +141,7 @@ def library_names(
         name: the library.
         rods: names of the rods.
         inputs: names of the inputs.
+        parameters: names of the parameters.
         actuators: names of the actuators.
         bodies: names of the rigid bodies.
         functions: the named functions of the model.
@@ -141,7 +151,12 @@ def library_names(
             would have one name.
     """
     names = Names(name, rods, actuators, bodies, functions)
-    problems = [*_name_problems(name), *_symbol_problems(names), *_macro_problems(inputs)]
+    problems = [
+        *_name_problems(name),
+        *_symbol_problems(names),
+        *_macro_problems(inputs),
+        *_parameter_problems(parameters),
+    ]
     if problems:
         raise ExportError(*problems)
     return names
@@ -182,6 +197,21 @@ def _clashes(kind: Owner, owners: Sequence[str], functions: Sequence[list[str]])
             problem = f"{owner!r} gives a function the name that {kind.value} {clashing[0]!r} gives another"
             yield Problem(where, problem, f"rename one of the {entries}")
         taken.update(dict.fromkeys(symbols, owner))
+
+
+def identifier(name: str) -> str:
+    """Name of an input or of a parameter as a C identifier."""
+    return re.sub(r"\W+", "_", name.rstrip("]"))
+
+
+def _parameter_problems(parameters: tuple[str, ...]) -> Iterator[Problem]:
+    first: dict[str, str] = {}
+    for i, name in enumerate(parameters):
+        earlier = first.setdefault(identifier(name).upper(), name)
+        if earlier != name:
+            yield Problem(
+                f"parameters[{i}]", f"{earlier!r} and {name!r} are one name in C", "rename one of the entries"
+            )
 
 
 def _macro_problems(inputs: tuple[str, ...]) -> Iterator[Problem]:

@@ -1,18 +1,88 @@
-"""Parameters of a scene where functions are written in C."""
+"""Parameters of a scene where functions are written in C: to the solver they are further inputs.
+
+The solver in C has one vector for all that it is given: the inputs, and behind them the parameters. So a path from some
+parameters to others, derivatives of a solution with parameters, and the parts of an assembly are those of inputs. Where
+a scene names no parameters the functions here give a model's own.
+"""
 
 from __future__ import annotations
 
+import casadi as ca
+
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec
 from cosserat_casadi.scene import Scene
 
 
+def given_size(model: Model) -> int:
+    """Numbers that the solver in C is given: inputs and parameters."""
+    return model.inputs.size + model.parameters.size
+
+
+def solver_function(model: Model, spec: FunctionSpec) -> ca.Function:
+    """A function of the solver with inputs and parameters in one argument.
+
+    Args:
+        model: whose function it is.
+        spec: its entry in the table of functions.
+    """
+    function = spec.function_in_c(model)
+    if not model.parameters.size:
+        return function
+    if spec.name == "path_rate":
+        return _path_rate(model)
+    return with_parameters_behind_inputs(function)
+
+
+def with_parameters_behind_inputs(function: ca.Function) -> ca.Function:
+    """A function whose argument ``inputs`` holds the parameters too, behind the inputs; itself if it takes none."""
+    words = function.name_in()
+    if PARAMETERS not in words:
+        return function
+    place = words.index("inputs")
+    count = function.size1_in(place)
+    symbols = function.mx_in()
+    inputs = ca.MX.sym("inputs", count + function.size1_in(PARAMETERS))
+    given = [inputs[:count], inputs[count:]]
+    outer = [*symbols[:place], inputs, *symbols[place + 2 :]]
+    results = function.call([*symbols[:place], *given, *symbols[place + 2 :]], True, False)
+    names = [word for word in words if word != PARAMETERS]
+    return ca.Function(function.name(), outer, results, names, function.name_out())
+
+
+def input_jacobian(model: Model) -> ca.Function:
+    """(x, inputs) ↦ derivative of the residual with respect to inputs, then to parameters."""
+    if not model.parameters.size:
+        return model.input_jacobian
+    symbols = model.input_jacobian.mx_in()
+    by_both = [function.call(symbols)[0] for function in (model.input_jacobian, model.parameter_jacobian)]
+    both = ca.Function("input_jacobian", symbols, [ca.horzcat(*by_both)], ["x", "inputs", PARAMETERS], ["by_both"])
+    return with_parameters_behind_inputs(both)
+
+
 def refuse_parameters(scene: Scene) -> None:
-    """Refuse to write functions in C of a scene that names parameters.
+    """Refuse to write what takes unknowns and inputs alone of a scene that names parameters.
 
     Raises:
         ExportError: with the first of them.
     """
     if scene.parameters:
-        problem = f"{scene.parameters[0]!r} is a parameter, and functions in C take unknowns and inputs alone"
+        problem = f"{scene.parameters[0]!r} is a parameter, and this takes unknowns and inputs alone"
         remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
         raise ExportError(Problem("parameters[0]", problem, remedy))
+
+
+def _path_rate(model: Model) -> ca.Function:
+    """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
+    residual = with_parameters_behind_inputs(model.path_residual)
+    x, inputs, load_factor = residual.mx_in()
+    speed = ca.MX.sym("inputs_rate", inputs.shape[0])
+    load_speed = ca.MX.sym("load_factor_rate")
+    # One symbol for all that moves, so that one derivative in one direction is taken.
+    joined = ca.MX.sym("inputs_and_load_factor", inputs.shape[0] + 1)
+    moving = residual.call([x, joined[:-1], joined[-1]], True, False)[0]
+    rate = ca.jtimes(moving, joined, ca.vertcat(speed, load_speed))
+    at_point = ca.substitute(rate, joined, ca.vertcat(inputs, load_factor))
+    words = [*residual.name_in(), "inputs_rate", "load_factor_rate"]
+    return ca.Function("path_rate", [x, inputs, load_factor, speed, load_speed], [at_point], words, ["residual_rate"])

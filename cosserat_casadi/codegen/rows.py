@@ -39,17 +39,23 @@ class RowLibrary:
     Attributes:
         files: content by file name, as pairs.
         inputs: numbers in a row of inputs.
+        parameters: numbers in a row of parameters.
         results: numbers in a row of results.
     """
 
     files: tuple[tuple[str, str], ...]
     inputs: int
+    parameters: int
     results: int
 
-    def solve(self, inputs: FloatArray) -> FloatArray:
-        """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs).
+    def solve(self, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
+        """Rows of results, shape (count, results), for rows of inputs and of parameters.
 
         Other threads run meanwhile. What a row gives depends on that row alone.
+
+        Args:
+            inputs: shape (count, inputs).
+            parameters: shape (count, parameters); needed where there are any.
 
         Raises:
             ExportError: there is no C compiler, or it fails.
@@ -58,8 +64,15 @@ class RowLibrary:
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
+        arguments = [pointer(given)]
+        if self.parameters:
+            wanted = (len(given), self.parameters)
+            p = np.ascontiguousarray(np.empty((0, 0)) if parameters is None else parameters, dtype=np.float64)
+            if p.shape != wanted:
+                raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
+            arguments.append(pointer(p))
         results = np.empty((len(given), self.results))
-        if _loaded(self.files)[f"{NAME}_rows"](len(given), pointer(given), pointer(results)):
+        if _loaded(self.files)[f"{NAME}_rows"](len(given), *arguments, pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
@@ -82,7 +95,7 @@ def row_library(model: Model) -> RowLibrary:
     wanted = [
         (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
     ]
-    return RowLibrary(tuple(wanted), model.inputs.size, len(columns))
+    return RowLibrary(tuple(wanted), model.inputs.size, model.parameters.size, len(columns))
 
 
 def row_results(scene: Scene) -> tuple[str, ...]:
@@ -101,16 +114,24 @@ def _state(actuator: Actuator) -> tuple[str, str]:
 def _rows_source(model: Model, names: Names, results: int) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
+    passed = ", parameters" if model.parameters.size else ""
     lines = list[str]()
     column = len(JUDGED)
     for function in (*tips, *bodies):
-        lines.append(f"    {function}(x, given, row + {column}, row + {column + 3});")
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 3});")
         column += len(POSE)
     for actuator in names.actuators:
         function = names.function("actuator", actuator)
-        lines.append(f"    {function}(x, given, row + {column}, row + {column + 1}, 0);")
+        lines.append(f"    {function}(x, given{passed}, row + {column}, row + {column + 1}, 0);")
         column += 2
     words = {"name": names.name, "MACRO": names.macro, "results": str(results), "calls": "\n".join(lines)}
+    words |= {"passed": passed, "parameters": "", "parameter_rows": "", "own_parameters": ""}
+    if passed:
+        real = f"{names.name}_real"
+        words["parameters"] = f", const {real} *all_parameters"
+        words["parameter_rows"] = ", all_parameters (PARAMETERS x count)"
+        own = f"all_parameters + (size_t)i * {names.macro}_PARAMETERS"
+        words["own_parameters"] = f"    const {real} *parameters = {own};\n"
     return render("rows.c.in", words)
 
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosserat_casadi.codegen.names import Names
+import numpy as np
+
+from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.model.build import Model
 
 
@@ -19,7 +21,7 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
     pack = list[str]()
     unpack = list[str]()
     for entry in entries:
-        member = member_name(entry["name"])
+        member = identifier(entry["name"])
         macro = input_macro(names, entry["name"])
         members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
         pack.append(f"  memcpy(inputs + {macro}, named->{member}, sizeof named->{member});")
@@ -31,6 +33,29 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
     }
 
 
+def parameter_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
+    """Words of the struct of parameters.
+
+    Args:
+        names: what things are called.
+        entries: parameters as in the manifest.
+    """
+    members = list[str]()
+    pack = list[str]()
+    unpack = list[str]()
+    for entry in entries:
+        member = identifier(entry["name"])
+        macro = parameter_macro(names, entry["name"])
+        members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
+        pack.append(f"  memcpy(parameters + {macro}, named->{member}, sizeof named->{member});")
+        unpack.append(f"  memcpy(named->{member}, parameters + {macro}, sizeof named->{member});")
+    return {
+        "parameter_struct": "\n".join(members),
+        "parameter_pack_lines": "\n".join(pack),
+        "parameter_unpack_lines": "\n".join(unpack),
+    }
+
+
 def result_struct_words(model: Model, names: Names) -> dict[str, str]:
     """Words of the struct of results.
 
@@ -38,11 +63,12 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
         model: what is exported.
         names: what things are called.
     """
+    passed = ", parameters" if model.parameters.size else ""
     poses = {pose_name(names, "tip", rod): names.function("tip", rod) for rod in names.rods}
     poses |= {pose_name(names, "body", body): names.function("body", body) for body in names.bodies}
     members = [f"  {names.name}_pose {member};" for member in poses]
     calls = [
-        f"  {function}(x, inputs, named->{member}.position, named->{member}.quaternion);"
+        f"  {function}(x, inputs{passed}, named->{member}.position, named->{member}.quaternion);"
         for member, function in poses.items()
     ]
     for actuator in names.actuators:
@@ -52,7 +78,7 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
         ]
         function = names.function("actuator", actuator)
         arguments = f"&named->{effort.name}_{actuator}, &named->{conjugate.name}_{actuator}"
-        calls.append(f"  {function}(x, inputs, {arguments}, 0);")
+        calls.append(f"  {function}(x, inputs{passed}, {arguments}, 0);")
     macros = [f"#define {names.macro}_POSE_{member.upper()} {i}" for i, member in enumerate(poses)]
     return {
         "results_members": "\n".join(members),
@@ -61,14 +87,25 @@ def result_struct_words(model: Model, names: Names) -> dict[str, str]:
     }
 
 
-def member_name(input_name: str) -> str:
-    """An input's name as a C identifier."""
-    return input_name.replace(".", "_")
-
-
 def input_macro(names: Names, input_name: str) -> str:
     """Macro of an input's first entry."""
-    return f"{names.macro}_INPUT_{member_name(input_name).upper()}"
+    return f"{names.macro}_INPUT_{identifier(input_name).upper()}"
+
+
+def parameter_macro(names: Names, parameter: str) -> str:
+    """Macro of a parameter's first entry."""
+    return f"{names.macro}_PARAMETER_{identifier(parameter).upper()}"
+
+
+def listed(values: list[float]) -> str:
+    """Numbers as text, with the digits that they need."""
+    return ", ".join(f"{value:g}" if float(f"{value:g}") == value else repr(value) for value in values)
+
+
+def initialiser(value: float, names: Names) -> str:
+    """A number that float and double take without a word from the compiler."""
+    written = listed([value])
+    return written if float(np.float32(value)) == value else f"({names.name}_real){written}"
 
 
 def pose_name(names: Names, word: str, owner: str) -> str:

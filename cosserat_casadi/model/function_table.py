@@ -23,13 +23,14 @@ Result = TypeVar("Result")
 
 ARGUMENT_UNITS: dict[str, str] = {
     "inputs": "inputs",
+    "p": "parameters",
     "base_position": "m",
     "inputs_rate": "inputs",
     "inputs_acceleration": "inputs",
     "v": "1/s",
     "a": "1/s²",
 }
-"""Units of the arguments that have one; "inputs" stands for those of the stacked inputs."""
+"""Units of the arguments that have one; "inputs" stands for those of the stacked inputs, so "parameters"."""
 
 SCALAR_ARGUMENTS = frozenset({"X", "load_factor", "load_factor_rate"})
 """Arguments that are one number whatever the scene: functions in C take them by value."""

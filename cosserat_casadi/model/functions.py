@@ -18,7 +18,14 @@ from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.function_table import Expressions, Output, Owner, owned_functions, scene_function
+from cosserat_casadi.model.function_table import (
+    PARAMETERS,
+    Expressions,
+    Output,
+    Owner,
+    owned_functions,
+    scene_function,
+)
 from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System, ratio_of
@@ -43,7 +50,14 @@ PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
 
 POSE = (Output("position", "m"), Output("quaternion"), Output("rotation"))
-POSE_DERIVATIVES = (Output("d_pose_d_x", derivative_by="x"), Output("d_pose_d_inputs", derivative_by="inputs"))
+
+
+def _pose_derivatives(discrete: DiscreteScene, _: str) -> tuple[Output, ...]:
+    """Derivatives of a pose with all that it depends on: with parameters in a scene that names some."""
+    derivatives = (Output("d_pose_d_x", derivative_by="x"), Output("d_pose_d_inputs", derivative_by="inputs"))
+    if discrete.parameters.size:
+        derivatives += (Output("d_pose_d_parameters", derivative_by=PARAMETERS),)
+    return derivatives
 
 
 def _actuator_outputs(discrete: DiscreteScene, name: str) -> tuple[Output, ...]:
@@ -156,12 +170,15 @@ class ModelFunctions:
 
     @owned_functions(
         Owner.ROD,
-        POSE_DERIVATIVES,
+        _pose_derivatives,
         kernel="tip_jacobian",
         header="Derivatives of position and quaternion of the tip of rod {owner}, stacked.",
     )
     def tip_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs."""
+        """(x, inputs) ↦ derivatives of the tip's position and quaternion, stacked 7×…, with x and with inputs.
+
+        In a scene with parameters (x, inputs, p), and with p too.
+        """
         return _tip_derivatives(written)
 
     @owned_functions(
@@ -245,15 +262,18 @@ class ModelFunctions:
 
     @owned_functions(
         Owner.BODY,
-        POSE_DERIVATIVES,
+        _pose_derivatives,
         kernel="body_jacobian",
         header="Derivatives of position and quaternion of the body {owner}, stacked.",
     )
     def body_jacobian(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs."""
+        """(x, inputs) ↦ derivatives of a body's position and quaternion, stacked 7×…, with x and with inputs.
+
+        In a scene with parameters (x, inputs, p), and with p too.
+        """
         frame = written.system.frame(FrameName("body", written.owner))
         pose = ca.vertcat(frame.position, frame.quaternion)
-        return [ca.densify(ca.jacobian(pose, written[argument])) for argument in ("x", "inputs")]
+        return [ca.densify(ca.jacobian(pose, symbol)) for symbol in written.symbols.values()]
 
     @scene_function(Output("energy", "J"))
     def energy(self, written: Expressions) -> list[Matrix]:
@@ -386,7 +406,10 @@ def _tip_derivatives(written: Expressions) -> list[Matrix]:
     by_inputs = ca.DM.zeros(7, discrete.layout.size)
     if discrete.layout.geometry:
         by_inputs = ca.densify(ca.jacobian(pose, written["inputs"]))
-    return [ca.densify(by_unknowns), by_inputs]
+    derivatives = [ca.densify(by_unknowns), by_inputs]
+    if discrete.parameters.size:
+        derivatives.append(ca.densify(ca.jacobian(pose, written[PARAMETERS])))
+    return derivatives
 
 
 def _by_strains(written: Expressions) -> Matrix:

@@ -1,21 +1,25 @@
-"""A step whose size is given: where its equations are not solved at once, shorter ones show the way to their solution.
+"""A step whose size is given: where its equations are not solved at once, it grows to its size.
 
-No shorter step may stand for it, but what shorter ones arrive at is nearly what it arrives at: their accelerations at
-the times of its stages are a first iterate that the step before, on its polynomial, cannot foretell.
+With one Jacobian for all stages, Newton's method fails where a step turns a rod far; with one at each stage it goes on.
+Where that fails too, a shorter step from the same start is solved first. No shorter step may stand for the given one,
+but as the size grows, the accelerations and multipliers at the stages change with it continuously: what was found for
+one size foretells those for the next, until the given one is reached.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.stage_newton import StageSolution
-from cosserat_casadi.numerics.step import Step
 from cosserat_casadi.numerics.step_run import StepRun
 
-MOST_HALVINGS = 5
-"""Times that the steps which show the way are halved."""
+LEAST_GROWTH = 2.0**-8
+"""Smallest growth that is tried, as a share of the given size."""
+
+LONGER = 1.5
+"""Factor on the growth after one that was solved; it is halved after one that was not."""
 
 
 def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
@@ -23,42 +27,51 @@ def solve_given_step(run: StepRun) -> StageSolution | StepOutcome:
     solution = run.solve()
     if not isinstance(solution, StepOutcome):
         return solution
-    for halvings in range(1, MOST_HALVINGS + 1):
-        shorter = _shorter_steps(run, 2**halvings)
-        if shorter is None:
-            continue
-        if solution is StepOutcome.SINGULAR:
-            # So it is at this size alone.
-            solution = StepOutcome.NOT_SOLVED
-        found = run.solve(_at_stages(run, shorter))
-        if not isinstance(found, StepOutcome):
-            return found
+    wanted = run.size
+    longest = _grown(run, wanted)
+    run.size = wanted
+    if longest is not None and longest.share == 1.0:
+        return longest.solution
+    if longest is not None and solution is StepOutcome.SINGULAR:
+        # The matrices are so at the given size alone.
+        return StepOutcome.NOT_SOLVED
     return solution
 
 
-def _shorter_steps(run: StepRun, count: int) -> list[Step] | None:
-    """So many steps in place of the next one; None where one of them is not solved."""
-    begin = run.now.time
-    parts = StepRun(run.equations, run.method, run.settings, run.now, begin + run.size)
-    parts.size = run.size / count
-    solved = True
-    for number in range(1, count + 1):
-        solution = parts.solve()
-        if isinstance(solution, StepOutcome):
-            solved = False
+@dataclass(frozen=True)
+class Longest:
+    """The longest step that was solved.
+
+    Attributes:
+        share: of the given size.
+        solution: its stages.
+    """
+
+    share: float
+    solution: StageSolution
+
+
+def _grown(run: StepRun, wanted: float) -> Longest | None:
+    """The step with a Jacobian at each stage, of a size that grows to the given one; None where none is solved."""
+    longest = None
+    growth = 1.0
+    while longest is None or longest.share < 1.0:
+        if growth < LEAST_GROWTH:
             break
-        parts.accept(solution, begin + number * parts.size, float("nan"))
-    run.iterations += parts.iterations
-    run.jacobians += parts.jacobians
-    run.factorisations += parts.factorisations
-    return parts.steps if solved else None
+        share = min(1.0, growth if longest is None else longest.share + growth)
+        run.size = share * wanted
+        solution = run.solve_coupled(_first_iterate(run, share, longest))
+        if solution is None:
+            growth /= 2.0
+        else:
+            longest = Longest(share, solution)
+            growth *= LONGER
+    return longest
 
 
-def _at_stages(run: StepRun, shorter: list[Step]) -> FloatArray:
-    """Accelerations and algebraic values of shorter steps at the stages of the next one, shape (s, n)."""
-    rows = []
-    for node in run.method.nodes:
-        number = min(int(node * len(shorter)), len(shorter) - 1)
-        instant = shorter[number].at(run.now.time + float(node) * run.size)
-        rows.append(np.where(run.equations.differential, instant.a, instant.x))
-    return np.stack(rows)
+def _first_iterate(run: StepRun, share: float, longest: Longest | None) -> FloatArray:
+    """Unknowns of the stages as the shorter step, or the step before, has them at their times, shape (s, n)."""
+    if longest is None:
+        return run.guess()
+    shares = run.method.nodes * (share / longest.share)
+    return run.method.values_at_stages(shares) @ longest.solution.unknowns

@@ -121,7 +121,7 @@ def step_matrices(
         if eigenvalue.imag == 0.0:
             rate = rate.real
         stiffness = linearisation.stiffness + rate * linearisation.damping + rate**2 * linearisation.mass
-        inverse = _inverse(stiffness)
+        inverse = scaled_inverse(stiffness)
         if inverse is None:
             return None
         inverses.append(inverse)
@@ -129,7 +129,7 @@ def step_matrices(
     return StepMatrices(method, step, linearisation, inverses, shares)
 
 
-def _inverse(matrix: npt.NDArray[Any]) -> npt.NDArray[Any] | None:
+def scaled_inverse(matrix: npt.NDArray[Any]) -> npt.NDArray[Any] | None:
     """Inverse by way of a matrix whose largest entry of every row and column is one; None where it is singular."""
     sizes = np.abs(matrix)
     rows = sizes.max(axis=1)

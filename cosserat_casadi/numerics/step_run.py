@@ -8,6 +8,7 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.collocation import Collocation
+from cosserat_casadi.numerics.coupled_stages import CoupledStages, solve_coupled_stages
 from cosserat_casadi.numerics.guards import Guards, crossing
 from cosserat_casadi.numerics.integration import Integration, Settle, StepOutcome, StepSettings, StepStatistics
 from cosserat_casadi.numerics.motion_equations import Instant, Linearisation, MotionEquations
@@ -31,8 +32,8 @@ ON_GUARD = 1e-13
 FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
-ITERATIONS_OF_GIVEN_STEP = 100
-"""Most Newton iterations of a step whose size is given: no shorter one may be tried."""
+ITERATIONS_OF_GIVEN_STEP = 30
+"""Most Newton iterations, with one Jacobian, of a step whose size is given: no shorter one may stand for it."""
 
 
 @dataclass
@@ -108,26 +109,34 @@ class StepRun:
         self.linearisation = None
         self.matrices = None
 
-    def solve(self, guess: FloatArray | None = None) -> StageSolution | StepOutcome:
-        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried.
-
-        Args:
-            guess: first iterate of the stages, shape (s, n); None for what goes on as the step before.
-        """
-        solution = self._solve_with_jacobian(guess)
+    def solve(self) -> StageSolution | StepOutcome:
+        """Solve the equations of a step of the present size; else say how the motion ends if no other is tried."""
+        solution = self._solve_with_jacobian()
         if isinstance(solution, StepOutcome) and not self.fresh:
             # The Jacobian may be too old: the same step gets one of its own.
             self.renew_jacobian()
-            solution = self._solve_with_jacobian(guess)
+            solution = self._solve_with_jacobian()
         if isinstance(solution, StepOutcome):
             # A shorter step has its middle elsewhere.
             self.renew_jacobian()
         return solution
 
-    def _solve_with_jacobian(self, guess: FloatArray | None) -> StageSolution | StepOutcome:
+    def solve_coupled(self, guess: FloatArray) -> StageSolution | None:
+        """Solve them with a Jacobian at each stage, damped; None where that fails too.
+
+        Args:
+            guess: first iterate of the stages, shape (s, n).
+        """
+        stages = CoupledStages(self.equations, self.method, self.now, self.size)
+        solution = solve_coupled_stages(stages, guess, self.bounds)
+        self.iterations += solution.iterations
+        self.jacobians += solution.iterations * self.method.stages
+        self.factorisations += solution.iterations
+        return solution if solution.outcome is StageOutcome.CONVERGED else None
+
+    def _solve_with_jacobian(self) -> StageSolution | StepOutcome:
         """Solve with the Jacobian in use, or a new one where there is none."""
-        if guess is None:
-            guess = self.guess()
+        guess = self.guess()
         linearisation = self.linearisation
         if linearisation is None:
             linearisation = self.equations.linearised(self._middle(guess))

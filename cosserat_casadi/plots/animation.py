@@ -272,7 +272,7 @@ class _Film:
 
     def __init__(self, frames: Frames) -> None:
         shapes = moving_shapes(frames.model, np.arange(len(frames.x), dtype=float), frames.x, frames.inputs)
-        plane = shapes.plane
+        plane, view_axes = shapes.view
         if frames.section_axes:
             plane = None
         projection = None
@@ -284,7 +284,7 @@ class _Film:
         self.figure.suptitle(title, fontsize=11, fontweight="bold")
         axes = self.figure.add_subplot(projection=projection)
         self._frames = frames
-        self._canvas = Canvas(axes, plane, shapes.size)
+        self._canvas = Canvas(axes, plane, shapes.size, view_axes)
         self._lines = self._draw(frames.model, shapes)
         if frames.section_axes:
             self._lines += self._draw_section_axes(frames, shapes)
@@ -346,7 +346,7 @@ class _Film:
         if canvas.plane is None:
             canvas.equalise(shapes.points)
             return
-        points = shapes.points[:, canvas.plane]
+        points = canvas.projected(shapes.points)
         highest = points.max(axis=0)
         lowest = points.min(axis=0)
         centre = (highest + lowest) / 2

@@ -17,10 +17,10 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.eigenproblem import REAL
 from cosserat_casadi.motion.modes import Mode, Modes
 from cosserat_casadi.plots.animation import FRAME_RATE, Frames, save_frames
-from cosserat_casadi.plots.canvas import Canvas, Plane
+from cosserat_casadi.plots.canvas import WORLD, Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
-from cosserat_casadi.plots.moving_shapes import plane_of
+from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import CLAMP
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
@@ -66,8 +66,8 @@ def save_modes_plot(modes: Modes, file: str | Path) -> None:
 def plot_modes(modes: Modes) -> Any:
     """Figure of modes: one panel each with the equilibrium in grey and both ends of the swing.
 
-    Dots mark sections; where sections only turn, lines show their x axes. A panel shows the coordinate plane that
-    holds the mode, else space. All have one scale and one amplitude.
+    Dots mark sections; where sections only turn, lines show their x axes. A panel shows the plane that holds
+    the mode, else space. All have one scale and one amplitude.
 
     Returns:
         matplotlib.figure.Figure.
@@ -89,10 +89,11 @@ def plot_modes(modes: Modes) -> Any:
     for index, mode in enumerate(modes.modes):
         drawn = lines[index]
         projection = None
-        if drawn.plane is None:
+        plane, view_axes = drawn.view
+        if plane is None:
             projection = "3d"
         axes = figure.add_subplot(rows, columns, index + 1, projection=projection)
-        canvas = Canvas(axes, drawn.plane, drawn.size)
+        canvas = Canvas(axes, plane, drawn.size, view_axes)
         _draw_mode(canvas, modes, drawn)
         axes.set_title(mode_words(mode, index), fontsize=10, color=FAILURE if mode.grows else PLAIN_TEXT)
     return figure
@@ -171,11 +172,11 @@ class _ModeLines:
         return np.concatenate([line.reshape(-1, 3) for line in lines])
 
     @property
-    def plane(self) -> Plane | None:
-        """The first coordinate plane that holds all points, or None."""
+    def view(self) -> View:
+        """The plane that holds all points, or space, where arms show how sections turn."""
         if self.arms:
-            return None
-        return plane_of(self.points, self.size)
+            return None, WORLD
+        return view_of(self.points, STILL * self.size)
 
 
 def _mode_lines(modes: Modes) -> list[_ModeLines]:
@@ -199,10 +200,9 @@ def _mode_lines(modes: Modes) -> list[_ModeLines]:
             for name, pose in poses.items():
                 turn = amplitude * np.real(shapes[name].rotation[index])
                 arms[name] = _arms(pose.position, pose.rotation[:, :, 0], turn, ARM * size)
-        # What is left of rounding would make a plane mode one in space.
         ends = {}
         for name, displacement in displacements.items():
-            moved = amplitude * np.where(np.abs(displacement) > STILL * largest, displacement, 0.0)
+            moved = amplitude * displacement
             ends[name] = np.stack([equilibrium[name] + moved, equilibrium[name] - moved])
         drawn.append(_ModeLines(equilibrium, ends, arms, amplitude, size))
     return drawn

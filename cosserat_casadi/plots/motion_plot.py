@@ -115,10 +115,11 @@ def plot_motion(motion: Motion) -> Any:
 
 
 def _add_canvas(figure: Any, cell: Any, shapes: MovingShapes) -> Canvas:
+    plane, view_axes = shapes.view
     projection = None
-    if shapes.plane is None:
+    if plane is None:
         projection = "3d"
-    return Canvas(figure.add_subplot(cell, projection=projection), shapes.plane, shapes.size)
+    return Canvas(figure.add_subplot(cell, projection=projection), plane, shapes.size, view_axes)
 
 
 def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:

@@ -10,14 +10,12 @@ from cosserat_casadi.equilibrium.solution import rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.poses import body_poses, section_poses
-from cosserat_casadi.plots.canvas import FLAT, SPACE, Plane
+from cosserat_casadi.plots.canvas import FLAT
+from cosserat_casadi.plots.scene_view import View, view_of
 from cosserat_casadi.plots.scenery import body_corners
 
 SECTIONS = np.linspace(0.0, 1.0, 101)
 """Abscissae at which rods are drawn."""
-
-PLANES: tuple[Plane, ...] = ((0, 2), (0, 1), (1, 2))
-"""Planes that a motion may lie in, in the order in which they are tried."""
 
 
 @dataclass(frozen=True)
@@ -49,24 +47,9 @@ class MovingShapes:
         return float(extents.max())
 
     @property
-    def plane(self) -> Plane | None:
-        """The plane along two world axes that holds the whole motion; None where there is none."""
-        return plane_of(self.points, self.size)
-
-
-def plane_of(points: FloatArray, size: float) -> Plane | None:
-    """The first plane along two world axes that holds all points; None where there is none.
-
-    Args:
-        points: shape (n, 3), m.
-        size: extent beside which a thickness is rounding, m.
-    """
-    extents = np.ptp(points, axis=0)
-    for plane in PLANES:
-        (across,) = set(SPACE) - set(plane)
-        if extents[across] <= FLAT * size:
-            return plane
-    return None
+    def view(self) -> View:
+        """The plane that holds the whole motion, or space."""
+        return view_of(self.points, FLAT * self.size)
 
 
 def moving_shapes(model: Model, times: FloatArray, x: FloatArray, inputs: FloatArray) -> MovingShapes:

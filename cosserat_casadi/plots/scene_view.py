@@ -1,4 +1,4 @@
-"""From where a scene is looked at: in space, or across the plane that holds all of it."""
+"""From where a scene or a motion is looked at: in space, or across the plane that holds all of it."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from cosserat_casadi.plots.arrows import lies_in_plane
 from cosserat_casadi.plots.canvas import FLAT, WORLD, Plane
 from cosserat_casadi.plots.shapes import RodShapes
 
+View = tuple[Plane | None, FloatArray]
+"""Two axes to the right and upwards, None for space; and the axes they are of, a row each, shape (3, 3)."""
+
 PLANES: tuple[tuple[int, Plane], ...] = ((1, (0, 2)), (2, (0, 1)), (0, (1, 2)))
 """Normal and axes of the coordinate planes, in the order in which they are tried."""
 
@@ -20,26 +23,36 @@ UPRIGHT = 1e-6
 """Length of the vertical in a plane, relative to its own, from which it points upwards in the picture."""
 
 
-def scene_view(shapes: RodShapes, arrows: Sequence[Arrow]) -> tuple[Plane | None, FloatArray]:
-    """The plane that holds all rods and forces, moments across it, as axes to the right and upwards.
+def scene_view(shapes: RodShapes, arrows: Sequence[Arrow]) -> View:
+    """The plane that holds all rods and forces, moments across it."""
+    points = np.concatenate(list(shapes.deformed.values()))
+    return view_of(points, FLAT * shapes.size, arrows)
+
+
+def view_of(points: FloatArray, thickness: float, arrows: Sequence[Arrow] = ()) -> View:
+    """The plane that holds all points and arrows, moments across it.
+
+    Args:
+        points: shape (n, 3), m.
+        thickness: extent across a plane that counts as rounding, m.
+        arrows: of loads.
 
     Returns:
-        the two axes, or None where the scene fills space; and the axes that they are counted in, a row each, shape
-        (3, 3): those of the world, or for a plane that stands askew its own, with its normal second.
+        the two axes of the plane, or None where points and arrows fill space; and the axes that they are counted in:
+        those of the world, or for a plane that stands askew its own, with its normal second.
     """
-    points = np.concatenate(list(shapes.deformed.values()))
     for normal, plane in PLANES:
-        if _holds(normal, WORLD, points, arrows, shapes.size):
+        if _holds(normal, WORLD, points, arrows, thickness):
             return plane, WORLD
     askew = _fitted_axes(points)
-    if askew is not None and _holds(1, askew, points, arrows, shapes.size):
+    if askew is not None and _holds(1, askew, points, arrows, thickness):
         return (0, 2), askew
     return None, WORLD
 
 
-def _holds(normal: int, axes: FloatArray, points: FloatArray, arrows: Sequence[Arrow], size: float) -> bool:
+def _holds(normal: int, axes: FloatArray, points: FloatArray, arrows: Sequence[Arrow], thickness: float) -> bool:
     """Whether points and arrows lie in a plane across one of the axes."""
-    if np.ptp(points @ axes[normal]) > FLAT * size:
+    if np.ptp(points @ axes[normal]) > thickness:
         return False
     turned = [replace(arrow, vector=axes @ arrow.vector) for arrow in arrows]
     return all(lies_in_plane(arrow, normal) for arrow in turned)

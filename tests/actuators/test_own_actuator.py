@@ -14,6 +14,7 @@ from cosserat_casadi import Model, Scene, build, scene_from_dict, solve
 from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.routing import routing
 from cosserat_casadi.maths.grid import Grid
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.registry import register
 from cosserat_casadi.rod.strain_density import StrainDensity
@@ -162,3 +163,26 @@ def test_effort_is_an_input_and_the_rod_is_solved() -> None:
     assert solution.stable
     without = solve(model, {"muscle.pull": 0.0})
     assert np.abs(solution.tip().position - without.tip().position).max() > 1e-3
+
+
+@pytest.mark.parametrize("kind", [CordRecord, MuscleRecord])
+def test_a_density_on_moved_elements_vs_a_scene_of_its_own(kind: type[_CordKeys]) -> None:
+    """Strains are counted per nominal length of their element: residual and Jacobian of the other scene follow."""
+    record = kind(
+        name="own", kind=kind.__name__[:-6].lower(), rod="rod", pull=0.7, offset=(0.03, 0.01), span=(0.2, 0.6)
+    )
+    nominal = build(scene("reissner", record).model_copy(update={"parameters": ("own.span",)}))
+    moved = nominal.at({"own.span": [0.35, 0.5]})
+    rebuilt = build(moved.scene)
+    rod = moved.discrete.rods["rod"]
+    widths = known(rod.grid.rates)
+    element = [np.repeat(np.arange(3), rod.size_of(c) // 3) for c in rod.columns]
+    rate = widths[np.concatenate(element)]
+    x = point(moved)
+    for found, wanted, factor in (
+        (moved.residual(x, moved.pack()), rebuilt.residual(x / rate, moved.pack()), rate[:, None]),
+        (moved.jacobian(x, moved.pack())[0], rebuilt.jacobian(x / rate, moved.pack())[0], np.outer(rate, rate)),
+        (moved.actuator["own"](x, moved.pack())[1], rebuilt.actuator["own"](x / rate, moved.pack())[1], 1.0),
+    ):
+        expected = wanted.full() / factor
+        assert_allclose(found.full(), expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +13,7 @@ from cosserat_casadi import Solution, build, read_scene, solve
 from cosserat_casadi.codegen.motion_sources import MOTION_FILES
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.solution_file import result_text
+from tests.commands import cosserat
 from tests.conftest import ROOT
 
 SCENE = """
@@ -32,11 +31,6 @@ kind = "tip_wrench"
 rod = "wire"
 force = [0.2, 0, 0]
 """
-
-
-def cosserat(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()", *arguments]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
 
 
 @pytest.fixture

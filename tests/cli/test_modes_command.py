@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import read_scene
 from cosserat_casadi.motion.modes import modes_of_scene
+from tests.commands import Ended, cosserat
 
 SCENE = """
 schema = 1
@@ -32,9 +31,8 @@ frame = "body"
 """
 
 
-def cosserat(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from cosserat_casadi.cli.main import main; main()", "modes", *arguments]
-    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120, check=False)
+def run_modes(*arguments: str, cwd: Path) -> Ended:
+    return cosserat("modes", *arguments, cwd=cwd)
 
 
 @pytest.fixture
@@ -45,7 +43,7 @@ def blade(tmp_path: Path) -> Path:
 
 def test_modes_are_printed_written_and_drawn(blade: Path) -> None:
     files = ("--output", "m.json", "--plot", "m.png", "--animation", "m.gif")
-    done = cosserat("blade.toml", "--count", "3", "--mode", "2", *files, cwd=blade)
+    done = run_modes("blade.toml", "--count", "3", "--mode", "2", *files, cwd=blade)
     assert done.returncode == 0, done.stderr
     assert "every frequency is known" in done.stdout
     assert "3.5160153" in done.stdout
@@ -69,7 +67,7 @@ def test_modes_are_printed_written_and_drawn(blade: Path) -> None:
 
 
 def test_flutter_is_told_and_written_in_both_phases(blade: Path) -> None:
-    done = cosserat("blade.toml", "--set", "thrust.force=[0,0,-25]", "--count", "2", "--output", "m.json", cwd=blade)
+    done = run_modes("blade.toml", "--set", "thrust.force=[0,0,-25]", "--count", "2", "--output", "m.json", cwd=blade)
     assert done.returncode == 0, done.stderr
     assert "flutter" in done.stdout
     growing, decaying = json.loads((blade / "m.json").read_text())["modes"]
@@ -80,7 +78,7 @@ def test_flutter_is_told_and_written_in_both_phases(blade: Path) -> None:
 
 
 def test_frequencies_that_are_not_resolved_end_with_three_and_are_written(blade: Path) -> None:
-    done = cosserat("blade.toml", "--set", "accuracy.modes=3", "--count", "3", "--output", "m.json", cwd=blade)
+    done = run_modes("blade.toml", "--set", "accuracy.modes=3", "--count", "3", "--output", "m.json", cwd=blade)
     assert done.returncode == 3
     written = json.loads((blade / "m.json").read_text())
     assert written["converged"] is False
@@ -89,7 +87,7 @@ def test_frequencies_that_are_not_resolved_end_with_three_and_are_written(blade:
 
 def test_every_refusal_comes_at_once(blade: Path) -> None:
     options = ("--count", "2", "--mode", "3", "--plot", "m.txt", "--animation", "m.txt", "--output", "no/m.json")
-    done = cosserat("blade.toml", *options, "--set", "blade.length=-1", cwd=blade)
+    done = run_modes("blade.toml", *options, "--set", "blade.length=-1", cwd=blade)
     assert done.returncode == 2
     for words in ("--mode", "--plot", "--animation", "no", "length"):
         assert words in done.stderr
@@ -99,7 +97,7 @@ def test_every_refusal_comes_at_once(blade: Path) -> None:
 def test_a_scene_without_mass_is_refused(blade: Path) -> None:
     text = (blade / "blade.toml").read_text().replace("linear_density = 1.0\n", "")
     (blade / "blade.toml").write_text(text)
-    done = cosserat("blade.toml", cwd=blade)
+    done = run_modes("blade.toml", cwd=blade)
     assert done.returncode == 2
     assert "has mass" in done.stderr
 
@@ -116,7 +114,7 @@ rod = "blade"
 kind = "fixed"
 """
     (blade / "blade.toml").write_text(text + body)
-    done = cosserat("blade.toml", "--mode", "5", "--animation", "m.gif", "--output", "m.json", cwd=blade)
+    done = run_modes("blade.toml", "--mode", "5", "--animation", "m.gif", "--output", "m.json", cwd=blade)
     assert done.returncode == 2
     assert "the scene has no more modes" in done.stderr
     assert not (blade / "m.json").exists()

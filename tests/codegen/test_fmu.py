@@ -21,9 +21,6 @@ from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
 
-pytestmark = pytest.mark.xdist_group("fmu")
-"""On one worker, so that what they share is made once."""
-
 SCENE = """
 schema = 1
 inputs = ["push.force", "flexor.tension", "finger.base.position"]

@@ -60,8 +60,10 @@ def test_many_steps_of_a_damped_rod(motion_library: MotionLibrary) -> None:
 
 
 @pytest.mark.slow
-def test_a_million_steps_of_a_damped_rod(motion_library: MotionLibrary) -> None:
-    long_run(motion_library("kirchhoff"), 1_000_000, "-O2", "-fPIC")
+@pytest.mark.parametrize("family", ["kirchhoff", "tendons"])
+def test_a_million_steps_of_a_damped_robot(motion_library: MotionLibrary, family: str) -> None:
+    """A rod under three loads, and one that a tendon and a chamber bend under its weight."""
+    long_run(motion_library(family), 1_000_000, "-O2", "-fPIC")
 
 
 @pytest.mark.parametrize("family", ["planar", pytest.param("fixed joint", marks=pytest.mark.slow)])

@@ -12,9 +12,6 @@ from cosserat_casadi import parse_scene
 from cosserat_casadi.environments import REACH, ReachEnvironment
 from cosserat_casadi.errors import SceneError
 
-pytestmark = pytest.mark.xdist_group("reach")
-"""On one worker, so that what they share is made once."""
-
 SCENE = """
 schema = 1
 [accuracy]

@@ -14,9 +14,6 @@ from cosserat_casadi.page.page import LARGEST, export_page
 from tests.browser import browser
 from tests.page.pages_made import strip, wasm_compiler
 
-pytestmark = pytest.mark.xdist_group("page")
-"""On one worker, so that what they share is made once."""
-
 
 @pytest.fixture(scope="module")
 def solution() -> Solution:

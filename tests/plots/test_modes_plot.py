@@ -33,6 +33,13 @@ def test_one_panel_a_mode_in_the_plane_that_holds_it(modes: Modes) -> None:
         assert axes.get_title() == mode_words(modes.modes[index], index)
 
 
+def test_modes_in_a_plane_that_stands_askew_are_drawn_in_it() -> None:
+    turned = {"quaternion": [np.cos(0.3), 0, 0, np.sin(0.3)]}
+    figure = plot_modes(modes_of_scene(scene(rods=[rod("planar", base=turned)]), count=2))
+    assert [axes.name for axes in figure.axes] == ["rectilinear", "rectilinear"]
+    assert figure.axes[0].get_xlabel() == "along (0.825, 0.565, 0), m"
+
+
 def test_both_ends_of_a_swing_lie_about_the_equilibrium(modes: Modes) -> None:
     axes = next(axes for axes in plot_modes(modes).axes if axes.get_xlabel() == "x, m" and axes.name != "3d")
     rest, _, back, there = (line.get_xydata() for line in axes.get_lines()[:4])

@@ -56,6 +56,19 @@ def test_shapes_fade_from_early_to_late_in_their_plane(planar: Motion) -> None:
     assert_allclose(to_rgb(lines[-1].get_color()), to_rgb(rod_colour(0)), rtol=0, atol=1e-12)
 
 
+def test_a_motion_in_a_plane_that_stands_askew_is_drawn_in_it() -> None:
+    angle = 0.6
+    right = np.array([np.cos(angle), np.sin(angle), 0.0])
+    turned = {"quaternion": [np.cos(angle / 2), 0, 0, np.sin(angle / 2)]}
+    flat = scene(push(force=(0.9 * right).tolist()), rods=[rod("planar", base=turned)])
+    motion = motion_of(flat, {"push.force": (-0.8 * right).tolist()})
+    scenery = plot_motion(motion).axes[0]
+    assert scenery.name == "rectilinear"
+    last = rod_lines(scenery)[-1].get_xydata()
+    position = motion.section(None, SECTIONS).position[-1]
+    assert_allclose(last, np.stack([position @ right, position[:, 2]], axis=1), rtol=0, atol=1e-9)
+
+
 def test_shapes_are_evenly_spaced_in_time_wherever_the_rows_lie() -> None:
     # Rows crowd at the start: by number alone, most shapes would show nothing but that.
     times = np.linspace(0.0, 1.0, 201) ** 3

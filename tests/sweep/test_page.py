@@ -6,8 +6,6 @@ import csv
 import io
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -16,7 +14,9 @@ from cosserat_casadi import read_scene
 from cosserat_casadi.sweep.outcome_table import LABELS
 from cosserat_casadi.sweep.table import Table, read_table
 from cosserat_casadi.sweep.variants import variants_of
+from tests.commands import cosserat
 from tests.conftest import ROOT
+from tests.pages import run_python
 
 pytestmark = pytest.mark.usefixtures("quick_compiler")
 
@@ -54,11 +54,8 @@ def test_every_outcome_is_named() -> None:
 
 def test_python_of_the_page_runs() -> None:
     (code,) = blocks("python")
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert "{'converged': 9} True" in done.stdout
+    printed = run_python(code)
+    assert "{'converged': 9} True" in printed
 
 
 @pytest.mark.slow
@@ -67,12 +64,9 @@ def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
     grid = (ROOT / "examples" / "sweeps" / "robot_workspace.toml").read_text()
     (tmp_path / "small.toml").write_text(grid.replace("samples = 20000", "samples = 30"))
     line = first.replace("examples/sweeps/robot_workspace.toml", "small.toml").replace("examples/", f"{ROOT}/examples/")
-    code = "from cosserat_casadi.cli.main import main; main()"
     words = [*shlex.split(line)[1:], "--set", "accuracy.modes=3", "--set", "accuracy.nodes=6"]
     words = [word.replace("accuracy.tolerance=1e-4", "accuracy.tolerance=0.1") for word in words]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
-    )
+    done = cosserat(*words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr + done.stdout
     assert (tmp_path / "workspace.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "workspace.parquet").exists()
@@ -82,13 +76,10 @@ def test_command_of_the_page_runs_at_a_small_size(tmp_path: Path) -> None:
 def test_wires_drawn_from_tolerances_are_solved(tmp_path: Path) -> None:
     """A stiffer wire bends less: the tips of 16 drawn wires lie in the order of their bending stiffness."""
     grid = ROOT / "examples" / "sweeps" / "wire_tolerances.toml"
-    code = "from cosserat_casadi.cli.main import main; main()"
     words = ["sweep", str(WIRE), "--over", str(grid), "--output", "wires.csv", "--set", "weight.acceleration=[0,0,0]"]
     words += ["--set", "push.force=[0,0,0]", "--set", "accuracy.modes=4", "--set", "accuracy.nodes=8"]
     words += ["--set", "accuracy.tolerance=1e-3"]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
-    )
+    done = cosserat(*words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr + done.stdout
     assert "Warning" not in done.stderr
     rows = list(csv.DictReader(io.StringIO((tmp_path / "wires.csv").read_text())))

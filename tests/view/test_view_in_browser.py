@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import http.client
 import json
+import socket
+import struct
 import threading
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,9 +19,6 @@ from cosserat_casadi.view.server import HOST, RobotServer
 from cosserat_casadi.view.session import opened
 from tests.browser import browser
 from tests.view.test_session import strip
-
-pytestmark = pytest.mark.xdist_group("view")
-"""On one worker, so that what they share is made once."""
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +116,20 @@ def test_what_is_no_question_is_refused(server: RobotServer) -> None:
     status, content = request(server, "POST", "/move", json.dumps({"inputs": [0.3, 0.0, -0.2, None]}))
     assert status == 200
     assert json.loads(content)["label"] == "not_finite"
+
+
+def test_a_page_that_is_closed_while_it_waits_is_no_fault(
+    server: RobotServer, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for _ in range(3):
+        connection = http.client.HTTPConnection(HOST, server.server_port, timeout=30)
+        connection.request("POST", "/move", json.dumps({"inputs": [0.3, 0.0, -0.2, 3.0]}))
+        # Closed with a reset, as by a browser that is killed.
+        connection.sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        connection.sock.close()
+    assert request(server, "POST", "/move", json.dumps({"inputs": [0.3, 0.0, -0.2, 3.0]}))[0] == 200
+    time.sleep(0.1)
+    assert capsys.readouterr().err == ""
 
 
 def test_pages_from_elsewhere_are_not_answered(server: RobotServer) -> None:

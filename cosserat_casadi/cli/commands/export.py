@@ -21,7 +21,6 @@ from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -77,7 +76,6 @@ def export(
         check_fmu(fmu)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
-    refuse_parameters(exported_scene)
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
@@ -90,8 +88,8 @@ def export(
         raise typer.Exit(NOT_FOUND)
     console = Console()
     model = solution.model
-    if moves:
-        model = build(exported_scene, model.discretisation, moving=True)
+    if moves or exported_scene.parameters:
+        model = build(exported_scene, model.discretisation, moving=moves)
     # Folder and FMU keep the estimate, which is for these inputs; tune gives one for a range of them.
     estimate = solution.error_estimate
     if output is not None:

@@ -1,0 +1,92 @@
+"""Parameters of an exported folder, as its manifest lists them, and their values as arguments in C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.stacked import StackedLayout
+
+ParameterValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
+"""By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
+
+
+@dataclass(frozen=True)
+class ListedParameter:
+    """A parameter of an exported folder.
+
+    Attributes:
+        name: as the scene spells it.
+        unit: SI unit, "1" without.
+        default: the scene's value, shape (components, places along the rod).
+    """
+
+    name: str
+    unit: str
+    default: FloatArray
+
+    def faults(self, value: FloatArray) -> Iterator[Problem]:
+        """What is wrong with a value; the ranges of the scene are not known here."""
+        if value.size != self.default.size:
+            yield Problem(self.name, f"must have {self.default.size} numbers, got {value.size}")
+        elif not np.all(np.isfinite(value)):
+            yield Problem(self.name, f"must be finite, got {value.tolist()}")
+
+
+@dataclass(frozen=True)
+class ListedParameters(StackedLayout[ListedParameter]):
+    """The parameters of an exported folder, stacked into one vector p."""
+
+    what = "a parameter"
+    several = "parameters"
+
+    def stacked(self, values: ParameterValues = None) -> FloatArray:
+        """All parameters as one vector, shape (size,).
+
+        Raises:
+            SceneError: a name is unknown, or there are too few or too many numbers.
+        """
+        if values is None or isinstance(values, Mapping):
+            return self.pack(values)
+        # Numbers that are not finite are the solver's to judge, as those of inputs are.
+        self.split(values)
+        return np.ascontiguousarray(values, dtype=np.float64).ravel()
+
+    def passed(self, values: ParameterValues = None) -> list[Any]:
+        """The argument of functions in C; none where the scene has no parameters.
+
+        Raises:
+            SceneError: as :meth:`stacked`.
+        """
+        vector = self.stacked(values)
+        return [pointer(vector)] if self.size else []
+
+    def rows(self, values: ParameterValues = None) -> FloatArray:
+        """One row, or those that are given, shape (rows, size).
+
+        Raises:
+            ValueError: rows have another length.
+            SceneError: a name is unknown, or its value has another size.
+        """
+        if values is None or isinstance(values, Mapping):
+            return self.pack(values)[np.newaxis]
+        rows = np.atleast_2d(np.asarray(values, dtype=np.float64))
+        if rows.ndim != 2 or rows.shape[1] != self.size:
+            raise ValueError(f"parameters must have shape (count, {self.size}), got {rows.shape}")
+        return rows
+
+
+def listed_parameters(entries: Sequence[Mapping[str, Any]]) -> ListedParameters:
+    """The parameters of a manifest."""
+    parameters = []
+    for entry in entries:
+        default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
+        parameters.append(ListedParameter(entry["name"], entry["unit"], default))
+    return ListedParameters(tuple(parameters))
