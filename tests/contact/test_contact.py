@@ -4,19 +4,47 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from rich.console import Console
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
-from cosserat_casadi import Solution, build, discretise, parse_scene, read_scene, solve, solve_scene
+from cosserat_casadi import (
+    Solution,
+    acados_expressions,
+    build,
+    discretise,
+    export,
+    export_page,
+    follow_path,
+    follow_scene_path,
+    inverse,
+    inverse_scene,
+    linearise,
+    modes_of,
+    modes_of_scene,
+    parse_scene,
+    read_scene,
+    simulate_scene,
+    solve,
+    solve_scene,
+    tune,
+)
+from cosserat_casadi.cli.reports.solution import print_solution
+from cosserat_casadi.control import embedded, stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along
 from cosserat_casadi.equilibrium.contact.settle import pairs
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result
+from cosserat_casadi.sweep.run import plan_sweep
+from cosserat_casadi.sweep.table import table_of
+from cosserat_casadi.view.session import opened
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
@@ -179,6 +207,7 @@ def test_heavy_rod_on_a_table(table: Solution) -> None:
     assert table.stable
 
 
+@pytest.mark.slow
 def test_two_points_of_contact(bars: Solution) -> None:
     first, second = bars.contacts
     assert (first.obstacle, first.kind, second.obstacle, second.kind) == ("bar", "point", "second", "point")
@@ -191,6 +220,7 @@ def test_two_points_of_contact(bars: Solution) -> None:
         assert_allclose(contact.force @ tangent, 0.0, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_internal_wrench_knows_of_contact(bars: Solution) -> None:
     """Beyond the last contact it is the push alone."""
     beyond = np.array([0.9, 1.0])
@@ -199,18 +229,70 @@ def test_the_internal_wrench_knows_of_contact(bars: Solution) -> None:
     assert_allclose(force, [[0.0, 0.0, -3.0]] * 2, rtol=0, atol=1e-9)
 
 
-def test_result_names_contacts(bars: Solution, table: Solution) -> None:
-    data = result(bars)
-    assert list(data["inputs"]) == ["push.force"]
-    entries = data["contacts"]
-    assert [entry["obstacle"] for entry in entries] == ["bar", "second"]
-    assert entries[0]["from"] == entries[0]["to"] == bars.contacts[0].start
-    assert_allclose(entries[0]["force"], bars.contacts[0].force, rtol=0, atol=0)
-    (line,) = result(table)["contacts"]
-    assert (line["kind"], line["to"], len(line["point_forces"])) == ("line", 1.0, 2)
+def test_result_names_contacts(table: Solution) -> None:
+    data = result(table)
+    # The forces of contacts are found, not given.
+    assert list(data["inputs"]) == ["weight.acceleration"]
+    (line,) = data["contacts"]
+    (contact,) = table.contacts
+    assert (line["obstacle"], line["rod"], line["kind"]) == ("table", "rod", "line")
+    assert (line["from"], line["to"]) == (contact.start, 1.0)
+    assert_allclose(line["force"], contact.force, rtol=0, atol=0)
+    assert_allclose(line["point_forces"], contact.ends, rtol=0, atol=0)
     json.dumps(data)
 
 
+def test_report_and_figure(table: Solution, tmp_path: Path) -> None:
+    console = Console(record=True, width=160)
+    print_solution(console, table, [])
+    start = table.contacts[0].start
+    assert f"X = {start:.6g} to 1" in console.export_text()
+    figure = plot_solution(table)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"table", "contact"} <= set(labels)
+    save_plot(table, tmp_path / "table.png")
+    assert (tmp_path / "table.png").stat().st_size > 10_000
+
+
+def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: Path) -> None:
+    scene = parse_scene(TABLE)
+    model = table.model
+    uses: list[Callable[[], object]] = [
+        lambda: follow_path(model, "weight.acceleration", [0, 0, -9.81]),
+        lambda: follow_scene_path(scene, "weight.acceleration", [0, 0, -9.81]),
+        lambda: inverse(model),
+        lambda: inverse_scene(scene),
+        lambda: simulate_scene(scene),
+        lambda: build(scene, moving=True),
+        lambda: modes_of(table),
+        lambda: modes_of_scene(scene),
+        lambda: linearise(table),
+        lambda: export(model, tmp_path / "folder", "folder"),
+        lambda: acados_expressions(model, "rod"),
+        lambda: tune(scene, [{}]),
+        lambda: export_page(table, tmp_path / "page.html"),
+        lambda: opened(table),
+        lambda: stability_margin(model),
+        lambda: embedded(model, table),
+        lambda: plan_sweep(scene, table_of({"weight.acceleration.z": [-9.81]})),
+    ]
+    for use in uses:
+        with pytest.raises(SceneError, match="does not look for contact"):
+            use()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_scene_without_obstacles_is_as_it_was() -> None:
+    """Neither the search nor its loads know of a scene that names no obstacle."""
+    bare = parse_scene(TABLE[: TABLE.index("[[obstacles]]")])
+    named = parse_scene(TABLE)
+    first, second = (build(scene, discretise(scene, 4)) for scene in (bare, named))
+    # Not one instruction: an obstacle is no part of a model but where a rod is found to touch it.
+    assert first.operations(first.residual) == second.operations(second.residual)
+    assert first.operations(first.jacobian) == second.operations(second.jacobian)
+
+
+@pytest.mark.slow
 def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     harder = solve(bars.model, {"push.force": [0.0, 0.0, -3.3]}, start=bars)
     check_complementary(harder, 1e-8)
@@ -219,6 +301,7 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     assert harder.iterations < 10
 
 
+@pytest.mark.slow
 def test_tip_on_a_table() -> None:
     """A cantilever whose tip is held up: for small deflections R = P (a²/2)(3 − a)/1 at a = 0.6, less P h EI."""
     text = ROD + PUSH.replace("tip_wrench", "point_wrench").replace("force", "at = 0.6\nforce").replace("-3.0", "-0.02")
@@ -331,6 +414,8 @@ def test_turned_copies() -> None:
     assert_allclose(same.force, quarter @ contact.force, rtol=0, atol=1e-9)
     check_complementary(ball, 1e-9)
     check_forces_sum(ball, np.array([0.0, 0.1, -0.5]))
+    # In space obstacles are nets.
+    assert "ball" in [text.get_text() for text in plot_solution(ball).legends[0].get_texts()]
     bar = solved(ROD + UPRIGHT_BAR)
     in_its_place = 'kind = "sphere"\ncentre = [0.45, 0.12, 0]\nradius = 0.1\n'
     middle = solved(ROD + UPRIGHT_BAR[: UPRIGHT_BAR.index('kind = "capsule"')] + in_its_place)
@@ -401,11 +486,11 @@ def test_refused_scenes(change: str) -> None:
     assert problem in found[where]
 
 
-def test_refused_starts(bars: Solution) -> None:
+def test_refused_starts(table: Solution) -> None:
     with pytest.raises(ValueError, match="found by continuation"):
-        solve(bars.model, method="rootfinder")
+        solve(table.model, method="rootfinder")
     with pytest.raises(ValueError, match="unknowns name no contacts"):
-        solve(bars.model, start=bars.x)
+        solve(table.model, start=table.x)
 
 
 @pytest.mark.parametrize("name", ["over_a_bar", "lying_on_plane"])
