@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 from rich.console import Console
 from scipy.integrate import solve_ivp
-from scipy.optimize import fsolve
+from scipy.optimize import brentq, fsolve, minimize_scalar
 
 from cosserat_casadi import (
     Solution,
@@ -514,3 +514,47 @@ def test_reference_cases(name: str) -> None:
     assert_allclose(contact.end, expected["contact"].get("to", place), rtol=0, atol=1e-8)
     assert_allclose(contact.ends[0], force, rtol=0, atol=1e-7)
     check_complementary(found, 1e-7)
+
+
+@pytest.mark.slow
+def test_second_variation_of_a_point_that_slides() -> None:
+    """The smallest eigenvalue is that of the energy over shapes that touch, found by differences alone.
+
+    The place of contact is sought anew for every shape: as the rod moves the point slides along it.
+    """
+    planar = ROD.replace('"kirchhoff"', '"planar"') + PUSH.replace("-3.0", "-1.0")
+    bar = solved(planar + TWO_BARS[: TWO_BARS.index("[[obstacles]]", 5)], modes=3)
+    (contact,) = bar.contacts
+    (obstacle,) = bar.model.scene.obstacles
+    bare = build(parse_scene(planar), bar.model.discretisation)
+
+    def gap(x: np.ndarray) -> float:
+        shape = Solution(bare, bare.pack(), x, Outcome.CONVERGED, "", 0.0, 0)
+        around = minimize_scalar(
+            lambda X: gap_along(shape, "rod", obstacle, np.array([X]))[0],
+            bounds=(contact.start - 0.05, contact.start + 0.05),
+            method="bounded",
+            options={"xatol": 1e-9},
+        )
+        return float(around.fun)
+
+    step = 1e-5
+    units = np.eye(len(bar.x))
+    normal = np.array([(gap(bar.x + step * unit) - gap(bar.x - step * unit)) / (2 * step) for unit in units])
+    normal /= np.linalg.norm(normal)
+    basis = np.linalg.svd(normal[None])[2][1:]
+
+    def energy(along: np.ndarray) -> float:
+        shape = bar.x + basis.T @ along
+        back = brentq(lambda c: gap(shape + c * normal), -0.05, 0.05, xtol=1e-14)
+        return float(bare.potential(shape + back * normal, bare.pack())) / bare.discrete.rods["rod"].energy_unit
+
+    step = 3e-3
+    size = len(basis)
+    hessian = np.zeros((size, size))
+    for i in range(size):
+        for j in range(i + 1):
+            one, two = step * np.eye(size)[i], step * np.eye(size)[j]
+            corners = energy(one + two) - energy(one - two) - energy(two - one) + energy(-one - two)
+            hessian[i, j] = hessian[j, i] = corners / (4 * step**2)
+    assert_allclose(bar.smallest_eigenvalue, np.linalg.eigvalsh(hessian)[0], rtol=1e-3, atol=0)
