@@ -28,6 +28,7 @@ from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
+from cosserat_casadi.identification import Identification, identify, identify_scene
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.motion.linear_model import LinearModel, linearise
@@ -40,6 +41,7 @@ from cosserat_casadi.page.page import export_page
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.results.identification_file import identification_result
 from cosserat_casadi.results.inverse_file import inverse_result
 from cosserat_casadi.results.modes_file import modes_result
 from cosserat_casadi.results.motion_file import motion_result, write_motion
@@ -47,7 +49,7 @@ from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.sweep import Sweep, read_sweep, sweep_scene
+from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
 
 __version__ = version("cosserat-casadi")
 
@@ -59,6 +61,7 @@ __all__ = [
     "Discretisation",
     "EquilibriumPath",
     "ExportError",
+    "Identification",
     "Inverse",
     "LinearModel",
     "LinearMotion",
@@ -74,6 +77,7 @@ __all__ = [
     "Problem",
     "Scene",
     "SceneError",
+    "SobolIndices",
     "Solution",
     "SolveError",
     "StepMemory",
@@ -91,6 +95,9 @@ __all__ = [
     "export_page",
     "follow_path",
     "follow_scene_path",
+    "identification_result",
+    "identify",
+    "identify_scene",
     "inverse",
     "inverse_result",
     "inverse_scene",
@@ -108,6 +115,8 @@ __all__ = [
     "scene_from_dict",
     "simulate",
     "simulate_scene",
+    "sobol_indices",
+    "sobol_table",
     "solve",
     "solve_scene",
     "sweep_scene",

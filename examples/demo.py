@@ -32,12 +32,15 @@ SCENES = (
     "needle_in_tissue",
     "rod_in_stream",
     "rubbing_tendon",
+    "wire_from_shapes",
     "rod_on_table",
     "rod_over_bar",
     "wire_in_vessel",
 )
 
 WITH_TARGETS = ("finger_to_point",)
+
+WITH_MEASUREMENTS = ("wire_from_shapes",)
 
 MOTIONS = (
     "fishing_rod_cast",
@@ -61,6 +64,8 @@ def arguments_of(name: str, folder: Path) -> list[str]:
     command = "solve"
     if name in WITH_TARGETS:
         command = "inverse"
+    if name in WITH_MEASUREMENTS:
+        command = "identify"
     if name in MOTIONS:
         command = "simulate"
     scene = Path(__file__).with_name(f"{name}.toml")

@@ -36,6 +36,14 @@ from cosserat_casadi.scene.loads import (
     TipWrench,
 )
 from cosserat_casadi.scene.magnet import Dipole, Magnet
+from cosserat_casadi.scene.measurements import (
+    MEASUREMENTS,
+    Identification,
+    Measurement,
+    MeasurementRecord,
+    Prior,
+    Unknown,
+)
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameters import NamedNumbers
@@ -60,6 +68,7 @@ __all__ = [
     "ACTUATORS",
     "JOINTS",
     "LOADS",
+    "MEASUREMENTS",
     "OBSTACLES",
     "SUPPORTS",
     "Accuracy",
@@ -85,6 +94,7 @@ __all__ = [
     "FreeInput",
     "Gravity",
     "Helix",
+    "Identification",
     "InputField",
     "InputMotion",
     "Intrinsic",
@@ -95,6 +105,8 @@ __all__ = [
     "Lumen",
     "Magnet",
     "Material",
+    "Measurement",
+    "MeasurementRecord",
     "NamedNumbers",
     "Obstacle",
     "ObstacleRecord",
@@ -103,6 +115,7 @@ __all__ = [
     "PointWrench",
     "PoseTarget",
     "PositionTarget",
+    "Prior",
     "PrismaticJoint",
     "Rectangle",
     "RevoluteJoint",
@@ -118,6 +131,7 @@ __all__ = [
     "Target",
     "Tendon",
     "TipWrench",
+    "Unknown",
     "parse_scene",
     "read_scene",
     "scene_from_dict",

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, shown
+from cosserat_casadi.scene.faults import Fault, Path, shown
 from cosserat_casadi.scene.fields import unit_of, varies_by_component, varying_mark
 from cosserat_casadi.scene.inputs import AXES
 from cosserat_casadi.scene.profiles import ENDS
@@ -94,6 +94,21 @@ class NamedNumbers:
         assert self.holder.record is not None
         owner = getattr(self.holder.record, "name", None) or f"{self.holder.table}[{self.holder.index}]"
         return ".".join((owner, *self.keys))
+
+    @property
+    def cell_names(self) -> tuple[str, ...]:
+        """A name for each cell, which names that number alone."""
+        rows = dict.fromkeys(row for row, _ in self.cells)
+        columns = dict.fromkeys(column for _, column in self.cells)
+        words = _component_words(self.form, len(rows))
+        names = []
+        for row, column in self.cells:
+            component = f".{words[row]}" if len(rows) > 1 else ""
+            place = ""
+            if len(columns) > 1:
+                place = f".{ENDS[column]}" if self.form is Form.ENDS else f"[{column}]"
+            names.append(self.name + component + place)
+        return tuple(names)
 
     def written(self, record: Entry, values: Sequence[Any]) -> Entry:
         """The entry with other numbers, or expressions, one for each cell."""
@@ -215,8 +230,7 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
     if remaining and rows > 1:
-        words = SPAN if form is Form.VECTOR and rows == len(SPAN) else AXES.get(rows, AXES[3][:rows])
-        row = _part(remaining.pop(0), words, rows, "component")
+        row = _part(remaining.pop(0), _component_words(form, rows), rows, "component")
         chosen_rows = [row]
         columns = lengths[row]
     chosen_columns: Iterable[int] = range(columns)
@@ -231,6 +245,13 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
         problem = f"has no part {shown('.'.join(remaining))}"
         raise RefusedParameter(problem, "to make a coefficient a parameter, give it in the scene: it may be zero")
     return tuple((row, column) for column, row in itertools.product(chosen_columns, chosen_rows))
+
+
+def _component_words(form: Form, rows: int) -> Sequence[str]:
+    """Names of the components of a key."""
+    if form is Form.VECTOR and rows == len(SPAN):
+        return SPAN
+    return AXES.get(rows, AXES[3][:rows])
 
 
 def _part(word: str, words: Sequence[str], count: int, what: str) -> int:
@@ -274,20 +295,21 @@ def _stored(form: Form, grid: Mapping[Cell, Any], values: Mapping[Cell, Any]) ->
     return tuple(component[0] if len(component) == 1 else component for component in components)
 
 
-def parameter_faults(names: Any, holders: Holders, inputs: Iterable[str]) -> Iterator[Fault]:
+def parameter_faults(
+    names: Sequence[Any], paths: Sequence[Path], holders: Holders, inputs: Iterable[str]
+) -> Iterator[Fault]:
     """What is wrong with the names of the parameters of a scene.
 
     Args:
-        names: the value of the key ``parameters``, which may be faulty.
+        names: what the scene gives as names, which may be faulty.
+        paths: where each stands.
         holders: entries that may have parameters.
         inputs: names of what stays free at run time already.
     """
-    if not isinstance(names, list | tuple):
-        return
     free = set(inputs)
     first: dict[tuple[str, int, tuple[str, ...], Cell], str] = {}
     seen: set[str] = set()
-    for i, name in enumerate(names):
+    for name, path in zip(names, paths, strict=True):
         # A text that is listed twice has a fault already.
         if not isinstance(name, str) or name in seen:
             continue
@@ -296,18 +318,18 @@ def parameter_faults(names: Any, holders: Holders, inputs: Iterable[str]) -> Ite
             numbers = named_numbers(name, holders)
         except RefusedParameter as refused:
             problem, remedy = refused.args
-            yield Fault(("parameters", i), f"{shown(name)}: {problem}", remedy)
+            yield Fault(path, f"{shown(name)}: {problem}", remedy)
             continue
         if numbers is None:
             continue
         if numbers.field in free:
             problem = f"{shown(name)} is an input already"
-            yield Fault(("parameters", i), problem, "leave it out here, or list inputs without it")
+            yield Fault(path, problem, "leave it out here, or list inputs without it")
         places = [(numbers.holder.table, numbers.holder.index, numbers.keys, cell) for cell in numbers.cells]
         again = next((first[place] for place in places if place in first), None)
         if again is not None:
             problem = f"{shown(name)} names what {shown(again)} names already"
-            yield Fault(("parameters", i), problem, "name each number once")
+            yield Fault(path, problem, "name each number once")
         for place in places:
             first.setdefault(place, name)
 
