@@ -104,7 +104,7 @@ rods = ["finger"]
 
     kind: Literal["plane"] = Field(description="half of space")
     point: Vector = Field(description="a point of the plane in world axes, m")
-    normal: Direction = Field(description="direction out of the obstacle in world axes; its length does not matter")
+    normal: Direction = Field(description="direction out of the obstacle in world axes, without unit; its length does not matter")
 
 
 @OBSTACLES.register
@@ -179,7 +179,7 @@ rods = ["finger"]
     points: Annotated[tuple[Vector, ...], NotEmpty()] = Field(
         description="points that its line passes, a natural cubic spline over the distance between them, m"
     )
-    radius: Radii = Field(description="its radius, m: one, or one for each point")
+    radius: Radii = Field(description="its radius, one or one for each point, m")
 
     @property
     def radii(self) -> tuple[float, ...]:
