@@ -104,7 +104,9 @@ rods = ["finger"]
 
     kind: Literal["plane"] = Field(description="half of space")
     point: Vector = Field(description="a point of the plane in world axes, m")
-    normal: Direction = Field(description="direction out of the obstacle in world axes, without unit; its length does not matter")
+    normal: Direction = Field(
+        description="direction out of the obstacle in world axes, without unit; its length does not matter"
+    )
 
 
 @OBSTACLES.register
