@@ -21,6 +21,7 @@ from cosserat_casadi.bench.shooting import check_scipy
 from cosserat_casadi.bench.table import print_bench, print_strains
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.plots.figure import figure_class
 
 Report = Callable[[str, int, int], None]
@@ -63,9 +64,10 @@ def make_plan(
         quick: few points.
 
     Raises:
-        SceneError: with every fault of the options, or of the table found in the folder.
+        SceneError: with every fault of the options, or of the table found in the folder; or the scene has obstacles.
         CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
     """
+    refuse_obstacles(scene, "a bench")
     # Every method solves the scene's own numbers.
     scene = scene.baked()
     names = _names(methods, quick)

@@ -26,6 +26,7 @@ UNKNOWN = (
     'kind = "magnet"',
     'kind = "foundation"',
     'kind = "flow"',
+    "[[obstacles]]",
 )
 """Words of scenes that the bench cannot shoot."""
 

@@ -275,9 +275,15 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 
 # What nothing holds has no equilibrium.
 HELD = [path for path in sorted((ROOT / "examples").glob("*.toml")) if "free = true" not in path.read_text()]
+# The search for contacts takes seconds, and has tests of its own.
+TOUCHING = [path for path in HELD if "[[obstacles]]" in path.read_text()]
 
 
-@pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.slow) if path in TOUCHING else path for path in HELD],
+    ids=lambda path: path.stem,
+)
 def test_examples_solve(path: Path, tmp_path: Path) -> None:
     done = cosserat("solve", str(path), "--output", "r.json", cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -34,6 +34,7 @@ from cosserat_casadi import (
     solve_scene,
     tune,
 )
+from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import embedded, stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along
@@ -274,6 +275,7 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
         lambda: opened(table),
         lambda: stability_margin(model),
         lambda: embedded(model, table),
+        lambda: make_plan(scene, None, None, None, quick=True),
         lambda: plan_sweep(scene, table_of({"weight.acceleration.z": [-9.81]})),
     ]
     for use in uses:
