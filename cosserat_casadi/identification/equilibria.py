@@ -152,6 +152,7 @@ class Equilibria:
         x = start.copy()
         residual = self.residuals(x, inputs, p)
         norms = _relative(residual, x)
+        fresh = False
         for _ in range(STEPS):
             waiting = norms > self._tolerance.aim
             if not np.any(waiting):
@@ -162,18 +163,19 @@ class Equilibria:
             tried_norms = _relative(tried_residual, tried)
             better = waiting & (tried_norms < norms)
             slow = waiting & ~(tried_norms <= CONTRACTION * norms) & (norms > self._tolerance.tolerance)
-            if not np.any(better):
-                if not np.any(slow):
-                    break
-                if np.array_equal(inverses, refreshed := self._inverses(x, inputs, p)):
-                    break
-                inverses = refreshed
-                continue
             x[better] = tried[better]
             residual[better] = tried_residual[better]
             norms[better] = tried_norms[better]
             if np.any(slow):
+                # A step with a Jacobian of this very place that does not help never will.
+                if fresh and not np.any(better):
+                    break
                 inverses = self._inverses(x, inputs, p)
+                fresh = True
+            elif not np.any(better):
+                break
+            else:
+                fresh = False
         return x, inverses, norms <= self._tolerance.tolerance
 
     def _path(self, near: Point, case: int, inputs: FloatArray, p: FloatArray) -> Path:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -115,9 +115,7 @@ class Ending:
             warnings=(),
             starts=starts,
         )
-        self.warnings += self._remarks(draft)
-        draft.__dict__["warnings"] = tuple(self.warnings)
-        return draft
+        return replace(draft, warnings=(*self.warnings, *self._remarks(draft)))
 
     def _outcome(self, fit: Fit[MisfitState], known: Statistics) -> tuple[str, str]:
         """How it ended, in a word and in sentences."""

@@ -100,13 +100,8 @@ class UnknownEntry:
         if numbers.size not in (1, self.size):
             what = ", ".join(self.labels)
             problem = f"{key} must have 1 number or {self.size}, got {numbers.size}"
-            raise SceneError(Problem(f"unknowns: {record_name(self.record)}", problem, f"they are {what}"))
+            raise SceneError(Problem(f"unknowns: {self.record.name}", problem, f"they are {what}"))
         return np.broadcast_to(numbers, self.size).copy()
-
-
-def record_name(record: scenes.Unknown) -> str:
-    """An unknown as the scene spells it."""
-    return record.name
 
 
 @dataclass(frozen=True)
