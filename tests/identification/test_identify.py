@@ -175,6 +175,7 @@ def test_held_out_cases_are_predicted(wire_model: Model, shapes: MadeUp) -> None
     assert 0.8 < rms < 1.2
 
 
+@pytest.mark.slow
 def test_outliers_weigh_less_under_a_robust_loss(shapes: MadeUp) -> None:
     spoilt = {name: values.copy() for name, values in shapes.columns.items()}
     spoilt["y"][[3, 57, 121]] += 0.02
@@ -264,6 +265,7 @@ def test_single_cases_can_be_eliminated_or_not(pushed: Model, shapes: MadeUp) ->
     assert_allclose(found.statistics.own.ravel(), expected[1:], rtol=1e-4, atol=0)
 
 
+@pytest.mark.slow
 def test_starts_between_the_bounds_end_at_one_optimum(wire_model: Model, shapes: MadeUp, found: Identification) -> None:
     again = identify(wire_model, shapes.data, starts=3)
     assert again.starts == (3, 3)
@@ -288,6 +290,7 @@ def test_fewer_data_than_unknowns_are_refused(wire_model: Model, shapes: MadeUp)
         identify(wire_model, {"shapes.csv": one})
 
 
+@pytest.mark.slow
 def test_cases_without_equilibrium_are_left_out_or_stop_it(shapes: MadeUp) -> None:
     spoilt = {name: values.copy() for name, values in shapes.columns.items()}
     # A moment that rolls the wire up a hundred times.
