@@ -21,6 +21,9 @@ TRUTH = dict(zip(NAMES, (52e9, 20e9, 1.0, -2.0), strict=True))
 
 SECTIONS = np.linspace(0.1, 1.0, 10)
 
+CASES = 10
+"""Cases of what the tests identify."""
+
 WIRE: dict[str, Any] = {
     "schema": 1,
     "accuracy": {"modes": 4, "nodes": 10},
