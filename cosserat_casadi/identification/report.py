@@ -129,7 +129,8 @@ class Ending:
             remedy = "Leave unknowns out, give priors, or measure more."
             return "not_determined", f"Not found: the data do not determine {directions}. {remedy}"
         numbers = len(fit.state.residual)
-        return "converged", f"Found: {len(fit.shared)} unknowns from {numbers} numbers."
+        found = "1 unknown" if len(fit.shared) == 1 else f"{len(fit.shared)} unknowns"
+        return "converged", f"Found: {found} from {numbers} numbers."
 
     def _remarks(self, found: Identification) -> list[str]:
         """What a user must know of what was found."""

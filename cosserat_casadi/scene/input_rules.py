@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from cosserat_casadi.scene.actuators import ACTUATORS
 from cosserat_casadi.scene.faults import Fault, SceneTables, Table, listing, shown
@@ -146,6 +147,25 @@ def free_names(scene: SceneTables) -> list[str]:
     if isinstance(entries, list):
         return [name for name in entries if isinstance(name, str)]
     return _magnitudes(scene)
+
+
+def requested_fields(scene: SceneTables) -> dict[str, str]:
+    """Inputs that an identification has besides those: what columns set and what is unknown, each with who asks."""
+    owners = owners_of(scene)
+    requests: dict[str, str] = {}
+    asked: list[tuple[Any, str]] = []
+    for i, measurement in scene.tables("measurements"):
+        inputs = measurement.get("inputs")
+        names = inputs if isinstance(inputs, Mapping) else ()
+        asked += [(name, f"measurements[{i}] sets {shown(name)}") for name in names]
+    for i, unknown in scene.tables("unknowns"):
+        name = unknown.get("input")
+        asked.append((name, f"unknowns[{i}] has the input {shown(name)}"))
+    for name, request in asked:
+        named = input_field_of(name, owners) if isinstance(name, str) else None
+        if named is not None:
+            requests.setdefault(".".join(named), request)
+    return requests
 
 
 def _magnitudes(scene: SceneTables) -> list[str]:

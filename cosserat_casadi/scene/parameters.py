@@ -296,7 +296,11 @@ def _stored(form: Form, grid: Mapping[Cell, Any], values: Mapping[Cell, Any]) ->
 
 
 def parameter_faults(
-    names: Sequence[Any], paths: Sequence[Path], holders: Holders, inputs: Iterable[str]
+    names: Sequence[Any],
+    paths: Sequence[Path],
+    holders: Holders,
+    inputs: Iterable[str],
+    requests: Mapping[str, str],
 ) -> Iterator[Fault]:
     """What is wrong with the names of the parameters of a scene.
 
@@ -305,6 +309,7 @@ def parameter_faults(
         paths: where each stands.
         holders: entries that may have parameters.
         inputs: names of what stays free at run time already.
+        requests: names of what an identification makes an input, with who asks for it.
     """
     free = set(inputs)
     first: dict[tuple[str, int, tuple[str, ...], Cell], str] = {}
@@ -325,6 +330,11 @@ def parameter_faults(
         if numbers.field in free:
             problem = f"{shown(name)} is an input already"
             yield Fault(path, problem, "leave it out here, or list inputs without it")
+        elif numbers.field in requests:
+            problem = f"{shown(name)} would be an input as well: {requests[numbers.field]}"
+            yield Fault(
+                path, problem, f"{shown(numbers.field)} is an input or a parameter: leave it out there, or here"
+            )
         places = [(numbers.holder.table, numbers.holder.index, numbers.keys, cell) for cell in numbers.cells]
         again = next((first[place] for place in places if place in first), None)
         if again is not None:

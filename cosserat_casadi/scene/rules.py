@@ -15,7 +15,7 @@ from cosserat_casadi.scene.assembly import bases_on_nothing, bodies_that_nobody_
 from cosserat_casadi.scene.constraints import JOINTS, SUPPORTS, Body
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
-from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not
+from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
@@ -238,7 +238,7 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             by_list[str(key)].append((holder, table.get("name")))
     entries = [entry for key in PARAMETER_LISTS for entry in by_list[key]]
     holders = holders_of([holder for holder, _ in entries], [name for _, name in entries])
-    yield from parameter_faults(names, paths, holders, free_names(scene))
+    yield from parameter_faults(names, paths, holders, free_names(scene), requested_fields(scene))
 
 
 RULES: tuple[Rule, ...] = (

@@ -36,8 +36,8 @@ def written(file: Path) -> dict[str, Any]:
 
 
 def test_what_is_found_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found, figure, fitted = folder / "found.json", folder / "found.png", folder / "fitted.toml"
-    options = ("--output", str(found), "--plot", str(figure), "--write", str(fitted))
+    found, fitted = folder / "found.json", folder / "fitted.toml"
+    options = ("--output", str(found), "--write", str(fitted))
     assert identify(folder, *options) == 0
     data = written(found)
     assert data["converged"]
@@ -48,13 +48,19 @@ def test_what_is_found_is_written(folder: Path, capsys: pytest.CaptureFixture[st
     assert len(data["correlation"]) == len(data["correlation_of"]) == 4
     assert data["unseen"] == []
     assert 0.8 < data["residual"]["held_out_rms"] < 1.2
-    assert figure.stat().st_size > 0
     scene = read_scene(fitted)
     assert scene.rods[0].material is not None
     assert scene.rods[0].material.youngs_modulus == modulus["value"]
     # The table is found from where the scene is written.
     assert Path(scene.measurements[0].file).resolve() == (folder / "data" / "wire_shapes.csv").resolve()
     assert "Found: 4 unknowns" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_what_is_found_is_drawn(folder: Path) -> None:
+    figure = folder / "found.png"
+    assert identify(folder, "--plot", str(figure)) == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
 
 
 def test_what_the_data_leave_open_is_no_success(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

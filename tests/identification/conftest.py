@@ -7,7 +7,7 @@ import pytest
 
 from cosserat_casadi import Model, build
 from cosserat_casadi.scene import scene_from_dict
-from tests.identification.made_up import WIRE, MadeUp, measured_shapes
+from tests.identification.made_up import CASES, WIRE, MadeUp, measured_shapes
 
 
 @pytest.fixture(scope="package")
@@ -18,5 +18,5 @@ def wire_model() -> Model:
 
 @pytest.fixture(scope="package")
 def shapes(wire_model: Model) -> MadeUp:
-    """Twenty shapes of the wire with noise of 0.2 mm."""
-    return measured_shapes(wire_model, np.random.default_rng(16), cases=20, noise=2e-4)
+    """Ten shapes of the wire with noise of 0.2 mm."""
+    return measured_shapes(wire_model, np.random.default_rng(16), cases=CASES, noise=2e-4)

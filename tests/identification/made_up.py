@@ -21,6 +21,9 @@ TRUTH = dict(zip(NAMES, (52e9, 20e9, 1.0, -2.0), strict=True))
 
 SECTIONS = np.linspace(0.1, 1.0, 10)
 
+CASES = 10
+"""Cases of what the tests identify."""
+
 WIRE: dict[str, Any] = {
     "schema": 1,
     "accuracy": {"modes": 4, "nodes": 10},
@@ -97,3 +100,11 @@ def measured_shapes(
         rows += [[*load, X, *position] for X, position in zip(SECTIONS, positions, strict=True)]
     names = [*(f"F{axis}" for axis in "xyz"), *(f"M{axis}" for axis in "xyz"), "X", "x", "y", "z"]
     return MadeUp(dict(zip(names, np.array(rows).T, strict=True)), truth)
+
+
+def with_noise(shapes: MadeUp, rng: np.random.Generator, noise: float) -> MadeUp:
+    """The same shapes with normal noise on their positions, m."""
+    columns = dict(shapes.columns)
+    for axis in "xyz":
+        columns[axis] = columns[axis] + noise * rng.standard_normal(columns[axis].shape)
+    return MadeUp(columns, shapes.truth)

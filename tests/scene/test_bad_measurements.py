@@ -135,6 +135,23 @@ REFUSED = {
         "unknowns[0].parameter",
         "is an input already",
     ),
+    "set_parameter": (
+        ROD + MEASURED + '[[unknowns]]\nparameter = "wire.base.position"\n',
+        "unknowns[0].parameter",
+        "'wire.base.position' would be an input as well: measurements[0] sets 'wire.base.position.x'",
+    ),
+    "set_listed": (
+        'parameters = ["wire.base.position.y"]\n' + ROD + MEASURED + UNKNOWN,
+        "parameters[0]",
+        "measurements[0] sets 'wire.base.position.x'",
+    ),
+    "unknown_twice": (
+        ROD
+        + '[[unknowns]]\nparameter = "wire.base.position.x"\n'
+        + '[[unknowns]]\ninput = "wire.base.position.y"\nper_row = true\n',
+        "unknowns[0].parameter",
+        "unknowns[1] has the input 'wire.base.position.y'",
+    ),
     "loss": (ROD + '[identification]\nloss = "median"\n', "identification.loss", "must be one of 'squares', 'huber'"),
 }
 
