@@ -24,7 +24,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LENGTH, LARGEST, WEIGHT = 0.10, 3.0, 0.3
+LENGTH, LARGEST, WEIGHT = 0.10, 6.0, 0.3
 """Length of the finger, m; largest tension and weight at the tip, N."""
 
 Design = Mapping[str, npt.ArrayLike]
@@ -42,11 +42,14 @@ m; where the extensor ends, as a share of the length."""
 THINNEST, THICKEST = 4e-3, 1.2e-2
 """Bounds of the radii, m."""
 
-WALL, AXIS = 1e-3, 1e-3
-"""Least distance of a tendon from the surface and from the axis, m."""
+WALL = 1e-3
+"""Least distance of a tendon from the surface, m."""
 
 SHORTEST, LONGEST = 0.3, 0.8
 """Bounds of the place where the extensor ends."""
+
+FINE = 80
+"""Cases that the area is drawn and judged with, more than the optimisation sees."""
 
 MARGIN = 0.25
 """Least stability margin: smallest eigenvalue of the second variation, in elastic stiffnesses of the start."""
@@ -112,7 +115,7 @@ class Problem:
         states: unknowns of the rod in every case, symbols.
         area: what the tips enclose, over the length squared.
         balance: residuals of all cases, zero at equilibria.
-        room: what no design may take below zero: distances of tendons from axis and surface over the unit of lengths,
+        room: what no design may take below zero: distances of tendons from the surface over the unit of lengths,
             what is left of the material over the volume of the start, margins of the cases over the least one.
         start: values of design and states to start from.
     """
@@ -159,11 +162,12 @@ def problem_of(model: Model, tensions: FloatArray) -> Problem:
 
 
 def tendon_room(design: Matrix) -> Matrix:
-    """What is left between the tendons and the axis and the surface, at both of their ends, in millimetres."""
+    """What is left between the tendons and the surface on either side, at both of their ends, in millimetres."""
     base, tip, flexor, flexor_growth, extensor, extensor_growth, end = ca.vertsplit(design)
-    distances = ca.vertcat(-flexor, -flexor - flexor_growth, extensor, extensor + extensor_growth * end)
+    offsets = ca.vertcat(flexor, flexor + flexor_growth, extensor, extensor + extensor_growth * end)
     radii = ca.vertcat(base, tip, base, base + (tip - base) * end)
-    return ca.vertcat(distances - AXIS / 1e-3, radii - WALL / 1e-3 - distances)
+    largest = radii - WALL / 1e-3
+    return ca.vertcat(largest - offsets, largest + offsets)
 
 
 def designed(model: Model, tensions: FloatArray) -> tuple[dict[str, FloatArray], float]:
@@ -209,11 +213,11 @@ def draw(designs: Mapping[str, Design], file: Path) -> None:
     figure = Figure(figsize=(10.0, 4.5), layout="constrained")
     region, *fingers = figure.subplots(1, 1 + len(designs), width_ratios=[2.4, *[1.0] * len(designs)])
     for panel, color, (name, design) in zip(fingers, ("0.5", "#4477aa"), designs.items(), strict=True):
-        equilibria = equilibria_of(finger(design), tensions_around(40))
+        equilibria = equilibria_of(finger(design), tensions_around(FINE))
         tips = np.array([solution.tip("finger").position[0] for solution in equilibria])
         outline = 1e3 * np.vstack([tips, tips[:1]])
         region.fill(outline[:, 0], outline[:, 2], color=color, alpha=0.4, label=name)
-        for solution in equilibria[::10]:
+        for solution in equilibria[:: FINE // 4]:
             shape = 1e3 * solution.pose(np.linspace(0, 1, 41), "finger").position
             region.plot(shape[:, 0], shape[:, 2], color=color, linewidth=1.0)
         draw_finger(panel, design)
@@ -234,7 +238,7 @@ def draw_finger(panel: Axes, design: Design) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cases", type=int, default=8, help="pairs of tensions, at least 4")
+    parser.add_argument("--cases", type=int, default=16, help="pairs of tensions, at least 4")
     parser.add_argument("--output", type=Path, default=Path("design_finger.png"), help="figure")
     arguments = parser.parse_args()
     tensions = tensions_around(arguments.cases)
@@ -246,6 +250,8 @@ def main() -> None:
     stable = sum(solution.stable is True for solution in equilibria)
     print(f"area {1e6 * area:.4g} mm², by solves of their own {1e6 * reached(equilibria):.4g} mm²")
     print(f"the start reaches {1e6 * before:.4g} mm²; {stable} of {len(tensions)} stable")
+    finer = reached(equilibria_of(finger(design), tensions_around(FINE)))
+    print(f"a polygon of {FINE} corners has {1e6 * finer:.4g} mm²")
     draw({"start": START, "design": design}, arguments.output)
     print(f"wrote {arguments.output}")
 

@@ -71,7 +71,7 @@ def test_gradients_vs_differences_of_solves() -> None:
         assert_allclose(gradient[:, k], difference, rtol=1e-5, atol=1e-6)
 
 
-def judge(model_modes: int, cases: int) -> None:
+def judge(model_modes: int, cases: int, discretisation: float) -> None:
     """The optimum reaches more than the start, is what solves of scenes with its numbers find, and keeps its margin."""
     model = finger(modes=model_modes)
     tensions = tensions_around(cases)
@@ -92,18 +92,18 @@ def judge(model_modes: int, cases: int) -> None:
     assert min(margins) == pytest.approx(MARGIN, abs=1e-6)  # a softer finger would reach further
     assert volume_of(p[:2]) <= volume_of(START["finger.section.radius"]) * (1 + 1e-7)
 
-    # More modes change next to nothing.
+    # More modes change it by no more than this share.
     finer = equilibria_of(finger(design, model_modes + 3), tensions)
-    assert_allclose(reached(finer), area, rtol=1e-2)
+    assert_allclose(reached(finer), area, rtol=discretisation)
 
 
 def test_optimum_is_confirmed_by_solves() -> None:
-    judge(model_modes=2, cases=4)
+    judge(model_modes=2, cases=4, discretisation=3e-2)
 
 
 @pytest.mark.slow
 def test_full_example_is_confirmed_by_solves() -> None:
-    judge(model_modes=3, cases=8)
+    judge(model_modes=3, cases=16, discretisation=1e-2)
 
 
 @pytest.mark.slow
