@@ -28,7 +28,7 @@ WIDTH = 0.02
 """Width w of the soft minimum."""
 
 
-def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
+def stability_margin(model: Model, width: float = WIDTH, *, parameters: bool = False) -> ca.Function:
     """A smooth lower bound of the smallest eigenvalue of the second variation, relative to the elastic stiffness.
 
     Where it is positive ``solve`` judges the equilibrium stable, on the same variations: those that supports, joints
@@ -38,10 +38,12 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
     Args:
         model: with loads that have a potential, and without cables that may go slack.
         width: of the soft minimum.
+        parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
+            scene's values. The elastic stiffness that the margin is a share of is that of the scene's values in both.
 
     Returns:
-        (x, inputs) ↦ margin; off equilibrium that of the symmetric part of the Jacobian there. NaN where x or inputs
-        are, or where a body may move while no rod is strained.
+        (x, inputs), or (x, inputs, p), ↦ margin; off equilibrium that of the symmetric part of the Jacobian there. NaN
+        where x or inputs are, or where a body may move while no rod is strained.
 
     Raises:
         SceneError: the loads have no potential, or a cable may go slack.
@@ -50,19 +52,20 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
     refuse_obstacles(model.scene, "a margin of stability")
     if not 0.0 < width < np.inf:
         raise ValueError(f"the width of a soft minimum is positive and finite, got {width}")
-    model = model.at()
-    check_potential(model, model.pack())
-    _refuse_slack(model)
-    x = ca.MX.sym("x", model.size)
-    inputs = ca.MX.sym("inputs", model.inputs.size)
-    bordered = _bordered(model, x, inputs)
-    measure = _elastic(model).tobytes()
+    nominal = model.at()
+    check_potential(nominal, nominal.pack())
+    _refuse_slack(nominal)
+    if not parameters:
+        model = nominal
+    given = model.residual.mx_in()
+    bordered = _bordered(model, given)
+    measure = _elastic(nominal).tobytes()
     margin = soft_minimum(measure, bordered.shape[0], width)(bordered)
     return ca.Function(
         "stability_margin",
-        [x, inputs],
+        given,
         [margin],
-        ["x", "inputs"],
+        model.residual.name_in(),
         ["margin"],
     )
 
@@ -85,16 +88,21 @@ def _energy_units(model: Model) -> FloatArray:
     return np.asarray(units / largest)
 
 
-def _bordered(model: Model, x: Matrix, inputs: Matrix) -> Matrix:
-    """Second variation bordered by the linearised constraints and the lengths of quaternions, symmetric."""
+def _bordered(model: Model, given: list[Matrix]) -> Matrix:
+    """Second variation bordered by the linearised constraints and the lengths of quaternions, symmetric.
+
+    Args:
+        model: with or without parameters.
+        given: x, inputs, and p if the model has parameters.
+    """
     admissible = variations(model)
-    jacobian = model.jacobian(x, inputs)[0]
+    jacobian = model.jacobian(*given)[0]
     free = admissible.free.tolist()
     held = admissible.held.tolist()
     # Rows of the residual are without unit, each in that of its own rod: multiplied by their units they are energies.
     stiffness = ca.diag(ca.DM(_energy_units(model))) @ jacobian[free, free]
     symmetric = (stiffness + stiffness.T) / 2
-    constraints = ca.vertcat(jacobian[held, free], _quaternion_growth(model, x)[:, free])
+    constraints = ca.vertcat(jacobian[held, free], _quaternion_growth(model, given[0])[:, free])
     corner = ca.MX(constraints.shape[0], constraints.shape[0])
     blocks = [[symmetric, constraints.T], [constraints, corner]]
     bordered: Matrix = ca.densify(ca.blockcat(blocks))

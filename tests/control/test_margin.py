@@ -56,6 +56,20 @@ def test_margin_does_not_hang_on_the_modes(modes: int) -> None:
     assert solution.smallest_eigenvalue < 1 / (2 * modes - 1)
 
 
+def test_margin_with_parameters_vs_closed_form() -> None:
+    """In elastic stiffnesses of the scene's own column, one of EI times s under its thrust has the margin s − P/P_c."""
+    model = build(column(parameters=["rod.stiffness.bending_y"]))
+    margin = stability_margin(model, SHARP, parameters=True)
+    p = ca.MX.sym("p")
+    value = margin(model.unloaded(), [0, 0, -CRITICAL / 2], p)
+    found, rate = ca.Function("rate", [p], [value, ca.gradient(value, p)])(1.3)
+    assert_allclose(float(found), 0.8, rtol=0, atol=1e-8)
+    assert_allclose(float(rate), 1.0, rtol=0, atol=1e-8)
+    # By default the scene's own values are fixed.
+    own = stability_margin(model, SHARP)(model.unloaded(), [0, 0, -CRITICAL / 2])
+    assert_allclose(float(own), 0.5, rtol=0, atol=1e-8)
+
+
 def test_rate_with_the_load_vs_closed_form() -> None:
     """In a round column the eigenvalue 1 − P/P_c is double: its margin still has the rate −1/P_c, and no kink."""
     model = build(column("kirchhoff"))
