@@ -33,6 +33,7 @@ def column(strain: str, **changes: Any) -> Scene:
 
 
 PINNED = [{"rod": "rod", "kind": "pinned", "position": [0, 0, 0.9]}]
+PRESSED = [{"rod": "rod", "kind": "pinned", "position": [0, 0, 0.105]}]
 GUY = {"name": "guy", "kind": "tendon", "rod": "rod", "length": 1.0, "offset": [0.02, 0.0], "slack": False}
 SCENES = {
     "planar": (column("planar"), 6, 12, "magnus6"),
@@ -40,6 +41,7 @@ SCENES = {
     "round": (column("kirchhoff"), 4, 8, "magnus6"),
     "guyed": (column("kirchhoff", actuators=[GUY]), 4, 8, "magnus6"),
     "pinned": (column("kirchhoff", supports=PINNED), 5, 10, "magnus4"),
+    "pressed": (column("kirchhoff", supports=PRESSED), 7, 16, "magnus4"),
     "robot": (scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS), 2, 4, "magnus4"),
     "cables": (three_cables(), 2, 4, "magnus4"),
     "tendons": (scene(push(), strain="reissner", actuators=[TENDON, HELD]), 2, 4, "magnus4"),
@@ -138,6 +140,11 @@ def test_neutral_equilibrium_is_told_from_a_critical_one(library: Callable[[str]
     bent = solve(pinned.model, stable=True)
     assert bent.stable is True
     found = pinned.judged(bent.x, inputs)
+    assert (found.verdict, found.zero, found.stable) == ("neutral", 1, True)
+
+    # The large force of the pin turns along and tells nothing of how far the rod was turned.
+    pressed = library("pressed")
+    found = pressed.judged(solve(pressed.model, stable=True).x, pressed.model.pack())
     assert (found.verdict, found.zero, found.stable) == ("neutral", 1, True)
 
     planar = library("planar")
