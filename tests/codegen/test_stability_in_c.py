@@ -169,6 +169,12 @@ def test_stability_follows_parameters(library: Callable[[str], Library]) -> None
         assert found is not None
         verdicts[stiffness] = found.verdict
     assert verdicts == {1.0: "unstable", 2.0: "stable"}
+    # In units of the scene's own EI/ℓ: twice the load on twice the stiffness releases twice the energy.
+    p = {"rod.stiffness.bending_y": 2.0}
+    loaded = compiled.stability(inputs, np.zeros(compiled.size))
+    doubled = compiled.stability(2.0 * inputs, np.zeros(compiled.size), parameters=p)
+    assert loaded is not None and doubled is not None
+    assert_allclose(doubled.smallest_eigenvalue, 2.0 * loaded.smallest_eigenvalue, rtol=1e-8, atol=0)
 
 
 def test_what_is_no_equilibrium_is_not_judged(library: Callable[[str], Library]) -> None:
