@@ -72,7 +72,8 @@ class CompiledStability:
     """What the library says of an equilibrium.
 
     Attributes:
-        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ.
+        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ of the scene's
+            own numbers, whatever the parameters are.
         negative: number of eigenvalues below zero.
         zero: number of those that are zero to rounding.
         verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
@@ -572,6 +573,7 @@ def _is_manifest(described: Any) -> bool:
         numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
         files = all(isinstance(file, str) for file in described["files"])
         functions = all(isinstance(entry, dict) for entry in described["functions"])
+        listed_parameters(described.get("parameters", []))
     except (ExportError, KeyError, TypeError, ValueError):
         return False
     return rods and files and functions and all(value.ndim == 1 for value in numbers)

@@ -75,6 +75,7 @@ def stability_sources(model: Model, names: Names) -> dict[str, str]:
 def _parameter_words(model: Model, names: Names) -> dict[str, str]:
     """The argument of parameters where there are some, as in the library's own header and source."""
     if not model.parameters.size:
-        return {"parameters": "", "passed": ""}
+        return {"parameters": "", "passed": "", "units_note": ""}
     argument = f"const {names.name}_real *parameters"
-    return {"parameters": f", {argument}", "passed": ", parameters"}
+    units_note = " of the scene's own numbers, whatever the parameters"
+    return {"parameters": f", {argument}", "passed": ", parameters", "units_note": units_note}

@@ -170,7 +170,8 @@ def sweep_scene(
         cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
-            units of EI/ℓ, and ``stable``, 1 or 0; NaN where the loads of a row have no potential.
+            units of EI/ℓ, and ``stable``, 1 or 0; NaN where the loads of a row have no potential. In a table of many
+            rows, whose parameters one compiled library takes, EI/ℓ is that of the scene as it stands, else the row's.
         progress: told what is being done, how much of it is done, and of how much.
 
     Raises:

@@ -328,23 +328,35 @@ def test_manifest_that_is_not_json(tmp_path: Path, content: bytes) -> None:
     assert refusal(tmp_path) == (str(tmp_path / MANIFEST), "is not JSON", ANEW)
 
 
+SOUND: dict[str, object] = {"name": "strip", "unknowns": [], "inputs": [], "files": [], "functions": []}
+ONE_RADIUS = {"name": "rod.radius", "unit": "m", "value": [1.0], "shape": [1, 1]}
 FOREIGN = {
     "a number": 1,
     "a list": [{"name": "strip"}],
     "another table": {"name": "site", "start_url": "."},
-    "a name that is none": {"name": 3, "unknowns": [], "inputs": [], "files": []},
-    "a name that leads elsewhere": {"name": "../strip", "unknowns": [], "inputs": [], "files": []},
-    "unknowns are a number": {"name": "strip", "unknowns": 9, "inputs": [], "files": []},
-    "unknowns are numbers": {"name": "strip", "unknowns": [9], "inputs": [], "files": []},
-    "unknowns without a count": {"name": "strip", "unknowns": [{"rod": "rod"}], "inputs": [], "files": []},
-    "a count that is none": {"name": "strip", "unknowns": [{"rod": "rod", "count": "2"}], "inputs": [], "files": []},
-    "inputs are a number": {"name": "strip", "unknowns": [], "inputs": 3, "files": []},
-    "inputs without values": {"name": "strip", "unknowns": [], "inputs": [{"name": "push.force"}], "files": []},
-    "values that are no numbers": {"name": "strip", "unknowns": [], "inputs": [{"value": ["a"]}], "files": []},
-    "no list of files": {"name": "strip", "unknowns": [], "inputs": []},
-    "files that are numbers": {"name": "strip", "unknowns": [], "inputs": [], "files": [1]},
-    "values of two shapes": {"name": "strip", "unknowns": [], "inputs": [{"value": [[1], 2]}], "files": []},
+    "a name that is none": {**SOUND, "name": 3},
+    "a name that leads elsewhere": {**SOUND, "name": "../strip"},
+    "unknowns are a number": {**SOUND, "unknowns": 9},
+    "unknowns are numbers": {**SOUND, "unknowns": [9]},
+    "unknowns without a count": {**SOUND, "unknowns": [{"rod": "rod"}]},
+    "a count that is none": {**SOUND, "unknowns": [{"rod": "rod", "count": "2"}]},
+    "inputs are a number": {**SOUND, "inputs": 3},
+    "inputs without values": {**SOUND, "inputs": [{"name": "push.force"}]},
+    "values that are no numbers": {**SOUND, "inputs": [{"value": ["a"]}]},
+    "values of two shapes": {**SOUND, "inputs": [{"value": [[1], 2]}]},
+    "no list of files": {word: entry for word, entry in SOUND.items() if word != "files"},
+    "files that are numbers": {**SOUND, "files": [1]},
+    "functions that are numbers": {**SOUND, "functions": [1]},
+    "parameters are a number": {**SOUND, "parameters": 3},
+    "parameters without a shape": {**SOUND, "parameters": [{"name": "rod.radius", "unit": "m", "value": [1.0]}]},
+    "parameters of another shape": {**SOUND, "parameters": [{**ONE_RADIUS, "shape": [2, 1]}]},
 }
+
+
+def test_manifest_with_nothing_wrong_is_one(tmp_path: Path) -> None:
+    """What the manifests below are made from is refused for its missing sources alone."""
+    (tmp_path / MANIFEST).write_text(json.dumps({**SOUND, "parameters": [ONE_RADIUS]}))
+    assert refusal(tmp_path)[1] == "is missing"
 
 
 @pytest.mark.parametrize("content", FOREIGN.values(), ids=FOREIGN)

@@ -33,6 +33,7 @@ def column(strain: str, **changes: Any) -> Scene:
 
 
 PINNED = [{"rod": "rod", "kind": "pinned", "position": [0, 0, 0.9]}]
+PRESSED = [{"rod": "rod", "kind": "pinned", "position": [0, 0, 0.105]}]
 GUY = {"name": "guy", "kind": "tendon", "rod": "rod", "length": 1.0, "offset": [0.02, 0.0], "slack": False}
 SCENES = {
     "planar": (column("planar"), 6, 12, "magnus6"),
@@ -40,6 +41,7 @@ SCENES = {
     "round": (column("kirchhoff"), 4, 8, "magnus6"),
     "guyed": (column("kirchhoff", actuators=[GUY]), 4, 8, "magnus6"),
     "pinned": (column("kirchhoff", supports=PINNED), 5, 10, "magnus4"),
+    "pressed": (column("kirchhoff", supports=PRESSED), 7, 16, "magnus4"),
     "robot": (scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS), 2, 4, "magnus4"),
     "cables": (three_cables(), 2, 4, "magnus4"),
     "tendons": (scene(push(), strain="reissner", actuators=[TENDON, HELD]), 2, 4, "magnus4"),
@@ -140,6 +142,11 @@ def test_neutral_equilibrium_is_told_from_a_critical_one(library: Callable[[str]
     found = pinned.judged(bent.x, inputs)
     assert (found.verdict, found.zero, found.stable) == ("neutral", 1, True)
 
+    # The large force of the pin turns along and tells nothing of how far the rod was turned.
+    pressed = library("pressed")
+    found = pressed.judged(solve(pressed.model, stable=True).x, pressed.model.pack())
+    assert (found.verdict, found.zero, found.stable) == ("neutral", 1, True)
+
     planar = library("planar")
     towards = [0.0, 0.0, -2.0 * CRITICAL]
     (event, *_) = follow_path(planar.model, "push.force", towards).events
@@ -162,6 +169,12 @@ def test_stability_follows_parameters(library: Callable[[str], Library]) -> None
         assert found is not None
         verdicts[stiffness] = found.verdict
     assert verdicts == {1.0: "unstable", 2.0: "stable"}
+    # In units of the scene's own EI/ℓ: twice the load on twice the stiffness releases twice the energy.
+    p = {"rod.stiffness.bending_y": 2.0}
+    loaded = compiled.stability(inputs, np.zeros(compiled.size))
+    doubled = compiled.stability(2.0 * inputs, np.zeros(compiled.size), parameters=p)
+    assert loaded is not None and doubled is not None
+    assert_allclose(doubled.smallest_eigenvalue, 2.0 * loaded.smallest_eigenvalue, rtol=1e-8, atol=0)
 
 
 def test_what_is_no_equilibrium_is_not_judged(library: Callable[[str], Library]) -> None:
