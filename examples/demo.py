@@ -33,6 +33,9 @@ SCENES = (
     "rod_in_stream",
     "rubbing_tendon",
     "wire_from_shapes",
+    "rod_on_table",
+    "rod_over_bar",
+    "wire_in_vessel",
 )
 
 WITH_TARGETS = ("finger_to_point",)

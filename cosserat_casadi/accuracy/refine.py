@@ -33,6 +33,7 @@ from cosserat_casadi.accuracy.assess import (
     assess,
 )
 from cosserat_casadi.accuracy.coarsen import Coarsening
+from cosserat_casadi.accuracy.contact import solve_contact_scene
 from cosserat_casadi.accuracy.levels import MOST_LEVELS, REFERENCE_MODES, Level, nodes_for_turn
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.node_residual import min_modes
@@ -42,7 +43,7 @@ from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY, can_relax
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, solve, stabilised
+from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable, solve, stabilised
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
@@ -113,6 +114,10 @@ def solve_scene(
     # Parameters have the scene's values: what is solved is one scene.
     scene = scene.baked()
     solver = _SceneSolver(scene, values, stable, progress, report)
+    if scene.obstacles:
+        transport = scene.accuracy.rotation or solver.reference_transport
+        in_contact = solve_contact_scene(scene, values, transport, progress, report)
+        return noted_unstable(in_contact) if stable else in_contact
     solution = _with_fixed(solver) if scene.accuracy.fixed else _with_tolerance(solver)
     # The last correction alone may need no step: a user asks what the search has cost.
     solution = replace(solution, iterations=solver.iterations)

@@ -30,6 +30,7 @@ from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.simulate import check_movable
 from cosserat_casadi.motion.stage import algebraic_places, differential_places
 
@@ -89,6 +90,7 @@ def acados_expressions(model: Model, name: str, *, moving: bool = False) -> Acad
         ExportError: the name is no C identifier, the model has no inputs or no scalar form.
         SceneError: a rod has no mass.
     """
+    refuse_obstacles(model.scene, "an acados model")
     _check(model, name, moving)
     dae = _dae(model, moving)
     return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.p, dae.value)
@@ -135,6 +137,7 @@ def write_acados(model: Model, directory: str | os.PathLike[str], name: str, *, 
         ExportError: the name or the folder is refused, the model has no inputs or no scalar form; nothing was written.
         SceneError: it is to move, and a rod has no mass; nothing was written.
     """
+    refuse_obstacles(model.scene, "an acados model")
     functions = acados_functions(model, name, moving=moving)
     folder = Path(directory)
     stale = check_folder(folder, MANIFEST)

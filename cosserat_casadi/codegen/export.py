@@ -19,6 +19,7 @@ from cosserat_casadi.codegen.names import Names, library_names, model_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.scene.writing import scene_text
 
 
@@ -107,6 +108,7 @@ def folder_files(
     Raises:
         ExportError: the scene has no motion, and one is asked for.
     """
+    refuse_obstacles(model.scene, "exported C")
     names = model_names(name, model, dynamics=dynamics)
     parts = assembled(model, names)
     motion = motion_in_c(model, names) if dynamics else None

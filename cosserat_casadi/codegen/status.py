@@ -8,8 +8,8 @@ from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.numerics.outcome import Outcome
 
-OUTCOMES = tuple(Outcome)
-"""Statuses of the solver in C, in the order of their numbers."""
+OUTCOMES = tuple(outcome for outcome in Outcome if outcome is not Outcome.CONTACT_UNSETTLED)
+"""Statuses of the solver in C, in the order of their numbers: it does not look for contact."""
 
 
 def status_words(names: Names) -> dict[str, str]:

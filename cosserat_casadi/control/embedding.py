@@ -15,6 +15,7 @@ import casadi as ca
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.newton import NewtonSettings
 
 CERTIFIED = NewtonSettings().tolerance
@@ -49,6 +50,7 @@ def lifted(
         parameters: stacked parameters, any expressions, shape (model.parameters.size,): variables or parameters of the
             problem; by default the scene's values.
     """
+    refuse_obstacles(model.scene, "an embedded model")
     start = model.unloaded() if near is None else near.x
     if parameters is None:
         residual = model.at().residual(x, inputs)
@@ -74,6 +76,7 @@ def embedded(model: Model, near: Solution, iterations: int = 50, *, parameters: 
         Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
+    refuse_obstacles(model.scene, "an embedded model")
     if not parameters:
         model = model.at()
     options = {

@@ -29,6 +29,7 @@ from cosserat_casadi.equilibrium.solve import check_potential, solve
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 
 DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
 """Weights of the inputs' distance from where a round starts, the last one for all further rounds.
@@ -129,6 +130,7 @@ def inverse(model: Model, *, start: Solution | None = None, stable: bool = False
         SceneError: the scene has no targets, or names no inputs to find; or a stable equilibrium is wanted under loads
             without a potential.
     """
+    refuse_obstacles(model.scene, "an inverse problem")
     model = model.at()
     check_targets(model.scene.targets)
     if start is None:

@@ -20,6 +20,7 @@ from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.unknowns import BlockKind
 
@@ -46,6 +47,7 @@ def stability_margin(model: Model, width: float = WIDTH) -> ca.Function:
         SceneError: the loads have no potential, or a cable may go slack.
         ValueError: the width is not positive, or not finite.
     """
+    refuse_obstacles(model.scene, "a margin of stability")
     if not 0.0 < width < np.inf:
         raise ValueError(f"the width of a soft minimum is positive and finite, got {width}")
     model = model.at()

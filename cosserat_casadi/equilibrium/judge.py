@@ -133,11 +133,11 @@ def _with_stability(solution: Solution) -> Solution:
         solution,
         smallest_eigenvalue=stability.smallest_eigenvalue,
         stable=stability.stable and not critical,
-        message=solution.message + _stability_note(stability, critical),
+        message=solution.message + stability_note(stability, critical),
     )
 
 
-def _stability_note(stability: Stability, critical: bool) -> str:
+def stability_note(stability: Stability, critical: bool) -> str:
     """What a user must know of an equilibrium that not every variation costs energy."""
     if critical:
         return " It is critical: some variation costs no energy to second order; a slight change may unsettle it."

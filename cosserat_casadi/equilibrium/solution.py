@@ -46,6 +46,29 @@ class BaseWrench:
 
 
 @dataclass(frozen=True)
+class Contact:
+    """Where a rod touches an obstacle, and how it is held off.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        start: abscissa X at which contact begins.
+        end: abscissa at which it ends; the same for a point.
+        force: resultant on the rod, world axes, shape (3,), N.
+        ends: force at the point, or at both ends of a line, along the normals there, N.
+        kind: "point" or "line".
+    """
+
+    obstacle: str
+    rod: str
+    start: float
+    end: float
+    force: FloatArray
+    ends: tuple[float, ...]
+    kind: str
+
+
+@dataclass(frozen=True)
 class Solution:
     """The end of a solve; an equilibrium only where ``converged`` says so.
 
@@ -64,6 +87,7 @@ class Solution:
             and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
             estimated.
         shape_error_estimate: the same over all sections, those between nodes included.
+        contacts: where rods touch obstacles, in order along each rod. Their forces are inputs of the model.
     """
 
     model: Model
@@ -78,6 +102,7 @@ class Solution:
     stable: bool | None = None
     error_estimate: float | None = None
     shape_error_estimate: float | None = None
+    contacts: tuple[Contact, ...] = ()
 
     @property
     def converged(self) -> bool:

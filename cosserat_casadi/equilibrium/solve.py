@@ -12,6 +12,9 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.equilibrium.contact.equations import Grids
+from cosserat_casadi.equilibrium.contact.solve import solve_contact
+from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
@@ -19,6 +22,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.numerics.continuation import ContinuationSettings, follow
 from cosserat_casadi.numerics.newton import NewtonResult
 from cosserat_casadi.numerics.outcome import Outcome
@@ -26,6 +30,9 @@ from cosserat_casadi.numerics.progress import Progress
 
 CANNOT_RELAX = " Assemblies and cables of given length cannot be let settle to less energy."
 """What the message of a solution adds where relaxing is not offered."""
+
+IN_CONTACT = " Rods in contact cannot be let settle to less energy."
+"""What the message of an unstable solution adds where rods touch obstacles."""
 
 NONE_STABLE = " No stable equilibrium was found by letting the rod settle to less energy."
 """What the message of a solution adds where no try led to a stable equilibrium."""
@@ -100,7 +107,8 @@ def solve(
         parameters: parameters by name, or all of them stacked, as :meth:`Model.at` takes them; the model of the
             solution is that one. By default the scene's values.
         start: where to start; by default the unloaded rod. From a solution of the same model, continuation follows
-            the inputs from those of the solution to the wanted ones, and so stays on its branch. From unknowns of
+            the inputs from those of the solution to the wanted ones, and so stays on its branch; of a scene with
+            obstacles, the contacts of the solution are tried first. From unknowns of
             shape (size,), Newton is tried at the wanted inputs, and the unloaded rod where that strays.
         method: "continuation" (default), "rootfinder" (CasADi's Newton) or "nlpsol" (ipopt); the last two start
             at the full load and may find another branch, or none.
@@ -116,8 +124,16 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     model = model.at(parameters)
-    inputs = _stacked(model, values)
     limits = settings or ContinuationSettings()
+    if model.scene.obstacles:
+        solution = _in_contact(model, values, start, method, limits, progress)
+        if stable:
+            check_potential(solution.model, solution.inputs)
+            solution = noted_unstable(solution)
+        if raise_on_failure and not solution.converged:
+            raise SolveError(solution.message)
+        return solution
+    inputs = _stacked(model, values)
     task = _Task(model, inputs, start, limits, progress)
     unknowns = len(task.first_iterate)
     if unknowns != model.size:
@@ -142,6 +158,40 @@ def solve(
     if raise_on_failure and not solution.converged:
         raise SolveError(solution.message)
     return solution
+
+
+def _in_contact(
+    model: Model,
+    values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None,
+    start: Start,
+    method: str,
+    limits: ContinuationSettings,
+    progress: Progress | None,
+) -> Solution:
+    """Equilibrium of a scene with obstacles on the modes and nodes of its model.
+
+    Raises:
+        ValueError: a method, or a start, that knows of no contact.
+    """
+    if method != "continuation":
+        raise ValueError(f"contact is found by continuation, not by {method!r}")
+    if start is not None and not isinstance(start, Solution):
+        raise ValueError("contact is found from a solution, or from the unloaded scene: unknowns name no contacts")
+    if values is not None and not isinstance(values, Mapping):
+        by_name = model.inputs.split(values)
+        # The forces of contacts that a solution has found are not given but sought.
+        given = set(input_layout(without_contacts(model.scene)).names)
+        values = {name: value for name, value in by_name.items() if name in given}
+    return solve_contact(
+        model.scene, Grids(model.discretisation), values, start=start, newton=limits.newton, progress=progress
+    )
+
+
+def noted_unstable(solution: Solution) -> Solution:
+    """A solution in contact that is wanted stable: where it is not, its message says that no other is looked for."""
+    if not solution.converged or solution.stable:
+        return solution
+    return replace(solution, message=solution.message + IN_CONTACT)
 
 
 def _stacked(model: Model, values: Mapping[str, npt.ArrayLike] | npt.ArrayLike | None) -> FloatArray:

@@ -23,6 +23,7 @@ from cosserat_casadi.identification.statistics import Statistics, statistics
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.arrow_least_squares import Arrow, ArrowFit, Fit, Limits
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
@@ -73,6 +74,7 @@ def identify(
     Raises:
         SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
     """
+    refuse_obstacles(model.scene, "an identification")
     scene = model.scene
     options = scene.identification
     layout = unknown_layout(model)
@@ -117,6 +119,7 @@ def identify_scene(
     Raises:
         SceneError: as in :func:`identify`.
     """
+    refuse_obstacles(scene, "an identification")
     completed = scene.with_unknowns()
     draft = build(completed)
     # All that is refused is refused before time is spent on a discretisation.

@@ -239,6 +239,9 @@ class Load(ABC, Generic[RecordType]):
 
 def polynomials_at(count: int, X: Numbers) -> Numbers:
     """Legendre polynomials in 2X − 1 at abscissae, shape (count, len(X))."""
+    # The constant alone is a number wherever the sections are.
+    if count == 1:
+        return np.ones((1, X.shape[0]))
     if is_symbolic(X):
         return as_matrix(legendre_table(count, X)).T
     return np.asarray(legendre_polynomials(count, known(X)).T)

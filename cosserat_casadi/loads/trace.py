@@ -163,7 +163,8 @@ def _kernel(
 
 def stored(values: Mapping[str, Matrix]) -> Matrix:
     """The stored entries of all inputs of a load, p×1, in their order."""
-    entries = [value.nz[:] for value in values.values()]
+    # The entries of one row are a row: they are stacked as well.
+    entries = [ca.reshape(value.nz[:], value.nnz(), 1) for value in values.values()]
     stacked: Matrix = ca.vertcat(*entries)
     return stacked
 

@@ -21,6 +21,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.motion_functions import MotionFunctions
+from cosserat_casadi.model.obstacle_checks import check_obstacles, refuse_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
@@ -184,12 +185,17 @@ def build(
         moving: whether it is for a motion, in which bodies may turn freely.
 
     Raises:
-        SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load cannot be where it is.
+        SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
+            where it is; or a scene with obstacles is to move.
     """
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     nominal = discrete_scene(scene, input_layout(scene), chosen)
     check_loads(nominal)
+    if moving:
+        refuse_obstacles(scene, "a motion")
+    if scene.obstacles:
+        check_obstacles(nominal)
     parameters = parameter_layout(scene)
     if not parameters.size:
         return Model(nominal)

@@ -8,12 +8,15 @@ from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
+from cosserat_casadi.loads.contact_line import ContactLineLoad
+from cosserat_casadi.loads.contact_point import ContactPointLoad
 from cosserat_casadi.loads.distributed_wrench import DistributedWrenchLoad
 from cosserat_casadi.loads.flow import FlowLoad
 from cosserat_casadi.loads.foundation import FoundationLoad
 from cosserat_casadi.loads.gravity import GravityLoad
 from cosserat_casadi.loads.load import Load
 from cosserat_casadi.loads.magnet import MagnetLoad
+from cosserat_casadi.loads.penetration import PenetrationLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
 from cosserat_casadi.scene.actuators import ACTUATORS
@@ -55,3 +58,7 @@ for shipped in (
     ChamberActuator,
 ):
     register(shipped)
+
+for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad):
+    # What the search for contact adds to a scene: no scene file names it, so that the scene format does not know it.
+    EFFECTS[found.kind] = found()

@@ -23,6 +23,7 @@ from cosserat_casadi.errors import Problem, SceneError, SolveError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import NOTHING, undamped_modes
 from cosserat_casadi.motion.modes import check_mass, small_motions
 from cosserat_casadi.motion.small_motions import DEPENDENT, SmallMotions
@@ -143,6 +144,7 @@ def linearise(solution: Solution, outputs: Sequence[str | Place] | None = None) 
         SolveError: the solution is no equilibrium.
         SceneError: an output is unknown, nothing that may move has mass, or constraints leave no room for an input.
     """
+    refuse_obstacles(solution.model.scene, "a linear model")
     if not solution.converged:
         raise SolveError(solution.message)
     watched = _outputs(solution, outputs)

@@ -26,6 +26,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.eigenproblem import REAL, ComplexArray, eigenpairs
 from cosserat_casadi.motion.mode_shapes import NumberArray, RodShape, end_of_cluster, normalised, rod_shape
 from cosserat_casadi.motion.small_motions import SmallMotions
@@ -229,6 +230,7 @@ def modes_of(solution: Solution, count: int | None = None) -> Modes:
     Raises:
         SceneError: nothing that may move has mass.
     """
+    refuse_obstacles(solution.model.scene, "an analysis of modes")
     if not solution.converged:
         return _no_equilibrium(solution)
     model = solution.model
@@ -280,6 +282,7 @@ def modes_of_scene(
         ValueError: the count is not positive.
         SceneError: a value is refused, or nothing that may move has mass.
     """
+    refuse_obstacles(scene, "an analysis of modes")
     if count < 1:
         raise ValueError(f"at least one mode must be asked for, got {count}")
     equilibrium = solve_scene(scene, values, progress=progress, report=report)

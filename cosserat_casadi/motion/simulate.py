@@ -17,6 +17,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -257,6 +258,7 @@ def simulate(
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
+    refuse_obstacles(model.scene, "a motion")
     model = model.at()
     asked = simulation or model.scene.simulation
     check_simulation(model, asked)

@@ -28,6 +28,10 @@ class Outcome(Enum):
         "The solution of the last turn could not be followed to these inputs within the bounds of one turn: "
         "move the inputs less in a turn, or solve anew."
     )
+    CONTACT_UNSETTLED = (
+        "No equilibrium found: of the contacts with obstacles that were tried, none had rods outside the obstacles "
+        "and forces that only push."
+    )
 
     @property
     def label(self) -> str:

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.library import fill
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.page.drawn_model import DrawnModel
 from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
@@ -37,6 +38,7 @@ def export_page(solution: Solution, file: Path) -> Path:
         ExportError: there is no compiler for WebAssembly, or the page would be larger than a page may be.
         WriteError: the file cannot be written.
     """
+    refuse_obstacles(solution.model.scene, "a page")
     model = DrawnModel(solution.model.discrete)
     module = wasm_of(model, find_wasm_compiler())
     content = page_text(page_facts(solution), [asset("wasm_robot.js")], module).encode()

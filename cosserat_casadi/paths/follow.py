@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
@@ -364,6 +365,7 @@ def follow_path(
     Raises:
         SceneError: the input is unknown, or a value is refused.
     """
+    refuse_obstacles(model.scene, "a path")
     model = model.at()
     followed = _followed(model, name, value, values)
     values_at_zero = model.inputs.unpack(followed.base)

@@ -13,6 +13,7 @@ ROD_MARKERS = ("", "o", "^", "s", "D", "v")
 
 ACTUATORS = ("#cc6677", "#117733", "#332288", "#999933")
 BODIES = "#777777"
+OBSTACLES = "#a08c5b"
 FORCES = "#b2560d"
 LINE_FORCES = "#c98b4b"
 MOMENTS = "#7a3e9d"

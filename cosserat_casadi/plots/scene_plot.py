@@ -16,6 +16,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.load_arrows import scene_arrows
+from cosserat_casadi.plots.obstacles import draw_obstacles
 from cosserat_casadi.plots.panels import QUANTITIES, draw_panel
 from cosserat_casadi.plots.scene_view import scene_view
 from cosserat_casadi.plots.scenery import draw_actuators, draw_bodies, draw_rods, draw_supports, draw_targets
@@ -36,7 +37,8 @@ def plot_solution(solution: Solution) -> Any:
     """Figure of a solution.
 
     Left the rods in space, or in the plane that holds all of the scene: deformed thick, unloaded
-    dashed, section axes (x red, y green, z blue), tendons and chambers, bodies filled, joints, loads as arrows.
+    dashed, section axes (x red, y green, z blue), tendons and chambers, bodies filled, joints, obstacles, loads and
+    forces of contact as arrows.
     Right, along X: the strains that are admitted, the internal moment and the internal force in section axes.
 
     Returns:
@@ -68,6 +70,7 @@ def plot_solution(solution: Solution) -> Any:
 
 
 def _draw_scene(canvas: Canvas, solution: Solution, shapes: RodShapes, arrows: Sequence[Arrow]) -> None:
+    draw_obstacles(canvas, solution, shapes)
     draw_rods(canvas, solution, shapes)
     draw_supports(canvas, solution.model.scene)
     draw_actuators(canvas, solution)

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 SAMPLES = 41
@@ -21,6 +23,8 @@ def result(solution: Solution) -> dict[str, Any]:
     model = solution.model
     scene = model.scene
     inputs = model.inputs.unpack(solution.inputs)
+    # The forces of contacts are found, not given.
+    given = input_layout(without_contacts(scene)).names
     data: dict[str, Any] = {
         "schema": SCHEMA,
         "title": scene.title,
@@ -35,7 +39,7 @@ def result(solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterations,
         "load_factor": solution.load_factor,
         # Columns of Legendre coefficients become rows, and what has one entry a number.
-        "inputs": {name: value.T.squeeze() for name, value in inputs.items()},
+        "inputs": {name: value.T.squeeze() for name, value in inputs.items() if name in given},
         "discretisation": discretisation_entries(model),
         "rods": {name: _rod_entry(solution, name) for name in model.discrete.rods},
     }
@@ -44,6 +48,8 @@ def result(solution: Solution) -> dict[str, Any]:
         data["bodies"] = {body.name: _body_entry(solution, body.name) for body in scene.bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: solution.actuator(actuator.name) for actuator in scene.actuators}
+    if scene.obstacles:
+        data["contacts"] = [_contact_entry(contact) for contact in solution.contacts]
     plain_data: dict[str, Any] = plain(data)
     return plain_data
 
@@ -79,6 +85,19 @@ def _rod_entry(solution: Solution, name: str) -> dict[str, Any]:
 def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
     pose = solution.body(name)
     return {"position": pose.position[0], "rotation": pose.rotation[0], "quaternion": pose.quaternion[0]}
+
+
+def _contact_entry(contact: Contact) -> dict[str, Any]:
+    """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line."""
+    return {
+        "obstacle": contact.obstacle,
+        "rod": contact.rod,
+        "from": contact.start,
+        "to": contact.end,
+        "force": contact.force,
+        "kind": contact.kind,
+        "point_forces": contact.ends,
+    }
 
 
 def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:

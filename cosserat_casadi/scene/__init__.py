@@ -45,6 +45,7 @@ from cosserat_casadi.scene.measurements import (
     Unknown,
 )
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.obstacles import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.scene.rods import (
@@ -68,6 +69,7 @@ __all__ = [
     "JOINTS",
     "LOADS",
     "MEASUREMENTS",
+    "OBSTACLES",
     "SUPPORTS",
     "Accuracy",
     "Actuator",
@@ -77,6 +79,7 @@ __all__ = [
     "Body",
     "BodyWrench",
     "Bound",
+    "Capsule",
     "Chamber",
     "Circle",
     "ClampedSupport",
@@ -99,12 +102,16 @@ __all__ = [
     "JointRecord",
     "Load",
     "LoadRecord",
+    "Lumen",
     "Magnet",
     "Material",
     "Measurement",
     "MeasurementRecord",
     "NamedNumbers",
+    "Obstacle",
+    "ObstacleRecord",
     "PinnedSupport",
+    "Plane",
     "PointWrench",
     "PoseTarget",
     "PositionTarget",
@@ -116,6 +123,7 @@ __all__ = [
     "Scene",
     "Section",
     "Simulation",
+    "Sphere",
     "SphericalJoint",
     "Stiffness",
     "Support",

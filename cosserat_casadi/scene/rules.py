@@ -20,6 +20,7 @@ from cosserat_casadi.scene.loads import LOADS
 from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.obstacles import OBSTACLES
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.rods import Rod, admitted_strains
@@ -34,6 +35,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "actuators": ACTUATORS,
     "rods": Rod,
     "bodies": Body,
+    "obstacles": OBSTACLES,
     "targets": TARGETS,
     "bounds": Bound,
     "motions": InputMotion,
@@ -49,6 +51,7 @@ SINGULAR = {
     "actuators": "actuator",
     "rods": "rod",
     "bodies": "body",
+    "obstacles": "obstacle",
 }
 """One of what a list holds, in the words of an error."""
 
@@ -78,7 +81,7 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
-    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints"):
+    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles"):
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")

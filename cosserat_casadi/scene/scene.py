@@ -16,6 +16,7 @@ from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
 from cosserat_casadi.scene.measurements import Identification, Measurement, Unknown
 from cosserat_casadi.scene.motions import InputMotion
+from cosserat_casadi.scene.obstacles import Obstacle
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
 from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.rods import Rod
@@ -86,6 +87,7 @@ inputs = ["push.force", "cable.tension"]
     actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
+    obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
     measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")

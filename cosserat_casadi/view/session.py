@@ -21,6 +21,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.modes import modes_of
 from cosserat_casadi.motion.resolve import simulate_scene
 from cosserat_casadi.motion.trajectory import Motion
@@ -227,6 +228,7 @@ def opened(solution: Solution, progress: Progress | None = None) -> Session:
     Raises:
         ExportError: there is no C compiler, or it fails.
     """
+    refuse_obstacles(solution.model.scene, "a view")
     with tempfile.TemporaryDirectory() as folder:
         # The compiled library lies in the cache: the sources are not needed any more.
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)

@@ -42,6 +42,8 @@ def _print_equilibrium(console: Console, solution: Solution, written: Sequence[P
     console.print(_rod_table(solution))
     if solution.model.scene.actuators:
         console.print(_actuator_table(solution))
+    if solution.model.scene.obstacles:
+        console.print(_contact_table(solution))
     print_plain(console, _merit_sentence(solution))
     print_written(console, written)
 
@@ -121,6 +123,21 @@ def _rod_table(solution: Solution) -> Table:
         pose = solution.body(name)
         table.add_row(escape(name), "body position, m", *digits(pose.position[0]))
         table.add_row("", "body z axis", *digits(pose.rotation[0][:, 2]), end_section=True)
+    return table
+
+
+def _contact_table(solution: Solution) -> Table:
+    """Where rods touch obstacles, with the resultant on the rod in world axes; a row that says so where none does."""
+    table = table_of("obstacle", "rod", "contact")
+    for axis in ("x", "y", "z"):
+        table.add_column(f"force {axis}, N", justify="right")
+    for contact in solution.contacts:
+        where = f"at X = {contact.start:.6g}"
+        if contact.kind == "line":
+            where = f"X = {contact.start:.6g} to {contact.end:.6g}"
+        table.add_row(escape(contact.obstacle), escape(contact.rod), where, *digits(contact.force))
+    if not solution.contacts:
+        table.add_row("none touched", "", "", "", "", "")
     return table
 
 

@@ -1,0 +1,117 @@
+"""Scenes with obstacles to their tolerance: poses, forces of contact and where it begins and ends.
+
+The contacts are found on one level of modes and solved again on finer ones, until two levels differ by less than the
+tolerance. The coarser of the two is the solution, and their distance its estimate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.levels import nodes_for_turn
+from cosserat_casadi.accuracy.metrics import SAFETY, largest_turn, with_estimate
+from cosserat_casadi.equilibrium.contact.equations import Grids
+from cosserat_casadi.equilibrium.contact.solve import solve_contact
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress, Report
+
+LEVELS = (5, 7, 9, 11, 13, 16, 20, 24)
+"""Modes per strain and element that are tried."""
+
+FINER_MODES = 3
+"""Modes that are added to those of the user to estimate their error."""
+
+
+def solve_contact_scene(
+    scene: scenes.Scene,
+    values: Mapping[str, npt.ArrayLike] | None,
+    transport: str,
+    progress: Progress | None = None,
+    report: Report | None = None,
+) -> Solution:
+    """Equilibrium of a scene with obstacles to its tolerance, or on the modes and nodes that it fixes.
+
+    Args:
+        scene: without parameters.
+        values: inputs by name.
+        transport: rotation integrator where the scene names none.
+        progress: told the share of the load path that is done.
+        report: told the discretisation being solved.
+    """
+    tolerance = scene.accuracy.tolerance
+    coarse: Solution | None = None
+    for modes, nodes in _levels(scene):
+        turn = 0.0 if coarse is None else largest_turn(coarse)
+        chosen = discretise(scene, modes, max(nodes, nodes_for_turn(_most(modes), turn)), transport)
+        if report is not None:
+            report(f"{modes} modes")
+        fine = solve_contact(scene, Grids(chosen), values, start=coarse, progress=progress)
+        if coarse is None:
+            coarse = fine
+            if not fine.converged and scene.accuracy.fixed:
+                return fine
+            continue
+        fine = replace(fine, iterations=coarse.iterations + fine.iterations)
+        if coarse.converged and fine.converged and _same_contacts(coarse, fine):
+            judged = _with_contact_error(coarse, fine)
+            assert judged.error_estimate is not None
+            if scene.accuracy.fixed or judged.error_estimate <= tolerance:
+                return replace(judged, iterations=fine.iterations)
+        elif scene.accuracy.fixed:
+            break
+        coarse = fine
+    assert coarse is not None
+    if not coarse.converged:
+        return coarse
+    return replace(coarse, outcome=Outcome.UNRESOLVED, message=Outcome.UNRESOLVED.value, stable=None)
+
+
+def _levels(scene: scenes.Scene) -> list[tuple[int | tuple[int, ...], int]]:
+    """Modes, and the least intervals, to solve one after the other."""
+    accuracy = scene.accuracy
+    if not accuracy.fixed:
+        return [(modes, nodes_for(modes)) for modes in LEVELS]
+    modes = DEFAULT_MODES if accuracy.modes is None else accuracy.modes
+    nodes = nodes_for(_most(modes)) if accuracy.nodes is None else accuracy.nodes
+    finer = modes + FINER_MODES if isinstance(modes, int) else tuple(count + FINER_MODES for count in modes)
+    return [(modes, nodes), (finer, nodes + 2 * FINER_MODES)]
+
+
+def _most(modes: int | tuple[int, ...]) -> int:
+    return modes if isinstance(modes, int) else max(modes)
+
+
+def _same_contacts(first: Solution, second: Solution) -> bool:
+    """Whether the same rods touch the same obstacles in the same way."""
+    names = [[(touch.rod, touch.obstacle, touch.kind) for touch in solution.contacts] for solution in (first, second)]
+    return names[0] == names[1]
+
+
+def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
+    """A solution with its distance to a finer one: that of poses, of places of contact, or of forces, the largest.
+
+    Forces count relative to EI/ℓ² or to the largest one, whichever is more.
+    """
+    judged = with_estimate(coarse, fine)
+    units = [coarse.model.discrete.tension_unit(contact.rod) for contact in coarse.contacts]
+    largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
+    distances = [0.0]
+    for first, second in zip(coarse.contacts, fine.contacts, strict=True):
+        distances += [abs(first.start - second.start), abs(first.end - second.end)]
+        forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
+        distances.append(float(np.abs(forces).max()) / largest)
+    contact_error = SAFETY * max(distances)
+    assert judged.error_estimate is not None
+    assert judged.shape_error_estimate is not None
+    return replace(
+        judged,
+        error_estimate=max(judged.error_estimate, contact_error),
+        shape_error_estimate=max(judged.shape_error_estimate, contact_error),
+    )

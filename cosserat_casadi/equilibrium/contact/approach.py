@@ -1,0 +1,191 @@
+"""Where contact is, roughly: rods that sink a little into cushions, on coarse elements, as the loads grow from zero.
+
+The pressure of the cushions says which stretches are held off, and how. A cushion is an obstacle made soft: it grows
+with the loads, so that a rod whose unloaded shape lies in an obstacle, as a straight rod in a bent lumen, is pushed out
+of it on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
+from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.load_path import input_path, load_path
+from cosserat_casadi.equilibrium.relax import can_relax, relaxed
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.loads.penetration import Penetration
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.places import element_ends
+from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
+from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.rod.discretisation import Discretisation
+
+Values = Mapping[str, npt.ArrayLike] | None
+"""Inputs by name."""
+
+ELEMENTS = 10
+"""Elements of every rod, beside those that its loads ask for: pressure is not smooth."""
+
+MODES = 3
+NODES = 6
+
+STIFFNESS = 1e6
+"""First stiffness of a cushion, in units of EI/ℓ⁵."""
+
+SHALLOW = 0.01
+"""Depth, relative to the length, to which rods may sink into it."""
+
+LONG = 0.2
+"""Stretch of pressure from which a line of contact is tried before a point."""
+
+MOST_STIFFENINGS = 3
+"""Times that cushions are made stiffer where rods sink in deeper."""
+
+LONGEST_STEP = 0.15
+"""Longest step of the continuation: a rod must not jump through an obstacle."""
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """A stretch that a cushion holds off.
+
+    Attributes:
+        rod: name of the rod.
+        obstacle: name of the obstacle.
+        X: abscissae of the stretch, shape (k,).
+        values: force per length there, shape (k,), any unit.
+    """
+
+    rod: str
+    obstacle: str
+    X: FloatArray
+    values: FloatArray
+
+    def touch(self) -> Touch:
+        """The contact that the pressure looks like."""
+        start, end = float(self.X[0]), float(self.X[-1])
+        rises = np.diff(self.values) > 0
+        falls = np.flatnonzero(~rises)
+        first_peak = float(self.X[falls[0]]) if len(falls) else end
+        at_tip = end == TIP
+        if end - start > LONG:
+            last_rise = np.flatnonzero(rises)
+            last_peak = float(self.X[last_rise[-1] + 1]) if len(last_rise) else start
+            line_end = TIP if at_tip else last_peak
+            if line_end - first_peak > LONG / 2:
+                return Touch.line(self.obstacle, self.rod, first_peak, line_end)
+        place = float(self.X[np.argmax(self.values)])
+        if not at_tip:
+            place = float(self.X @ self.values / self.values.sum())
+        return Touch.point(self.obstacle, self.rod, place)
+
+
+def cushioned(scene: scenes.Scene) -> Model:
+    """The scene with cushions for obstacles, on coarse elements."""
+    cushions: list[Penetration] = []
+    for rod in scene.rods:
+        for obstacle in scene.obstacles:
+            if obstacle.concerns(rod.name):
+                name = f"cushion {len(cushions) + 1}"
+                cushions.append(
+                    Penetration.model_construct(
+                        name=name, rod=rod.name, obstacle=obstacle, stiffness=_unit(scene, rod.name) * STIFFNESS
+                    )
+                )
+    changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
+    if scene.inputs is not None:
+        changes["inputs"] = (*scene.inputs, *(f"{cushion.name}.stiffness" for cushion in cushions))
+    soft = scene.model_copy(update=changes)
+    discretisation = {}
+    for rod in scene.rods:
+        own = element_ends(scene, rod.name)
+        # None as short as the distance of an end of the loads from one of ours may be.
+        further = [end for end in np.linspace(0.0, 1.0, ELEMENTS + 1) if np.abs(end - own).min() > 0.2 / ELEMENTS]
+        modes = (MODES,) * len(rod.admitted)
+        discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
+    return build(soft, discretisation)
+
+
+def _unit(scene: scenes.Scene, rod: str) -> float:
+    """EI/ℓ⁵ of a rod, N/m⁴: a force per length, by the square of a depth, over the length."""
+    (record,) = [record for record in scene.rods if record.name == rod]
+    properties = rod_properties(record)
+    return properties.bending_stiffness / properties.length**5
+
+
+def approach(scene: scenes.Scene, values: Values, progress: Progress | None = None) -> Solution:
+    """Equilibrium of a scene on its cushions, which are stiff enough for rods to sink in but little.
+
+    Args:
+        scene: without contacts.
+        values: inputs by name.
+        progress: told the share of the load path that is done.
+    """
+    model = cushioned(scene)
+    settings = ContinuationSettings(longest=LONGEST_STEP)
+    end = follow(load_path(model, model.pack(values)), settings, progress)
+    inputs = model.pack(values)
+    found = _judged(model, inputs, end)
+    if not found.converged and can_relax(model) and model.has_potential(inputs):
+        # The rod snaps on the way: it is let settle to less energy where the path ended.
+        settled = relaxed(found, settings.newton, progress)
+        found = found if settled is None else settled
+    stiffening = 0
+    while found.converged and depth(found) > SHALLOW and stiffening < MOST_STIFFENINGS:
+        # Pressure grows with the square of the depth.
+        factor = (2 * depth(found) / SHALLOW) ** 2
+        stiffer = inputs.copy()
+        for entry, span in model.inputs:
+            if entry.owner.startswith("cushion "):
+                stiffer[span] *= factor
+        end = follow(input_path(model, found.x, inputs, stiffer), settings, None)
+        found = _judged(model, stiffer, end)
+        inputs = stiffer
+        stiffening += 1
+    return found
+
+
+def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:
+    """The end of a path as a solution; that coarse elements resolve a rod but roughly is no matter here."""
+    return Solution(
+        model,
+        inputs,
+        end.x,
+        end.outcome,
+        end.outcome.value,
+        residual_norm=end.residual_norm,
+        iterations=end.iterations,
+        load_factor=end.reached,
+    )
+
+
+def depth(solution: Solution) -> float:
+    """How deep rods sink into obstacles, relative to their lengths."""
+    return max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
+
+
+def first_state(solution: Solution) -> ContactState:
+    """The contacts that the pressure of cushions looks like."""
+    touches = []
+    for rod, obstacle, gaps in _all_gaps(solution):
+        # Quadratic in the depth, as the cushions are.
+        pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
+        touches += [pressure.touch() for pressure in pressed]
+    return ContactState.of(touches)
+
+
+def _all_gaps(solution: Solution) -> Iterator[tuple[str, scenes.ObstacleRecord, FloatArray]]:
+    """Gaps of every rod to every obstacle that concerns it, along all of it."""
+    scene = solution.model.scene
+    for rod in scene.rods:
+        for obstacle in scene.obstacles:
+            if obstacle.concerns(rod.name):
+                yield rod.name, obstacle, gap_along(solution, rod.name, obstacle, DENSE)

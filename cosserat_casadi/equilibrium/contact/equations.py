@@ -1,0 +1,342 @@
+"""Equations of rods in known contact: their balance, no gap where they touch, no slope of the gap where contact moves.
+
+Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
+are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a stretch gives the same at
+its ends, and the moments of d − ρ with the polynomials of its force. Elements end at p and move with it, so that every
+field is smooth inside an element and the accuracy of the polynomials is kept. See docs/contact.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.state import SHORTEST, ContactState, Place, contact_loads, with_contacts
+from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.loads.load import polynomials_at
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.numbers import Scalar, as_matrix
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
+from cosserat_casadi.model.equations import Equations as SceneEquations
+from cosserat_casadi.model.places import element_ends
+from cosserat_casadi.model.system import Arguments, System
+from cosserat_casadi.numerics.newton import Equations
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.rod.strain import DiscreteRod
+
+FIT = 1e-3
+"""Singular values, relative to the largest, below which a first guess of forces does without them."""
+
+TORSION = 2
+"""Index of the torsion among the strains: bendings come before it."""
+
+
+@dataclass(frozen=True)
+class Grids:
+    """Modes, nodes and rotation integrator of the elements of every rod, wherever elements end.
+
+    Attributes:
+        rods: by name; their own breaks are not read.
+    """
+
+    rods: Mapping[str, Discretisation]
+
+    def discretisation(self, scene: scenes.Scene) -> dict[str, Discretisation]:
+        """One for every rod of a scene, with elements that end where its loads say."""
+        return {name: replace(own, breaks=element_ends(scene, name)) for name, own in self.rods.items()}
+
+    def bending_modes(self, scene: scenes.Scene) -> dict[str, int]:
+        """Polynomials that all curvatures of each rod have at least, by name."""
+        fewest = {}
+        for rod in scene.rods:
+            modes = self.rods[rod.name].modes
+            bending = [count for strain, count in zip(rod.admitted, modes, strict=True) if strain < TORSION]
+            fewest[rod.name] = min(bending, default=1)
+        return fewest
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A model whose elements end at the contacts of a state.
+
+    Attributes:
+        model: of the scene with the forces of the contacts as inputs.
+        state: the contacts.
+        given: stacked inputs of the scene without contacts.
+        modes: polynomials of the curvature of each rod, by name.
+    """
+
+    model: Model
+    state: ContactState
+    given: FloatArray
+    modes: Mapping[str, int]
+
+    @cached_property
+    def force_entries(self) -> list[int]:
+        """Entries of the forces in the stacked inputs, in the order of the loads."""
+        names = {load.name for load in contact_loads(self.model.scene)}
+        entries: list[int] = []
+        for entry, span in self.model.inputs:
+            if entry.owner in names:
+                entries.extend(range(span.start, span.stop))
+        return entries
+
+    @cached_property
+    def force_units(self) -> FloatArray:
+        """What one unit of each force stands for, shape (k,): EI/ℓ² of its rod, in N, or EI/ℓ³, in N/m."""
+        units = []
+        for load in contact_loads(self.model.scene):
+            unit = self.model.discrete.tension_unit(load.rod)
+            if isinstance(load, ContactLine):
+                length = self.model.discrete.rods[load.rod].length
+                units += [unit / length] * len(load.force[0])
+            else:
+                units.append(unit)
+        return np.array(units)
+
+    @cached_property
+    def _spread(self) -> tuple[FloatArray, FloatArray]:
+        """Constant part of the inputs, shape (m,), and matrix from the forces to them, (m, k)."""
+        size = self.model.inputs.size
+        others = np.setdiff1d(np.arange(size), self.force_entries)
+        constant = np.zeros(size)
+        constant[others] = self.given
+        matrix = np.zeros((size, len(self.force_entries)))
+        matrix[self.force_entries, np.arange(len(self.force_entries))] = self.force_units
+        return constant, matrix
+
+    def inputs(self, forces: FloatArray) -> FloatArray:
+        """Stacked inputs of the model for forces without unit, shape (k,)."""
+        constant, matrix = self._spread
+        return np.asarray(constant + matrix @ forces)
+
+    def written_inputs(self, forces: Matrix) -> Matrix:
+        """The same as expressions."""
+        constant, matrix = self._spread
+        return ca.DM(constant) + ca.sparsify(ca.DM(matrix)) @ forces
+
+    def fitting_forces(self, x: FloatArray) -> FloatArray:
+        """Forces that balance a shape best, shape (k,): its balance is linear in them."""
+        _, matrix = self._spread
+        inputs = self.inputs(np.zeros(len(self.force_units)))
+        balance = column(self.model.path_residual(x, inputs, 1.0))
+        by_forces = self.model.input_jacobian(x, inputs).full() @ matrix
+        fitting, *_ = np.linalg.lstsq(by_forces, -balance, rcond=FIT)
+        return np.asarray(fitting)
+
+    def residual(self, x: FloatArray, forces: FloatArray) -> FloatArray:
+        """Balance and gaps, without unit."""
+        inputs = self.inputs(forces)
+        balance = column(self.model.path_residual(x, inputs, 1.0))
+        gaps, _ = self.gaps(x, inputs)
+        return np.concatenate([balance, column(gaps)])
+
+    @cached_property
+    def gaps(self) -> ca.Function:
+        """(x, inputs) ↦ what the contacts ask to be zero, without unit, and its derivative with x."""
+        x = ca.MX.sym("x", self.model.size)
+        inputs = ca.MX.sym("inputs", self.model.inputs.size)
+        system = System(self.model.discrete, Arguments(x, inputs))
+        gaps = gap_rows(system, self.state, self.modes)
+        return ca.Function("gaps", [x, inputs], [gaps, ca.jacobian(gaps, x)])
+
+    def obstacle(self, name: str) -> scenes.ObstacleRecord:
+        """The obstacle of a name."""
+        return obstacle_of(self.model.scene, name)
+
+
+def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:
+    """The obstacle of a name."""
+    (record,) = [obstacle for obstacle in scene.obstacles if obstacle.name == name]
+    return record
+
+
+def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
+    """What the contacts ask to be zero, without unit: for each, the rows of its ends, then the moments along it."""
+    rows: list[Matrix] = [ca.MX(0, 1)]
+    for touch in state.touches:
+        distances = Distances(system, touch.rod, obstacle_of(system.discrete.scene, touch.obstacle))
+        for end, moves in zip(touch.ends, touch.moves, strict=True):
+            gap, slope = distances.at(end)
+            rows.append(gap)
+            if moves:
+                rows.append(slope)
+        if touch.is_line:
+            rows.append(distances.moments(touch.start, touch.end, touch.moment_count(modes[touch.rod])))
+    return ca.vertcat(*rows)
+
+
+@dataclass(frozen=True)
+class Distances:
+    """Distances of a rod's surface from an obstacle, over the length of the rod, as expressions.
+
+    Attributes:
+        system: the scene.
+        rod: name of the rod.
+        obstacle: the obstacle.
+    """
+
+    system: System
+    rod: str
+    obstacle: scenes.ObstacleRecord
+
+    @property
+    def _discrete_rod(self) -> DiscreteRod:
+        return self.system.discrete.rods[self.rod]
+
+    @cached_property
+    def _world_R_base(self) -> Matrix:
+        return quaternion_to_matrix(self.system.base(self.rod).quaternion)
+
+    @cached_property
+    def _radii(self) -> FloatArray:
+        """Radius at base and tip, between which it is linear, shape (2,), m."""
+        return section_radius(self._discrete_rod.properties, np.array([0.0, 1.0]))
+
+    def _radius(self, X: Place) -> Place:
+        base, tip = self._radii.tolist()
+        return base + X * (tip - base)
+
+    def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
+        """Distance of the surface at a node, m, and the normal of the obstacle there."""
+        shape = self.system.shapes[self.rod]
+        position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
+        distance, normal, _ = surface(self.obstacle)(position)
+        return distance - self._radius(X), normal
+
+    def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
+        """Distance and its rate with X at an end of an element, over the length."""
+        grid = self._discrete_rod.grid
+        node = grid.node_at(X)
+        gap, normal = self._gap(node, X)
+        tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
+        # The tangent is the rate of the coordinate that integrals run over, which a moving element stretches.
+        rate = grid.rates_in(grid.element_of_node[[node]])
+        if rate is not None:
+            tangent = tangent / as_matrix(rate)[0]
+        base, tip = self._radii.tolist()
+        slope = ca.dot(normal, tangent) - (tip - base)
+        length = self._discrete_rod.properties.length
+        return gap / length, slope / length
+
+    def moments(self, start: Scalar, end: Scalar, count: int) -> Matrix:
+        """∫ P_j (d − ρ) over a stretch, relative to it, for the first Legendre polynomials, count×1."""
+        grid = self._discrete_rod.grid
+        nodes = grid.nodes_in(start, end)
+        X = grid.nodes_at(nodes)
+        width = end - start
+        gaps = ca.vertcat(*[self._gap(int(node), X[i])[0] for i, node in enumerate(nodes)])
+        polynomials = as_matrix(polynomials_at(count, (X - start) / width))
+        # Weights are of the whole rod: over the stretch they add up to one.
+        weights = grid.weights[nodes] / grid.weights[nodes].sum()
+        return polynomials @ (ca.DM(weights) * gaps) / self._discrete_rod.properties.length
+
+
+@dataclass(frozen=True)
+class ContactEquations:
+    """Equations of one state in z = (x, f, p).
+
+    Attributes:
+        scene: the scene without contacts.
+        given: its stacked inputs.
+        grids: modes and nodes of every element.
+        state: the contacts, at the places that the equations start from.
+    """
+
+    scene: scenes.Scene
+    given: FloatArray
+    grids: Grids
+    state: ContactState
+
+    def placed(self, state: ContactState) -> Placed:
+        """The model of the contacts at places that are known."""
+        modes = self.grids.bending_modes(self.scene)
+        loaded = with_contacts(self.scene, state, modes)
+        model = build(loaded, self.grids.discretisation(loaded))
+        return Placed(model, state, self.given, modes)
+
+    @cached_property
+    def nominal(self) -> Placed:
+        """The model that the equations start from, whose elements the places of contact move."""
+        return self.placed(self.state)
+
+    def parts(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """x, f and p."""
+        unknowns = self.nominal.model.size
+        x, f, p = np.split(z, [unknowns, unknowns + len(self.nominal.force_units)])
+        return x, f, p
+
+    @cached_property
+    def _functions(self) -> tuple[ca.Function, ca.Function]:
+        """Z ↦ residual, and z ↦ its derivative."""
+        nominal = self.nominal
+        x = ca.MX.sym("x", nominal.model.size)
+        f = ca.MX.sym("f", len(nominal.force_units))
+        p = ca.MX.sym("p", len(self.state.places))
+        # One expression for each place: what ends there is found by it.
+        state = self.state.at([p[i] for i in range(p.shape[0])])
+        discrete = self._written(state) if p.shape[0] else nominal.model.discrete
+        system = System(discrete, Arguments(x, nominal.written_inputs(f)))
+        written = SceneEquations(system)
+        balance = written.residual
+        gaps = gap_rows(system, state, nominal.modes)
+        residual = ca.Function("residual", [x, f, p], [ca.vertcat(balance, gaps)])
+        # The Jacobian of the balance is written out; what the contacts add is small.
+        by_others = ca.horzcat(ca.jacobian(balance, f), ca.jacobian(balance, p))
+        gaps_by_all = ca.horzcat(*[ca.jacobian(gaps, part) for part in (x, f, p)])
+        jacobian = ca.vertcat(ca.horzcat(written.jacobian, by_others), gaps_by_all)
+        return residual, ca.Function("jacobian", [x, f, p], [jacobian])
+
+    def _written(self, state: ContactState) -> DiscreteScene:
+        """The scene whose elements end at expressions."""
+        written = with_contacts(self.scene, state, self.nominal.modes)
+        return with_numbers(self.nominal.model.discrete, written)
+
+    def _ends(self, rod: str, p: FloatArray) -> FloatArray:
+        """Where the elements of a rod end at places of contact p, shape (E + 1,)."""
+        breaks = self.nominal.model.discretisation[rod].breaks
+        moved = self.state.at(p.tolist())
+        places = dict(zip(self._places_on(self.state, rod), self._places_on(moved, rod), strict=True))
+        return np.array([places.get(end, end) for end in breaks])
+
+    @staticmethod
+    def _places_on(state: ContactState, rod: str) -> list[float]:
+        return [float(end) for touch in state.touches if touch.rod == rod for end in touch.ends]
+
+    def fixed_in(self, x: FloatArray, p: FloatArray, placed: Placed) -> FloatArray:
+        """The unknowns of a model whose elements end at p for good: there strains are not counted per moved length."""
+        unmoved = x.copy()
+        for name, rod in placed.model.discrete.rods.items():
+            rates = np.diff(self._ends(name, p)) / np.diff(self.nominal.model.discretisation[name].breaks)
+            first = placed.model.discrete.unknowns.strain(name).start
+            for entries in rod.columns.values():
+                modes = (entries.stop - entries.start) // rod.grid.elements
+                own = slice(first + entries.start, first + entries.stop)
+                unmoved[own] /= np.repeat(rates, modes)
+        return unmoved
+
+    def residual(self, z: FloatArray) -> FloatArray:
+        """Balance and gaps; not a number where elements would not follow each other along the rod."""
+        x, f, p = self.parts(z)
+        if any(np.diff(self._ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
+            return np.full(len(z), np.nan)
+        return column(self._functions[0](x, f, p))
+
+    def jacobian(self, z: FloatArray) -> FloatArray:
+        """Derivative of the residual."""
+        return np.asarray(self._functions[1](*self.parts(z)).full())
+
+    @property
+    def equations(self) -> Equations:
+        """As Newton's method takes them."""
+        return Equations(self.residual, self.jacobian)

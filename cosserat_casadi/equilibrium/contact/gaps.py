@@ -1,0 +1,42 @@
+"""Distances of solved rods from obstacles, between the nodes too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.typing import FloatArray
+
+DENSE = np.linspace(0.0, 1.0, 801)
+"""Abscissae at which rods are held against obstacles; they are no nodes."""
+
+
+def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
+    """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
+    positions = solution.pose(X, rod).position
+    distance = distance_from(obstacle).map(len(X))(positions.T)
+    properties = solution.model.discrete.rods[rod].properties
+    return np.asarray((distance.full()[0] - section_radius(properties, X)) / properties.length)
+
+
+def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
+    """Normals of an obstacle at the sections of a rod, shape (k, 3)."""
+    positions = solution.pose(X, rod).position
+    _, gradient, _ = surface(obstacle).map(len(X))(positions.T)
+    return np.asarray(gradient.full().T)
+
+
+def runs(chosen: npt.NDArray[np.bool_]) -> Iterator[slice]:
+    """Stretches of neighbours that are chosen."""
+    padded = np.concatenate([[False], chosen, [False]]).astype(int)
+    steps = np.diff(padded)
+    starts = np.flatnonzero(steps == 1)
+    ends = np.flatnonzero(steps == -1)
+    for start, end in zip(starts, ends, strict=True):
+        yield slice(int(start), int(end))

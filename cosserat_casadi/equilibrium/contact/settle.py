@@ -1,0 +1,341 @@
+"""From a first guess of the contacts to those that hold: states are tried until one has no fault.
+
+A state is at fault where a force pulls, or a section is inside an obstacle; what is at fault says which states to try
+next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends without
+a state that holds, it says so. See docs/contact.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids, Placed
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
+from cosserat_casadi.equilibrium.contact.projection import projected
+from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.newton import NewtonSettings, newton
+from cosserat_casadi.numerics.outcome import Outcome
+
+MOST_STATES = 24
+"""Most states that are tried."""
+
+NEAR = 0.03
+"""Distance along the rod within which a penetration belongs to a contact."""
+
+ROUNDING = 1e-12
+"""Force, relative to the largest, that is zero."""
+
+AT_TIP = 1e-3
+"""Distance from the tip within which it is the tip that touches."""
+
+LIES_FROM = 0.8
+"""Where a rod that lies down from its tip on is first thought to begin to."""
+
+ALIKE = 0.05
+"""Places of contact that differ by less make the same attempt."""
+
+SAMPLES = np.linspace(0.0, 1.0, 41)
+"""Places along a stretch at which its force per length is looked at."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A state whose equations are solved.
+
+    Attributes:
+        placed: the model with elements that end at the contacts.
+        x: unknowns.
+        forces: of the contacts, without unit.
+        solution: the same as a solution, not judged yet.
+    """
+
+    placed: Placed
+    x: FloatArray
+    forces: FloatArray
+    solution: Solution
+
+    @property
+    def state(self) -> ContactState:
+        """The contacts."""
+        return self.placed.state
+
+    def parts(self) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact, the forces at its ends, and the coefficients of the force along it, without unit."""
+        first = 0
+        for touch in self.state.touches:
+            last = first + len(touch.ends)
+            count = touch.moment_count(self.placed.modes[touch.rod]) if touch.is_line else 0
+            yield touch, self.forces[first:last], self.forces[last : last + count]
+            first = last + count
+
+    @property
+    def largest_force(self) -> float:
+        """What forces are compared with, without unit: EI/ℓ², or the largest at a point."""
+        return max(1.0, float(np.abs(self.forces).max(initial=0.0)))
+
+    def pulls(self) -> Iterator[tuple[Touch, float]]:
+        """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
+        for touch, ends, line in self.parts():
+            least = float(ends.min())
+            if touch.is_line:
+                # Per length, over the whole of it.
+                along = legendre_polynomials(len(line), SAMPLES) @ line
+                least = min(least, float(along.min()) * (touch.end - touch.start))
+            yield touch, max(-least, 0.0) / self.largest_force
+
+    @property
+    def worst_pull(self) -> float:
+        """The largest of them."""
+        return max((pull for _, pull in self.pulls()), default=0.0)
+
+    def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
+        """Stretches that are inside an obstacle by more than a tolerance."""
+        for rod, obstacle in pairs(self.placed.model.scene):
+            X = np.union1d(DENSE, self._beside_contacts(rod))
+            gaps = gap_along(self.solution, rod, obstacle, X)
+            for stretch in runs(gaps < -tolerance):
+                inside = X[stretch]
+                deepest = int(np.argmin(gaps[stretch]))
+                yield Penetrated(rod, obstacle.name, inside[0], inside[-1], inside[deepest], -gaps[stretch][deepest])
+
+    def _beside_contacts(self, rod: str) -> FloatArray:
+        """Abscissae close to the places of contact, where a rod that lies on starts to enter."""
+        beside = np.concatenate([-np.geomspace(1e-4, 2e-2, 12), np.geomspace(1e-4, 2e-2, 12)])
+        ends = [end for touch in self.state.touches if touch.rod == rod for end in touch.ends]
+        X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
+        return X[(X > 0.0) & (X < 1.0)]
+
+    def depth(self) -> float:
+        """How deep any rod is inside an obstacle, relative to its length."""
+        return max((penetrated.depth for penetrated in self.penetrations(0.0)), default=0.0)
+
+
+@dataclass(frozen=True)
+class Penetrated:
+    """A stretch of a rod that is inside an obstacle.
+
+    Attributes:
+        rod: name of the rod.
+        obstacle: name of the obstacle.
+        start: abscissa of its first section.
+        end: of its last one.
+        deepest: of the one that is deepest inside.
+        depth: there, relative to the length of the rod.
+    """
+
+    rod: str
+    obstacle: str
+    start: float
+    end: float
+    deepest: float
+    depth: float
+
+    def joined(self, other: Penetrated) -> Penetrated:
+        """One stretch from the start of the first to the end of the last."""
+        deeper = self if self.depth >= other.depth else other
+        return replace(deeper, start=min(self.start, other.start), end=max(self.end, other.end))
+
+    def is_at(self, touch: Touch) -> bool:
+        """Whether it begins or ends at a contact."""
+        if (touch.rod, touch.obstacle) != (self.rod, self.obstacle):
+            return False
+        return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
+
+
+def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
+    """Every rod with every obstacle that it must not enter."""
+    for rod in scene.rods:
+        for obstacle in scene.obstacles:
+            if obstacle.concerns(rod.name):
+                yield rod.name, obstacle
+
+
+@dataclass
+class Settling:
+    """The search for a state that holds.
+
+    Attributes:
+        scene: without contacts.
+        given: its stacked inputs.
+        grids: modes and nodes of every element.
+        newton: limits of the solve of each state.
+        tolerance: depth and pull, relative, up to which a state holds.
+        iterations: Newton steps so far.
+    """
+
+    scene: scenes.Scene
+    given: FloatArray
+    grids: Grids
+    newton: NewtonSettings
+    tolerance: float
+    iterations: int = 0
+
+    def run(self, state: ContactState, near: Solution) -> tuple[Found | None, bool]:
+        """Try states until one holds.
+
+        Args:
+            state: the first one.
+            near: a shape to start from.
+
+        Returns:
+            the state that holds, or the last one that was solved; whether it holds.
+        """
+        waiting = [(state, near)]
+        tried: list[ContactState] = []
+        last: Found | None = None
+        while waiting and len(tried) < MOST_STATES:
+            candidate, start = waiting.pop(0)
+            if not candidate.in_order or any(_alike(candidate, other) for other in tried):
+                continue
+            tried.append(candidate)
+            found = self.solve(candidate, start)
+            if found is None:
+                waiting += [(other, start) for other in _otherwise(candidate)]
+                continue
+            last = found
+            others = list(next_states(found, self.tolerance))
+            if not others:
+                return found, True
+            # What follows from a state that was solved comes before what was only thought of.
+            waiting = [(other, found.solution) for other in others] + waiting
+        return last, False
+
+    def solve(self, state: ContactState, near: Solution) -> Found | None:
+        """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
+        equations = ContactEquations(self.scene, self.given, self.grids, state)
+        x = projected(near, equations.nominal.model)
+        start = np.concatenate([x, equations.nominal.fitting_forces(x), state.places])
+        result = newton(equations.equations, start, self.newton)
+        self.iterations += result.iterations
+        if result.outcome is not Outcome.CONVERGED:
+            return None
+        x, forces, places = equations.parts(result.x)
+        # What only rounding presses does not press.
+        forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
+        placed = equations.placed(state.at(places.tolist()))
+        x = equations.fixed_in(x, places, placed)
+        solution = Solution(
+            placed.model,
+            placed.inputs(forces),
+            x,
+            result.outcome,
+            result.outcome.value,
+            residual_norm=result.residual_norm,
+            iterations=result.iterations,
+        )
+        return Found(placed, x, forces, solution)
+
+
+def _alike(first: ContactState, second: ContactState) -> bool:
+    """Whether two states are the same attempt."""
+    if first.signature != second.signature:
+        return False
+    return bool(np.all(np.abs(first.places - second.places) < ALIKE))
+
+
+def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
+    """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
+    touches = list(found.state.touches)
+    changes: list[tuple[tuple[Touch, ...], list[tuple[Touch, ...]]]] = []
+    for touch, pull in found.pulls():
+        if pull > tolerance:
+            changes.append(((touch,), list(_instead_of_pulling(touch))))
+    pulling = {change[0][0] for change in changes}
+    for penetrated, touch in _by_touch(found, tolerance):
+        # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
+        if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
+            continue
+        if touch not in pulling:
+            replaced = () if touch is None else (touch,)
+            changes.append((replaced, list(_instead_of_entering(penetrated, touch))))
+    if not changes:
+        return
+    # All that is at fault is changed at once; then each in another way.
+    yield _changed(touches, [(old, new[0]) for old, new in changes])
+    for index, (old, options) in enumerate(changes):
+        for option in options[1:]:
+            others = [(other_old, new[0]) for i, (other_old, new) in enumerate(changes) if i != index]
+            yield _changed(touches, [*others, (old, option)])
+
+
+def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
+    """Stretches inside an obstacle, each with the contact that it is at; those on both sides of one contact joined."""
+    alone: list[tuple[Penetrated, Touch | None]] = []
+    joined: dict[Touch, Penetrated] = {}
+    for penetrated in found.penetrations(tolerance):
+        touch = next((touch for touch in found.state.touches if penetrated.is_at(touch)), None)
+        if touch is None:
+            alone.append((penetrated, None))
+        else:
+            joined[touch] = penetrated.joined(joined.get(touch, penetrated))
+    return [*alone, *((penetrated, touch) for touch, penetrated in joined.items())]
+
+
+def _changed(touches: list[Touch], changes: list[tuple[tuple[Touch, ...], tuple[Touch, ...]]]) -> ContactState:
+    """The state with some contacts replaced by others."""
+    gone = {touch for old, _ in changes for touch in old}
+    come = [touch for _, new in changes for touch in new]
+    return ContactState.of([*(touch for touch in touches if touch not in gone), *come])
+
+
+def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
+    """What a contact that pulls may be instead."""
+    if not touch.is_line:
+        yield ()
+        return
+    middle = (touch.start + touch.end) / 2
+    first, last, between = (Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle))
+    yield (first, last)
+    yield (between,)
+    yield (first,)
+    yield (last,)
+    if touch.end == TIP:
+        # A rod that curls up leaves before its tip.
+        yield (replace(touch, end=touch.start + 0.7 * (touch.end - touch.start)),)
+
+
+def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
+    """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
+    here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
+    point = Touch.point(penetrated.obstacle, penetrated.rod, here)
+    if touch is None:
+        yield (point,)
+        return
+    start = min(penetrated.start, touch.start)
+    end = max(penetrated.end, touch.end)
+    line = Touch.line(penetrated.obstacle, penetrated.rod, start, end)
+    if touch.is_line:
+        yield (line,)
+        yield (touch, point)
+    elif touch.end == TIP:
+        # A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down.
+        inwards = Touch.point(penetrated.obstacle, penetrated.rod, min(here, TIP - 2 * NEAR))
+        yield (inwards,)
+        yield (line,)
+        yield (inwards, touch)
+    else:
+        yield (line,)
+        yield (touch, point)
+        yield (point,)
+
+
+def _otherwise(state: ContactState) -> Iterator[ContactState]:
+    """States beside one whose equations have no solution near by."""
+    for index, touch in enumerate(state.touches):
+        rest = [other for i, other in enumerate(state.touches) if i != index]
+        if touch.is_line:
+            for option in _instead_of_pulling(touch):
+                yield ContactState.of([*rest, *option])
+        elif touch.end == TIP:
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])
+            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.rod, LIES_FROM, TIP)])
+        else:
+            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP)])
+        yield ContactState.of(rest)

@@ -1,0 +1,70 @@
+"""Equilibrium of a scene with obstacles, on given modes and nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.approach import approach, first_state
+from cosserat_casadi.equilibrium.contact.equations import Grids
+from cosserat_casadi.equilibrium.contact.settle import Settling
+from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.verdict import judged
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.numerics.newton import NewtonSettings
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.numerics.progress import Progress
+
+LEAST_TOLERANCE = 1e-9
+"""Depth and pull, relative, below which rounding decides."""
+
+
+def solve_contact(
+    scene: scenes.Scene,
+    grids: Grids,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+    *,
+    start: Solution | None = None,
+    newton: NewtonSettings | None = None,
+    progress: Progress | None = None,
+) -> Solution:
+    """Find the contacts of a scene and its equilibrium.
+
+    Args:
+        scene: with obstacles; parameters have values.
+        grids: modes and nodes of every element.
+        values: inputs by name.
+        start: a solution of the same rods and obstacles whose contacts are tried first; by default those of the
+            unloaded rods under growing loads.
+        newton: limits of the solve of each state.
+        progress: told the share of the load path that is done.
+    """
+    bare = without_contacts(scene)
+    given = input_layout(bare).pack(values)
+    settings = newton or NewtonSettings()
+    tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
+    settling = Settling(bare, given, grids, settings, tolerance)
+    if start is not None:
+        found, holds = settling.run(state_in(start.model.scene), start)
+        if found is not None and holds:
+            return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
+    cushioned = approach(bare, values, progress)
+    settling.iterations += cushioned.iterations
+    if not cushioned.converged:
+        # Short of the full load there is nothing whose contacts could be found.
+        return replace(cushioned, iterations=settling.iterations)
+    found, holds = settling.run(first_state(cushioned), cushioned)
+    if found is None:
+        found = settling.solve(ContactState(()), cushioned)
+    if found is None:
+        unsettled = Outcome.CONTACT_UNSETTLED
+        return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=unsettled.value)
+    solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
+    if solution.converged and PATH_OF_ENERGY in cushioned.message:
+        return replace(solution, message=solution.message + PATH_OF_ENERGY)
+    return solution

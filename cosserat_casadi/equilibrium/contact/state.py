@@ -1,0 +1,210 @@
+"""Which sections touch which obstacles: discrete data, with the places of contact as numbers that are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.contact_line import ContactLine
+from cosserat_casadi.loads.contact_point import ContactPoint
+from cosserat_casadi.maths.numbers import is_symbolic
+from cosserat_casadi.maths.typing import FloatArray
+
+Place = Any
+"""An abscissa X: a number, or an expression while it is sought."""
+
+TIP = 1.0
+"""Abscissa of the section that contact cannot move beyond."""
+
+SHORTEST = 1e-5
+"""Least distance of places of contact from each other and from the base, relative to the length of the rod."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """One contact of a rod with an obstacle: a point, or a stretch that lies on it.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        start: abscissa X at which contact begins.
+        end: abscissa at which it ends; the same for a point.
+        is_line: whether a stretch lies on the obstacle.
+    """
+
+    obstacle: str
+    rod: str
+    start: Place
+    end: Place
+    is_line: bool = False
+
+    @classmethod
+    def point(cls, obstacle: str, rod: str, at: float) -> Touch:
+        """Contact at one section."""
+        return cls(obstacle, rod, at, at)
+
+    @classmethod
+    def line(cls, obstacle: str, rod: str, start: float, end: float) -> Touch:
+        """A stretch that lies on an obstacle."""
+        return cls(obstacle, rod, start, end, is_line=True)
+
+    @property
+    def ends(self) -> tuple[Place, ...]:
+        """Abscissae of the one point, or of both ends."""
+        return (self.start, self.end) if self.is_line else (self.start,)
+
+    @property
+    def moves(self) -> tuple[bool, ...]:
+        """Whether each of its ends is sought: all but the tip."""
+        return tuple(is_symbolic(end) or end < TIP for end in self.ends)
+
+    @property
+    def moving(self) -> tuple[Place, ...]:
+        """Those of its ends that are sought."""
+        return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
+
+    @property
+    def reaches_tip(self) -> bool:
+        """Whether it ends at the tip."""
+        return not self.moves[-1]
+
+    @property
+    def kind(self) -> str:
+        """The word of the result file."""
+        return "line" if self.is_line else "point"
+
+    def moved(self, places: Sequence[Place]) -> Touch:
+        """The same contact at other places, one for each that is sought."""
+        ends = [*places, TIP][: len(self.ends)]
+        return replace(self, start=ends[0], end=ends[-1])
+
+    def moment_count(self, modes: int) -> int:
+        """Number of polynomials of the force per length on a stretch.
+
+        In a stretch whose curvature has n polynomials the distance has n + 2. Of their conditions each sought end takes
+        two, distance and slope, the tip one; with the rest every one is met, and none twice.
+        """
+        conditions = len(self.ends) + len(self.moving)
+        return max(modes + 2 - conditions, 1)
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """All contacts of a scene.
+
+    Attributes:
+        touches: sorted by rod and abscissa.
+    """
+
+    touches: tuple[Touch, ...]
+
+    @classmethod
+    def of(cls, touches: Sequence[Touch]) -> ContactState:
+        """The state of some contacts, in order."""
+        return cls(tuple(sorted(touches, key=lambda touch: (touch.rod, touch.start, touch.obstacle))))
+
+    @property
+    def signature(self) -> tuple[tuple[str, str, str, bool], ...]:
+        """What of the state is discrete: two states with the same differ in their places alone."""
+        return tuple((touch.rod, touch.obstacle, touch.kind, touch.reaches_tip) for touch in self.touches)
+
+    @property
+    def places(self) -> FloatArray:
+        """All abscissae that are sought, shape (k,)."""
+        return np.array([float(place) for touch in self.touches for place in touch.moving])
+
+    def at(self, places: Sequence[Place]) -> ContactState:
+        """The same contacts at other places: numbers, or expressions."""
+        touches = []
+        first = 0
+        for touch in self.touches:
+            last = first + len(touch.moving)
+            touches.append(touch.moved(places[first:last]))
+            first = last
+        return ContactState(tuple(touches))
+
+    @property
+    def in_order(self) -> bool:
+        """Whether the places of each rod follow each other between base and tip, a little apart."""
+        rods = {touch.rod for touch in self.touches}
+        for rod in rods:
+            ends = [0.0, *(end for touch in self.touches if touch.rod == rod for end in touch.ends)]
+            gaps = np.diff(ends)
+            if np.any(gaps < SHORTEST) or ends[-1] > TIP:
+                return False
+        return True
+
+    def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
+        """The forces of the contacts as loads of the scene, without magnitude yet: at its ends, then along it.
+
+        Args:
+            scene: the scene without them.
+            modes: polynomials of the curvature of each rod, by name.
+        """
+        obstacles = {obstacle.name: obstacle for obstacle in scene.obstacles}
+        loads: list[scenes.LoadRecord] = []
+        for touch in self.touches:
+            obstacle = obstacles[touch.obstacle]
+            for end in touch.ends:
+                loads.append(
+                    ContactPoint.model_construct(
+                        name=f"contact {len(loads) + 1}", rod=touch.rod, obstacle=obstacle, at=end, force=0.0
+                    )
+                )
+            if touch.is_line:
+                no_force = ((0.0,) * touch.moment_count(modes[touch.rod]),)
+                loads.append(
+                    ContactLine.model_construct(
+                        name=f"contact {len(loads) + 1}",
+                        rod=touch.rod,
+                        obstacle=obstacle,
+                        span=(touch.start, touch.end),
+                        force=no_force,
+                    )
+                )
+        return loads
+
+
+def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
+    """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
+    loads = state.loads(scene, modes)
+    changes: dict[str, object] = {"loads": (*scene.loads, *loads)}
+    if scene.inputs is not None:
+        changes["inputs"] = (*scene.inputs, *(f"{load.name}.force" for load in loads))
+    return scene.model_copy(update=changes)
+
+
+def contact_loads(scene: scenes.Scene) -> list[ContactPoint | ContactLine]:
+    """The forces of contacts among the loads of a scene, which no scene file names."""
+    loads: Sequence[scenes.LoadRecord] = scene.loads
+    return [load for load in loads if isinstance(load, ContactPoint | ContactLine)]
+
+
+def without_contacts(scene: scenes.Scene) -> scenes.Scene:
+    """The scene as its file has it."""
+    names = {load.name for load in contact_loads(scene)}
+    if not names:
+        return scene
+    changes: dict[str, object] = {"loads": tuple(load for load in scene.loads if load.name not in names)}
+    if scene.inputs is not None:
+        inputs = {f"{name}.force" for name in names}
+        changes["inputs"] = tuple(name for name in scene.inputs if name not in inputs)
+    return scene.model_copy(update=changes)
+
+
+def state_in(scene: scenes.Scene) -> ContactState:
+    """The contacts whose forces are among the loads of a scene."""
+    touches = []
+    loads = contact_loads(scene)
+    for line in loads:
+        if isinstance(line, ContactLine):
+            start, end = line.span
+            touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
+    ends_of_lines = {(touch.rod, touch.obstacle, end) for touch in touches for end in touch.ends}
+    points = [point for point in loads if isinstance(point, ContactPoint)]
+    alone = [point for point in points if (point.rod, point.obstacle.name, point.at) not in ends_of_lines]
+    return ContactState.of([*touches, *(Touch.point(point.obstacle.name, point.rod, point.at) for point in alone)])

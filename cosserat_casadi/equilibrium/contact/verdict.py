@@ -1,0 +1,150 @@
+"""From contacts that hold to a solution: its residual, its contacts by name, and its stability.
+
+Contacts that press are constraints, and the curvature of the gap times their force is in the Jacobian already: their
+forces have the energy −N d. The place of a point of contact follows the motion; it moves so that the gap is least, and
+of the second variation of −N min d the part N (∂d′/∂x)² / d″ is left to add. (E. Polak, *Optimization*, Springer 1997,
+section 3.1, for the least value over a parameter.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.gaps import normals
+from cosserat_casadi.equilibrium.contact.settle import Found
+from cosserat_casadi.equilibrium.contact.state import Touch
+from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.judge import stability_note
+from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.maths.chebyshev import legendre_polynomials
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.newton import relative_norm
+from cosserat_casadi.numerics.outcome import Outcome
+
+FLAT = 1e-6
+"""Curvature of the gap, relative to the length, below which a point of contact does not slide."""
+
+PRESSING = 1e-9
+"""Force, relative to the largest, from which a contact is a constraint."""
+
+
+def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> Solution:
+    """A state as a solution.
+
+    Args:
+        found: the state, solved.
+        holds: whether no force pulls and nothing is inside an obstacle.
+        iterations: Newton steps that it took to find it.
+        tolerance: bound on the relative norm of the residual.
+    """
+    residual = found.placed.residual(found.x, found.forces)
+    norm = relative_norm(residual, np.concatenate([found.x, found.forces]))
+    outcome = Outcome.CONVERGED if holds else Outcome.CONTACT_UNSETTLED
+    inputs = found.solution.inputs
+    if not norm <= tolerance:
+        outcome = Outcome.MAX_ITERATIONS
+    elif holds and float(found.placed.model.resolution_index(found.x, inputs)) > 1.0:
+        outcome = Outcome.UNRESOLVED
+    solution = replace(
+        found.solution,
+        outcome=outcome,
+        message=outcome.value,
+        residual_norm=norm,
+        iterations=iterations,
+        contacts=contacts_of(found),
+    )
+    if not solution.converged or not found.placed.model.has_potential(inputs):
+        return solution
+    stability = stability_of(_eigenvalues(found))
+    critical = stability.neutral
+    return replace(
+        solution,
+        smallest_eigenvalue=stability.smallest_eigenvalue,
+        stable=stability.stable and not critical,
+        message=solution.message + stability_note(stability, critical),
+    )
+
+
+def contacts_of(found: Found) -> tuple[Contact, ...]:
+    """The contacts by name, with the forces on the rods."""
+    contacts = []
+    for touch, ends, line in found.parts():
+        unit = found.placed.model.discrete.tension_unit(touch.rod)
+        obstacle = found.placed.obstacle(touch.obstacle)
+        forces = unit * ends
+        normal = normals(found.solution, touch.rod, obstacle, np.array(touch.ends))
+        total = forces @ normal
+        if touch.is_line:
+            total = total + unit * _resultant(found, touch, obstacle, line)
+        contacts.append(
+            Contact(touch.obstacle, touch.rod, touch.start, touch.end, total, tuple(map(float, forces)), touch.kind)
+        )
+    return tuple(contacts)
+
+
+def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
+    """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
+    grid = found.placed.model.discrete.rods[touch.rod].grid
+    nodes = grid.nodes_in(touch.start, touch.end)
+    X = known(grid.nodes_at(nodes))
+    width = touch.end - touch.start
+    along = legendre_polynomials(len(line), (X - touch.start) / width) @ line
+    normal = normals(found.solution, touch.rod, obstacle, X)
+    return np.asarray((grid.weights[nodes] * along) @ normal)
+
+
+def _eigenvalues(found: Found) -> FloatArray:
+    """Eigenvalues of the second variation over the motions that contacts admit."""
+    placed = found.placed
+    model = placed.model
+    inputs = found.solution.inputs
+    jacobian = model.path_jacobian(found.x, inputs, 1.0).full()
+    rows = placed.gaps(found.x, inputs)[1].full()
+    held: list[FloatArray] = []
+    first = 0
+    for touch, ends, line in found.parts():
+        count = len(ends) + len(touch.moving) + len(line)
+        own = rows[first : first + count]
+        first += count
+        if touch.is_line:
+            held.extend(own)
+            continue
+        if ends[0] <= PRESSING * found.largest_force:
+            continue
+        held.append(own[0])
+        if touch.moving:
+            bend = _gap_curvature(found, touch)
+            if bend <= FLAT:
+                held.append(own[1])
+            else:
+                jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
+    return admissible_eigenvalues(*_restricted(jacobian, held, variations(model)))
+
+
+def _restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations) -> tuple[FloatArray, Variations]:
+    """A Jacobian with further rows that restrict the variations."""
+    size = len(jacobian)
+    bordered = np.zeros((size + len(held), size + len(held)))
+    bordered[:size, :size] = jacobian
+    if held:
+        bordered[size:, :size] = held
+    further = np.arange(size, size + len(held), dtype=np.int64)
+    return bordered, replace(allowed, held=np.concatenate([allowed.held, further]))
+
+
+def _gap_curvature(found: Found, touch: Touch) -> float:
+    """Second derivative of the gap with X at a point of contact, over the length: r′·∇²d r′ + n·r″."""
+    X = np.array([touch.start])
+    pose = found.solution.pose(X, touch.rod)
+    strain = found.solution.strain(X, touch.rod)[0]
+    length = found.placed.model.discrete.rods[touch.rod].properties.length
+    tangent = length * pose.rotation[0] @ strain[3:]
+    # The rate of the extension is along the tangent, on which the normal stands.
+    bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])
+    _, normal, second = (part.full() for part in surface(found.placed.obstacle(touch.obstacle))(pose.position[0]))
+    return float(tangent @ second @ tangent + normal[:, 0] @ bend) / length

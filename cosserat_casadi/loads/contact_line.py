@@ -1,0 +1,59 @@
+"""The force per length of an obstacle that a stretch of a rod lies on: energy −λ(X) d(r) per length.
+
+λ is a polynomial along the stretch, given by its Legendre coefficients. As with contact at a point, it is no input of
+the scene but follows from the contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.load import Load, Section, Site, polynomials_at
+from cosserat_casadi.maths.numbers import Numbers, Scalar
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import LoadRecord
+
+
+class ContactLine(LoadRecord):
+    """An obstacle that a stretch of a rod lies on."""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N/m", 1, polynomial=True)}
+
+    kind: Literal["contact_line"] = "contact_line"
+    rod: str
+    obstacle: Any
+    span: Any
+    force: tuple[tuple[float, ...]]
+
+
+@final
+class ContactLineLoad(Load[ContactLine]):
+    """λ along the normal of the obstacle."""
+
+    record = ContactLine
+
+    def span(self, load: ContactLine) -> tuple[Scalar, Scalar]:
+        """The stretch that lies on the obstacle."""
+        start, end = load.span
+        return start, end
+
+    def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """−λ d(r), J/m."""
+        force = ca.mtimes(values["force"], section.data)
+        energy: Matrix = -force * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        return energy
+
+    def profiles(self, load: ContactLine, rod: object, X: Numbers, columns: int) -> Numbers:
+        """One: λ varies with the data of the sections."""
+        return np.ones((columns, X.shape[0]))
+
+    def data(self, load: ContactLine, site: Site) -> Numbers:
+        """Values of the Legendre polynomials over the stretch."""
+        start, end = load.span
+        return polynomials_at(len(load.force[0]), (site.X - start) / (end - start))

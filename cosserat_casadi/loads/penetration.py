@@ -1,0 +1,62 @@
+"""A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: where contact is, before it is found exactly.
+
+Rods sink into it by a small share of their length. What it gives is a first guess of places and forces, never a result;
+no scene file names this load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.maths.numbers import Numbers, known
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.rod.properties import RodProperties
+from cosserat_casadi.scene.inputs import InputField
+from cosserat_casadi.scene.loads import LoadRecord
+
+
+class Penetration(LoadRecord):
+    """A soft obstacle."""
+
+    inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m³", 1)}
+
+    kind: Literal["penetration"] = "penetration"
+    rod: str
+    obstacle: Any
+    stiffness: float
+
+
+@final
+class PenetrationLoad(Load[Penetration]):
+    """k (ρ − d)² per length along the normal of the obstacle, where a section of radius ρ is in it; k in N/m³."""
+
+    record = Penetration
+
+    def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """k/3 (ρ − d)³, J/m."""
+        distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
+        depth = ca.fmax(section.data[0] - distance, 0.0)
+        energy: Matrix = values["stiffness"] / 3 * depth**3
+        return energy
+
+    def profiles(self, load: Penetration, rod: object, X: Numbers, columns: int) -> Numbers:
+        """One all along the rod."""
+        return np.ones((columns, X.shape[0]))
+
+    def data(self, load: Penetration, site: Site) -> FloatArray:
+        """Radius of the sections, m."""
+        return section_radius(site.rod, known(site.X))[None, :]
+
+
+def section_radius(rod: RodProperties, X: FloatArray) -> FloatArray:
+    """Radius of the sections of a rod at abscissae X, shape (k,), m; zero where it is given by its stiffness."""
+    if rod.diameter is None:
+        return np.zeros(len(X))
+    diameters = np.asarray(rod.diameter(X))
+    return np.broadcast_to(diameters / 2, X.shape)

@@ -1,0 +1,69 @@
+"""Obstacles that cannot be where the scene puts them, and uses of a scene that know of no contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.rods import base_pose
+from cosserat_casadi.obstacles.registry import SURFACES
+
+LOOKED_AT = np.linspace(0.0, 1.0, 201)
+"""Abscissae whose radius an obstacle is held against."""
+
+TOUCHING = 1e-9
+"""Depth of a clamp in an obstacle, relative to the length of its rod, that is put down to rounding."""
+
+
+def check_obstacles(discrete: DiscreteScene) -> None:
+    """Refuse a scene whose rods start, or are held, inside obstacles, or do not fit into them.
+
+    Raises:
+        SceneError: with the faults of all obstacles.
+    """
+    problems = list(_problems(discrete.nominal))
+    if problems:
+        raise SceneError(*problems)
+
+
+def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
+    """Refuse a scene with obstacles where contact is not looked for.
+
+    Args:
+        scene: the scene.
+        what: what is asked of it, such as "a path".
+
+    Raises:
+        SceneError: the scene has obstacles.
+    """
+    if scene.obstacles:
+        problem = f"{what} does not look for contact: its rods would pass through them"
+        remedy = "solve the scene, where contact at rest is found, or leave them out"
+        raise SceneError(Problem("obstacles", problem, remedy))
+
+
+def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
+    for rod in discrete.scene.rods:
+        properties = discrete.rods[rod.name].properties
+        radii = section_radius(properties, LOOKED_AT)
+        held = {"starts": (known(base_pose(rod)[0]), float(radii[0]))}
+        for support in discrete.scene.supports:
+            if support.rod == rod.name:
+                held["is held"] = (np.asarray(support.position, dtype=float), float(radii[-1]))
+        for obstacle in discrete.scene.obstacles:
+            if not obstacle.concerns(rod.name):
+                continue
+            member = SURFACES[obstacle.kind]
+            yield from member.faults(obstacle, float(radii.max()))
+            for how, (position, radius) in held.items():
+                depth = radius - float(member.function(obstacle)(position)[0])
+                if depth > TOUCHING * properties.length:
+                    problem = f"the rod {rod.name!r} {how} {depth:.4g} m inside it, at {position.tolist()}"
+                    remedy = "move one of the two, or name the rods that it concerns: rods = [...]"
+                    yield Problem(f"obstacles.{obstacle.name}", problem, remedy)

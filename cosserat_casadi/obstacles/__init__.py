@@ -1,0 +1,1 @@
+"""What rods may not enter, each a signed distance in one file."""

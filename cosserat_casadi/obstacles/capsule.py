@@ -1,0 +1,41 @@
+"""A round bar with half a ball at either end: the distance from its axis, less its radius."""
+
+from __future__ import annotations
+
+from typing import final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.obstacles.obstacle import Obstacle, across, rounded_norm
+from cosserat_casadi.scene.obstacles import Capsule
+
+
+@final
+class CapsuleObstacle(Obstacle[Capsule]):
+    """All that is nearer to an axis than a radius."""
+
+    record = Capsule
+
+    def distance(self, obstacle: Capsule, point: Matrix) -> Matrix:
+        """|r − c| − R, m, with c the point of the axis that is nearest to r."""
+        start = np.asarray(obstacle.start)
+        axis = np.asarray(obstacle.end) - start
+        from_start = point - ca.DM(start)
+        # Beyond the ends of the axis its ends are nearest.
+        share = ca.fmin(ca.fmax(ca.dot(ca.DM(axis), from_start) / float(axis @ axis), 0.0), 1.0)
+        return rounded_norm(from_start - share * ca.DM(axis), obstacle.radius) - obstacle.radius
+
+    def mesh(self, obstacle: Capsule, near: FloatArray, size: float) -> FloatArray:
+        """Rings along the bar, the half balls included."""
+        start = np.asarray(obstacle.start)
+        axis = np.asarray(obstacle.end) - start
+        direction = axis / np.linalg.norm(axis)
+        first, second = across(direction)
+        polar = np.linspace(0.0, np.pi, 14)
+        centres = np.where((polar < np.pi / 2)[:, None], start, obstacle.end)
+        along = centres - obstacle.radius * np.cos(polar)[:, None] * direction
+        around = np.linspace(0.0, 2 * np.pi, 25)
+        ring = np.cos(around)[:, None] * first + np.sin(around)[:, None] * second
+        return np.asarray(along[:, None] + obstacle.radius * np.sin(polar)[:, None, None] * ring)

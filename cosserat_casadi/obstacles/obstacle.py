@@ -1,0 +1,87 @@
+"""What an obstacle is: a kind of table of the scene, as the distance of a point of space from it.
+
+A member is one file and one line of the registry. It gives :meth:`Obstacle.distance`, a small function of a point.
+Normals and curvatures are its derivatives, which CasADi forms.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from typing import Any, ClassVar, Generic, TypeVar
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.errors import Problem
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.scene.families import word_of
+from cosserat_casadi.scene.obstacles import ObstacleRecord
+
+RecordType = TypeVar("RecordType", bound=ObstacleRecord)
+
+ROUNDING = 1e-8
+"""Distance, relative to the size of an obstacle, at which its middle is smoothed: (1e-8)²/2 is below rounding."""
+
+
+class Obstacle(ABC, Generic[RecordType]):
+    """One kind of obstacle.
+
+    Attributes:
+        record: the record of the scene, whose word is that of the obstacle.
+        kind: the word of the scene format.
+    """
+
+    record: ClassVar[type[ObstacleRecord]]
+    kind: ClassVar[str]
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "record" in vars(cls):
+            cls.kind = word_of(cls.record)
+
+    @abstractmethod
+    def distance(self, obstacle: RecordType, point: Matrix) -> Matrix:
+        """Distance of a point from the surface, negative where a rod must not be, 1×1, m.
+
+        Args:
+            obstacle: the record of the scene.
+            point: 3×1, world axes, m.
+        """
+
+    def faults(self, obstacle: RecordType, radius: float) -> Iterator[Problem]:
+        """What is wrong with an obstacle for rods whose sections have this radius, m; nothing by default."""
+        yield from ()
+
+    @abstractmethod
+    def mesh(self, obstacle: RecordType, near: FloatArray, size: float) -> FloatArray:
+        """Points of the surface as a figure draws it, shape (m, n, 3), m.
+
+        Args:
+            obstacle: the record of the scene.
+            near: a point that an endless surface is drawn about, shape (3,), m.
+            size: of the scene, m.
+        """
+
+    def function(self, obstacle: RecordType) -> ca.Function:
+        """Point ↦ distance, its gradient 3×1 and its second derivative 3×3."""
+        point = ca.SX.sym("point", 3)
+        distance = ca.SX(self.distance(obstacle, point))
+        hessian, gradient = ca.hessian(distance, point)
+        results = ca.cse([distance, gradient, ca.densify(hessian)])
+        return ca.Function("distance", [point], results, ["point"], ["distance", "gradient", "hessian"])
+
+
+def rounded_norm(vector: Matrix, size: float) -> Matrix:
+    """Norm of a vector with derivatives at zero too, exact to rounding from 1e-8 of a size on."""
+    return ca.sqrt(ca.sumsqr(vector) + (ROUNDING * size) ** 2)
+
+
+def across(direction: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit vectors that are normal to a direction and to each other."""
+    # The axis that is farthest from the direction makes the best beginning.
+    axis = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    first = np.cross(direction, axis)
+    first /= np.linalg.norm(first)
+    second = np.cross(direction, first) / np.linalg.norm(direction)
+    return first, second

@@ -1,0 +1,209 @@
+"""Obstacles: what rods may not enter, and lumens, which they may not leave; without friction.
+
+A new kind is a record of its own, registered with `OBSTACLES`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table
+from cosserat_casadi.scene.records import Entry
+from cosserat_casadi.scene.rods import admitted_strains
+from cosserat_casadi.scene.values import (
+    BY_LENGTH,
+    SEVERAL,
+    SINGLE,
+    Direction,
+    Name,
+    Names,
+    NotEmpty,
+    Positive,
+    Vector,
+    numbers_of,
+)
+
+SHEARS = {3, 4}
+"""Indices of the shears among the strains."""
+
+FEWEST_POINTS = 2
+"""Points of a lumen that make a line."""
+
+
+class ObstacleRecord(Entry):
+    """What the centre lines of rods keep away from, by the radius of their sections."""
+
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods"}
+
+    name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
+    rods: Names | None = Field(None, description="names of the rods that may not enter it; all rods when left out")
+    if TYPE_CHECKING:
+        kind: str  # each member declares its own word, where it stands among its keys
+
+    def concerns(self, rod: str) -> bool:
+        """Whether the rod of this name may not enter it."""
+        return self.rods is None or rod in self.rods
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """Rods that shear, that are not round, and rods of assemblies."""
+        named = given.get("rods")
+        tied = _tied_rods(scene)
+        for name, (_, rod) in scene.named("rods").items():
+            if not isinstance(named, list | tuple) or name in named:
+                yield from _unfit_rod(name, rod)
+                if name in tied:
+                    problem = f"the rod {name!r} is one of an assembly, or free: its contact is not found"
+                    yield Fault((), problem, "leave it out of rods, or give it a base in the world and no joint")
+
+
+def _tied_rods(scene: SceneTables) -> set[str]:
+    """Names of rods that joints hold, that carry others or are carried, or that nothing holds."""
+    tied = {joint.get("rod") for _, joint in scene.tables("joints")}
+    for name, (_, rod) in scene.named("rods").items():
+        base = rod.get("base")
+        if isinstance(base, Mapping) and (base.get("rod") is not None or base.get("free")):
+            tied |= {name, base.get("rod")}
+    return {name for name in tied if isinstance(name, str)}
+
+
+def _unfit_rod(name: str, rod: Table) -> Iterator[Fault]:
+    """What in a rod keeps its contact from being found."""
+    if SHEARS & set(admitted_strains(rod.get("strain"))):
+        # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
+        # contact spreads over a stretch as short as the section is high, which is not resolved.
+        problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
+        yield Fault((), problem, 'take strain = "kirchhoff", or a list without shear, or leave the rod out of rods')
+    section = rod.get("section")
+    if isinstance(section, Mapping) and section.get("shape") not in ("circle", "annulus"):
+        problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
+        yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
+
+
+OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
+"""Kinds of obstacles."""
+
+
+@OBSTACLES.register
+class Plane(ObstacleRecord):
+    """All that lies behind a plane."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.1]
+normal = [0, 0, 1]
+rods = ["finger"]
+"""
+
+    kind: Literal["plane"] = Field(description="half of space")
+    point: Vector = Field(description="a point of the plane in world axes, m")
+    normal: Direction = Field(
+        description="direction out of the obstacle in world axes, without unit; its length does not matter"
+    )
+
+
+@OBSTACLES.register
+class Sphere(ObstacleRecord):
+    """A ball."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "ball"
+kind = "sphere"
+centre = [0.05, 0, 0.1]
+radius = 0.02
+rods = ["finger"]
+"""
+
+    kind: Literal["sphere"] = Field(description="ball")
+    centre: Vector = Field(description="its centre in world axes, m")
+    radius: Positive = Field(description="its radius, m")
+
+
+@OBSTACLES.register
+class Capsule(ObstacleRecord):
+    """A round bar with half a ball at either end."""
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.03, -0.1, 0.1]
+to = [0.03, 0.1, 0.1]
+radius = 0.01
+rods = ["finger"]
+"""
+
+    kind: Literal["capsule"] = Field(description="round bar")
+    start: Vector = Field(alias="from", description="start of its axis in world axes, m")
+    end: Vector = Field(alias="to", description="end of its axis in world axes, m")
+    radius: Positive = Field(description="its radius, m")
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """An axis has a length."""
+        start = numbers_of(given.get("from"))
+        if start and start == numbers_of(given.get("to")):
+            yield Fault(("to",), "must differ from from", 'a bar without length is a ball: kind = "sphere"')
+
+
+Radii = Annotated[
+    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
+    BY_LENGTH,
+]
+"""One radius, or one for each point of a lumen."""
+
+
+@OBSTACLES.register
+class Lumen(ObstacleRecord):
+    """The inside of a tube, which rods may not leave: the balls about a smooth line through points.
+
+    Beyond its first and last point it goes on straight, with the radius that it has there: it is open at both ends.
+    """
+
+    example: ClassVar[str] = """\
+[[obstacles]]
+name = "vessel"
+kind = "lumen"
+points = [[0, 0, -0.02], [0, 0, 0.05], [0.01, 0, 0.12], [0.05, 0, 0.22]]
+radius = [6e-3, 6e-3, 5e-3, 5e-3]
+rods = ["finger"]
+"""
+
+    kind: Literal["lumen"] = Field(description="inside of a tube")
+    points: Annotated[tuple[Vector, ...], NotEmpty()] = Field(
+        description="points that its line passes, a natural cubic spline over the distance between them, m"
+    )
+    radius: Radii = Field(description="its radius, one or one for each point, m")
+
+    @property
+    def radii(self) -> tuple[float, ...]:
+        """The radius at each point, m."""
+        if isinstance(self.radius, tuple):
+            return self.radius
+        return (self.radius,) * len(self.points)
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Two points at least, neighbours apart, and as many radii."""
+        points = given.get("points")
+        if not isinstance(points, list | tuple) or not points:
+            return
+        if len(points) < FEWEST_POINTS:
+            yield Fault(("points",), f"must have {FEWEST_POINTS} points at least, got {len(points)}")
+        for i, (before, point) in enumerate(itertools.pairwise(points), 1):
+            if numbers_of(point) and numbers_of(point) == numbers_of(before):
+                yield Fault(("points", i), "must differ from the point before it")
+        radius = given.get("radius")
+        if isinstance(radius, list | tuple) and radius and len(radius) != len(points):
+            yield Fault(("radius",), f"must have one radius for each of {len(points)} points, got {len(radius)}")
+
+
+Obstacle = Annotated[Plane | Sphere | Capsule | Lumen, OBSTACLES]
