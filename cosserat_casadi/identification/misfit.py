@@ -22,6 +22,9 @@ from cosserat_casadi.model.build import Model
 
 Indices = npt.NDArray[np.int64]
 
+ROUNDING = 1e-10
+"""Share of the largest derivative, each times the size of its unknown, below which one is rounding."""
+
 
 class MeasuredRows:
     """All rows of one measurement.
@@ -174,7 +177,8 @@ class Misfit:
             shared.append(by_shared + by_inputs @ inputs_by_shared + by_p @ p_by_shared)
             by_own = np.einsum("mi,mik->mk", by_x, x_by_own[cases])
             own.append(by_own + np.einsum("mi,mik->mk", by_inputs, inputs_by_own[cases]))
-        return np.concatenate(shared)[self.order], np.concatenate(own)[self.order]
+        sizes = self.layout.scales(state.shared), self.layout.own_scales
+        return without_rounding(np.concatenate(shared)[self.order], np.concatenate(own)[self.order], sizes)
 
     def _sensitivities(
         self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
@@ -194,3 +198,21 @@ class Misfit:
     def _residual(self, point: Point) -> FloatArray:
         residuals = [rows.residual(point) for rows in self.measurements.values()]
         return np.concatenate(residuals)[self.order]
+
+
+def without_rounding(
+    shared: FloatArray, own: FloatArray, sizes: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Derivatives in which unknowns that no datum sees have columns of zeros.
+
+    What rounding leaves there would pass for a datum of theirs, and send them far away to meet it.
+
+    Args:
+        shared: derivatives with the shared unknowns, shape (m, n).
+        own: derivatives with those of the row's case, shape (m, k).
+        sizes: of the shared unknowns, shape (n,), and of the own ones, shape (k,).
+    """
+    norms = [np.linalg.norm(columns, axis=0) * size for columns, size in zip((shared, own), sizes, strict=True)]
+    least = ROUNDING * np.concatenate(norms).max(initial=0.0)
+    of_shared, of_own = (norm > least for norm in norms)
+    return np.where(of_shared, shared, 0.0), np.where(of_own, own, 0.0)

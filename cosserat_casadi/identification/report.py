@@ -145,7 +145,7 @@ class Ending:
             directions = "; ".join(described(direction) for direction in found.statistics.unseen)
             remarks.append(f"The data do not determine {directions}: there the priors alone speak.")
         if found.at_bounds:
-            remarks.append(f"At a bound: {', '.join(found.at_bounds)}; what it is beyond the bound is not known.")
+            remarks.append(f"At a bound: {', '.join(found.at_bounds)}. The intervals of others take that as given.")
         if self.unstable:
             remarks.append(
                 f"The equilibrium is unstable in {named(self.unstable)}: what was measured there is hardly this one."

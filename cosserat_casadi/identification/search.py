@@ -335,7 +335,7 @@ class _Task:
             self.layout.shared_labels,
             self.layout.scales(fit.shared),
             freedom=len(fit.state.residual) + int(priors) - unknowns,
-            squares=float(arrow.residual @ arrow.residual),
+            squares=self.loss.noise_squares(fit.state.residual),
             scaled_noise=self.options.noise == "residual",
         )
 

@@ -46,7 +46,7 @@ class Statistics:
 
     Attributes:
         covariance: shape (n, n); rows of what is not determined are NaN, of what is held at a bound zero.
-        determined: whether data and priors determine each unknown, shape (n,).
+        determined: whether data and priors determine each unknown, and no bound holds it, shape (n,).
         unseen: directions that the data alone do not determine.
         settled: whether data and priors together determine every direction.
         noise: factor on the standard deviations that were stated: 1, or what the residuals ask for.
@@ -64,15 +64,13 @@ class Statistics:
 
     @property
     def sigma(self) -> FloatArray:
-        """Standard deviations, shape (n,); NaN where not determined."""
-        return np.sqrt(np.diagonal(self.covariance))
+        """Standard deviations, shape (n,); NaN where not determined, and of what is held at a bound."""
+        return np.sqrt(np.where(self.determined, np.diagonal(self.covariance), np.nan))
 
     @property
     def correlation(self) -> FloatArray:
-        """Correlations, shape (n, n); NaN where not determined."""
-        sigma = self.sigma
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return self.covariance / np.outer(sigma, sigma)
+        """Correlations, shape (n, n); NaN where there is no standard deviation."""
+        return self.covariance / np.outer(self.sigma, self.sigma)
 
 
 def statistics(
@@ -91,7 +89,7 @@ def statistics(
         labels: names of the shared unknowns.
         scales: sizes of them that changes are compared with, shape (n,).
         freedom: data more than unknowns.
-        squares: sum of the squares of the residuals, those of robust losses weighted.
+        squares: sum of the squares of the residuals, or what stands for it under a robust loss.
         scaled_noise: whether the standard deviations follow from the residuals.
     """
     n, k = arrow.sizes
@@ -108,9 +106,10 @@ def statistics(
     if scaled_noise and freedom > 0:
         noise = math.sqrt(squares / freedom)
         quantile = student_95(freedom)
+    scaled = _with_noise(by_both.covariance(), prior[np.ix_(free, free)], noise)
     covariance = np.zeros((n, n))
-    covariance[np.ix_(free, free)] = by_both.covariance() * np.outer(scales[free], scales[free]) * noise**2
-    determined = np.isfinite(np.diagonal(covariance))
+    covariance[np.ix_(free, free)] = scaled * np.outer(scales[free], scales[free])
+    determined = free & np.isfinite(np.diagonal(covariance))
     settled = not np.any(by_both.open)
     own = _own_deviations(arrow, eliminations, covariance, noise)
     return Statistics(covariance, determined, unseen, settled, noise, quantile, own)
@@ -165,6 +164,22 @@ class _Directions:
         return covariance
 
 
+def _with_noise(covariance: FloatArray, prior: FloatArray, noise: float) -> FloatArray:
+    """Covariance where data, but not priors, deviate by a factor more than the fit has counted on.
+
+    With the information A = D + P of data and priors, that of the estimate is A⁻¹ (noise² D + P) A⁻¹.
+
+    Args:
+        covariance: A⁻¹, NaN for what is not seen, shape (n, n).
+        prior: weights of the priors, the root of P, shape (n, n).
+        noise: the factor.
+    """
+    # What a prior holds is seen: it has no part in what is NaN.
+    seen = np.nan_to_num(covariance)
+    by_prior = prior @ seen
+    return noise**2 * covariance + (1 - noise**2) * by_prior.T @ by_prior
+
+
 def _directions(rows: FloatArray) -> _Directions:
     """Singular values and directions of the rows; as many as there are columns."""
     count = rows.shape[1]
@@ -180,7 +195,9 @@ def _own_deviations(arrow: Arrow, eliminations: list[FloatArray], covariance: Fl
     for block, elimination in enumerate(eliminations):
         held = arrow.own_held[block]
         triangle = elimination[:, :k]
-        free = ~held
+        rows = slice(arrow.offsets[block], arrow.offsets[block + 1])
+        seen = np.any(arrow.by_own[rows] != 0.0, axis=0) | (arrow.own_prior[0] > 0.0)
+        free = seen & ~held
         diagonal = np.abs(np.diagonal(triangle))[free]
         deviations[block, held] = 0.0
         if not diagonal.size or diagonal.min() <= BLIND * diagonal.max():

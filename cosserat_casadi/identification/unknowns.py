@@ -151,6 +151,11 @@ class UnknownLayout:
         by_ratio = self.shared_limits.ratios & (values > 0)
         return np.where(by_ratio, values, np.maximum(values, typical))
 
+    @cached_property
+    def own_scales(self) -> FloatArray:
+        """Typical sizes of the numbers of each case, shape (k,)."""
+        return np.concatenate([np.zeros(0), *(entry.scales for entry in self.own)])
+
     def parameters(self, shared: FloatArray) -> FloatArray:
         """All parameters, shape (size of the parameters,)."""
         p = self.p.copy()

@@ -221,11 +221,13 @@ class Arrow:
         n, k = self.sizes
         if not k:
             return np.vstack(self._triangles), []
-        damping = np.zeros((k, k + n + 1))
-        damping[:, :k] = np.diag(own_damping)
         left = []
         eliminations = []
         for triangle in self._triangles:
+            # What no row sees, or a bound holds, would take a row of the others with it: it gets one of its own.
+            unseen = ~np.any(triangle[:, :k], axis=0)
+            damping = np.zeros((k, k + n + 1))
+            damping[:, :k] = np.diag(np.where(unseen, 1.0, own_damping))
             whole = _triangle(np.vstack([triangle, damping]))
             eliminations.append(whole[:k])
             left.append(whole[k:, k:])

@@ -45,3 +45,27 @@ class Loss:
             return self.width / np.maximum(np.abs(residual), self.width)
         weights: FloatArray = 1 / (1 + (residual / self.width) ** 2)
         return weights
+
+    def noise_squares(self, residual: FloatArray) -> float:
+        """A sum of squares that tells the noise of the data in the covariance (Jᵀ W J)⁻¹ of a weighted fit.
+
+        With ψ = ρ′ r the asymptotic covariance of the estimate is mean(ψ²) / mean(ψ′)² (Jᵀ J)⁻¹ (Huber and
+        Ronchetti, section 7.6), and Jᵀ W J is about mean(W) Jᵀ J.
+        """
+        weights = self.weights(residual)
+        slope = float(np.mean(self._slopes(residual)))
+        if slope <= 0.0:
+            # Most lie where a loss that grows slower and slower says nothing of their spread.
+            return float(residual @ residual)
+        influence = weights * residual
+        return float(influence @ influence) * float(np.mean(weights)) / slope**2
+
+    def _slopes(self, residual: FloatArray) -> FloatArray:
+        """Derivatives of ψ with the residual; shape as the residuals."""
+        if self.kind == "squares":
+            return np.ones_like(residual)
+        if self.kind == "huber":
+            return np.where(np.abs(residual) <= self.width, 1.0, 0.0)
+        squares = (residual / self.width) ** 2
+        slopes: FloatArray = (1 - squares) / (1 + squares) ** 2
+        return slopes

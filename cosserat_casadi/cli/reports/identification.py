@@ -59,7 +59,7 @@ def _unknowns(found: Identification) -> Table:
         if not found.converged:
             known = ["", "", ""]
         elif not np.isfinite(sigma):
-            known = ["not determined", "", ""]
+            known = ["at a bound" if label in found.at_bounds else "not determined", "", ""]
         table.add_row(escape(label), _number(value, 6), *known, "" if unit == "1" else unit)
     return table
 
