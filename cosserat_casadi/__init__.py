@@ -49,7 +49,7 @@ from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
-from cosserat_casadi.sweep import Sweep, read_sweep, sweep_scene
+from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
 
 __version__ = version("cosserat-casadi")
 
@@ -77,6 +77,7 @@ __all__ = [
     "Problem",
     "Scene",
     "SceneError",
+    "SobolIndices",
     "Solution",
     "SolveError",
     "StepMemory",
@@ -114,6 +115,8 @@ __all__ = [
     "scene_from_dict",
     "simulate",
     "simulate_scene",
+    "sobol_indices",
+    "sobol_table",
     "solve",
     "solve_scene",
     "sweep_scene",

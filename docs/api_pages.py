@@ -92,7 +92,7 @@ CONCEPTS = (
         "sweeps",
         "Sweeps",
         "A scene solved for every row of a table; see [sweeps](../sweeps.md).",
-        ("sweep_scene", "read_sweep", "Sweep"),
+        ("sweep_scene", "read_sweep", "Sweep", "sobol_table", "sobol_indices", "SobolIndices"),
     ),
     Concept(
         "control",
@@ -123,6 +123,12 @@ CONCEPTS = (
             "Condensed",
             "Horizon",
         ),
+    ),
+    Concept(
+        "identification",
+        "Identification",
+        "Numbers of a scene from measurements; see [identify](../identify.md).",
+        ("identify_scene", "identify", "Identification"),
     ),
     Concept(
         "export",
@@ -157,7 +163,16 @@ CONCEPTS = (
         "results",
         "Results",
         "Solutions, motions, modes, paths and inverse problems as plain data and as files.",
-        ("result", "write_result", "motion_result", "write_motion", "modes_result", "path_result", "inverse_result"),
+        (
+            "result",
+            "write_result",
+            "motion_result",
+            "write_motion",
+            "modes_result",
+            "path_result",
+            "inverse_result",
+            "identification_result",
+        ),
     ),
 )
 """All pages; every public name is on exactly one."""

@@ -26,6 +26,7 @@ from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
+from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
@@ -51,6 +52,42 @@ class _Info(ctypes.Structure):
         ("residual_norm", ctypes.c_double),
         ("load_factor", ctypes.c_double),
     )
+
+
+class _StabilityInfo(ctypes.Structure):
+    _fields_ = (
+        ("smallest_eigenvalue", ctypes.c_double),
+        ("negative", ctypes.c_int),
+        ("zero", ctypes.c_int),
+        ("verdict", ctypes.c_int),
+    )
+
+
+VERDICTS = ("stable", "neutral", "critical", "unstable")
+"""Verdicts on stability in C, in the order of their numbers."""
+
+
+@dataclass(frozen=True)
+class CompiledStability:
+    """What the library says of an equilibrium.
+
+    Attributes:
+        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ.
+        negative: number of eigenvalues below zero.
+        zero: number of those that are zero to rounding.
+        verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
+            where they lead to none; ``unstable``.
+    """
+
+    smallest_eigenvalue: float
+    negative: int
+    zero: int
+    verdict: str
+
+    @property
+    def stable(self) -> bool:
+        """Whether a real rod stays there."""
+        return self.verdict in ("stable", "neutral")
 
 
 @dataclass(frozen=True)
@@ -275,6 +312,34 @@ class Compiled(CompiledMotion):
         found = self._sensitivities(inputs, x, parameters)
         return None if found is None else found[0].bodies
 
+    def stability(
+        self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
+    ) -> CompiledStability | None:
+        """Whether an equilibrium is stable, for loads with a potential; None where x is no equilibrium.
+
+        Args:
+            inputs: stacked inputs.
+            x: the equilibrium for these inputs and parameters.
+            parameters: by name or stacked; the scene's own by default.
+
+        Raises:
+            AttributeError: the folder was exported without stability.
+            ValueError: an argument is of the wrong size.
+            SceneError: the parameters are not those of the scene.
+        """
+        if stability_files(self._names.name)[0] not in self.manifest["files"]:
+            raise AttributeError("export the folder with stability: export(..., stability=True)")
+        given = vector(inputs, len(self.defaults), "inputs")
+        unknowns = vector(x, self.size, "x")
+        room = (ctypes.c_char * self._function("stability_workspace_size")())()
+        info = _StabilityInfo()
+        p = self.parameters.passed(parameters)
+        judge = self._function("stability")
+        status = judge(pointer(given), *p, pointer(unknowns), self._workspace(), room, ctypes.byref(info))
+        if status != 0:
+            return None
+        return CompiledStability(info.smallest_eigenvalue, info.negative, info.zero, VERDICTS[info.verdict])
+
     def parameter_sensitivity(
         self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
     ) -> Sensitivity | None:
@@ -380,11 +445,11 @@ def load(
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
     sources = [folder / f"{names.name}{part}.c" for part in ("", "_kernels")]
-    derivatives = f"{names.name}_derivatives.c"
-    if derivatives in described["files"]:
-        sources.append(folder / derivatives)
+    asked_for = (f"{names.name}_derivatives.c", stability_files(names.name)[0])
+    sources += [folder / file for file in asked_for if file in described["files"]]
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
-    headers += [folder / file for file in described["files"] if file in VERBATIM]
+    beside = {*VERBATIM, stability_files(names.name)[1]}
+    headers += [folder / file for file in described["files"] if file in beside]
     library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
     return Compiled(library, described, names)
 

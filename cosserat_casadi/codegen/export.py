@@ -16,6 +16,7 @@ from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
 from cosserat_casadi.codegen.names import Names, library_names, model_names
+from cosserat_casadi.codegen.stability import check_stability, stability_sources
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.scene.writing import scene_text
@@ -29,6 +30,7 @@ def export(
     error_estimate: float | None = None,
     derivatives: bool = False,
     dynamics: bool = False,
+    stability: bool = False,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
@@ -41,17 +43,20 @@ def export(
             :func:`cosserat_casadi.load` needs for an optimisation. A controller does not; it is twice as much again.
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
+        stability: whether it holds the function that says whether an equilibrium is stable.
 
     Returns:
         the folder.
 
     Raises:
-        ExportError: the name, the folder or a motion of this scene is refused; nothing was written.
+        ExportError: the name, the folder, a motion or the stability of this scene is refused; nothing was written.
     """
+    if stability:
+        check_stability(model)
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
-    files = folder_files(model, chosen, error_estimate, derivatives=derivatives, dynamics=dynamics)
+    files = folder_files(model, chosen, error_estimate, derivatives=derivatives, dynamics=dynamics, stability=stability)
     write_folder(folder, files, stale)
     return folder
 
@@ -87,6 +92,7 @@ def folder_files(
     *,
     derivatives: bool = False,
     dynamics: bool = False,
+    stability: bool = False,
 ) -> dict[str, str]:
     """Text of every file of an exported folder by name; the manifest, which lists the others, is last.
 
@@ -96,6 +102,7 @@ def folder_files(
         error_estimate: as for :func:`export`.
         derivatives: as for :func:`export`.
         dynamics: as for :func:`export`.
+        stability: as for :func:`export`.
 
     Raises:
         ExportError: the scene has no motion, and one is asked for.
@@ -105,8 +112,12 @@ def folder_files(
     motion = motion_in_c(model, names) if dynamics else None
     functions = kernels(model, names, parts, motion)
     generated = kernel_sources(functions, names)
+    by_hand = library_sources(
+        model, names, parts, generated, error_estimate, derivatives=derivatives, stability=stability, motion=motion
+    )
     files = {
-        **library_sources(model, names, parts, generated, error_estimate, derivatives=derivatives, motion=motion),
+        **by_hand,
+        **(stability_sources(model, names) if stability else {}),
         **generated,
         "scene.toml": scene_text(model.scene),
     }

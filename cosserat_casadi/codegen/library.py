@@ -65,6 +65,8 @@ ROLES = {
     "motion.h": "types of the tables for it",
     "{name}_kernels.c": "the equations of the rods, generated: compile this",
     "{name}_kernels.h": "their prototypes",
+    "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
+    "{name}_stability.h": "its function",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
     "{name}_demo.c": "solves once, times it, prints JSON",
     "{name}_motion_demo.c": "simulates a second of motion, prints JSON",
@@ -83,6 +85,7 @@ def library_sources(
     error_estimate: float | None,
     *,
     derivatives: bool = False,
+    stability: bool = False,
     motion: MotionInC | None = None,
 ) -> dict[str, str]:
     """Hand-readable files of a folder by name.
@@ -94,11 +97,15 @@ def library_sources(
         generated: source and header of the kernels by file name.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length.
         derivatives: whether the folder holds the derivatives too.
+        stability: whether it holds the stability of equilibria.
         motion: the equations of motion, where the folder has them.
     """
     words = _words(model, names, parts, generated, error_estimate, motion)
-    words["file_rows"] = _file_rows(names, parts, derivatives=derivatives, dynamics=motion is not None)
+    held = {"derivatives": derivatives, "stability": stability, "dynamics": motion is not None}
+    words["file_rows"] = _file_rows(names, parts, **held)
     name = names.name
+    words["more_sources"] = f" {name}_stability.c" if stability else ""
+    words["more_headers"] = f" {name}_stability.h" if stability else ""
     verbatim = (*SHARED, *(DENSE if parts is None else BLOCKS), *(() if motion is None else MOTION_FILES))
     demos = {f"{name}_demo.c": render("demo.c.in", words)}
     if motion is not None:
@@ -290,12 +297,14 @@ def _function_rows(functions: Sequence[FunctionInC]) -> str:
     return "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions)
 
 
-def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool, dynamics: bool) -> str:
+def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool, stability: bool, dynamics: bool) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
     if not dynamics:
         absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:
         absent.add("{name}_derivatives.c")
+    if not stability:
+        absent |= {"{name}_stability.c", "{name}_stability.h"}
     roles = {file.format(name=names.name): role for file, role in ROLES.items() if file not in absent}
     return "\n".join(f"| `{file}` | {role} |" for file, role in roles.items())
 

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec
-from cosserat_casadi.scene import Scene
 
 
 def given_size(model: Model) -> int:
@@ -59,18 +57,6 @@ def input_jacobian(model: Model) -> ca.Function:
     by_both = [function.call(symbols)[0] for function in (model.input_jacobian, model.parameter_jacobian)]
     both = ca.Function("input_jacobian", symbols, [ca.horzcat(*by_both)], ["x", "inputs", PARAMETERS], ["by_both"])
     return with_parameters_behind_inputs(both)
-
-
-def refuse_parameters(scene: Scene) -> None:
-    """Refuse to write what takes unknowns and inputs alone of a scene that names parameters.
-
-    Raises:
-        ExportError: with the first of them.
-    """
-    if scene.parameters:
-        problem = f"{scene.parameters[0]!r} is a parameter, and this takes unknowns and inputs alone"
-        remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
-        raise ExportError(Problem("parameters[0]", problem, remedy))
 
 
 def _path_rate(model: Model) -> ca.Function:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import threading
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,9 +13,10 @@ import numpy as np
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
-from cosserat_casadi.codegen.library import VERBATIM, library_sources, render
+from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, render
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.stability import stability_sources
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -26,8 +28,28 @@ NAME = "sweep"
 JUDGED = ("outcome", "iterations", "residual")
 """First columns of every row of results; the outcome as its number."""
 
+STABILITY = ("smallest_eigenvalue", "stable")
+"""Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
+
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
+
+STABILITY_IN_ROWS = {
+    "stability_header": '#include "@{name}_stability.h"\n',
+    "stability_room": """  @{name}_stability_workspace *room = (@{name}_stability_workspace *)malloc(sizeof *room);
+  if (!room) {
+    free(workspace);
+    return 1;
+  }
+""",
+    "stability_call": """
+    @{name}_stability_info found;
+    if (@{name}_stability(given@{passed}, x, workspace, room, &found) != @{MACRO}_CONVERGED) continue;
+    row[@{column}] = found.smallest_eigenvalue;
+    row[@{next}] = found.verdict == @{MACRO}_STABLE || found.verdict == @{MACRO}_NEUTRAL;""",
+    "stability_end": "  free(room);\n",
+}
+"""What is added to the function for rows where it judges stability."""
 
 _LOCK = threading.Lock()
 
@@ -72,13 +94,17 @@ class RowLibrary:
                 raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
             arguments.append(pointer(p))
         results = np.empty((len(given), self.results))
-        if _loaded(self.files)[f"{NAME}_rows"](len(given), *arguments, pointer(results)):
+        if loaded(NAME, self.files)[f"{NAME}_rows"](len(given), *arguments, pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 
 
-def row_library(model: Model) -> RowLibrary:
+def row_library(model: Model, *, stability: bool = False) -> RowLibrary:
     """Sources of the solver of a model with a function for rows.
+
+    Args:
+        model: what is solved.
+        stability: whether rows end with :data:`STABILITY`, which means something where the loads have a potential.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
@@ -86,23 +112,33 @@ def row_library(model: Model) -> RowLibrary:
     names = model_names(NAME, model)
     parts = assembled(model, names)
     generated = kernel_sources(kernels(model, names, parts), names)
-    columns = row_results(model.scene)
+    columns = row_results(model.scene, stability=stability)
     files = {
         **library_sources(model, names, parts, generated, None),
+        **(stability_sources(model, names) if stability else {}),
         **generated,
-        f"{NAME}_rows.c": _rows_source(model, names, len(columns)),
+        f"{NAME}_rows.c": _rows_source(model, names, len(columns), stability=stability),
     }
-    wanted = [
-        (name, text) for name, text in files.items() if name.endswith((".c", ".h")) and not name.endswith("_demo.c")
-    ]
-    return RowLibrary(tuple(wanted), model.inputs.size, model.parameters.size, len(columns))
+    return RowLibrary(to_compile(files), model.inputs.size, model.parameters.size, len(columns))
 
 
-def row_results(scene: Scene) -> tuple[str, ...]:
-    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert."""
+def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """The sources and headers of a library, without its demo programs."""
+    wanted = [name for name in files if name.endswith((".c", ".h")) and not name.endswith("_demo.c")]
+    return tuple((name, files[name]) for name in wanted)
+
+
+def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
+    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert.
+
+    Args:
+        scene: what is solved.
+        stability: whether they end with :data:`STABILITY`.
+    """
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
     states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
-    return (*JUDGED, *[f"{name}.{axis}" for name in posed for axis in POSE], *states)
+    poses = [f"{name}.{axis}" for name in posed for axis in POSE]
+    return (*JUDGED, *poses, *states, *(STABILITY if stability else ()))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:
@@ -111,7 +147,7 @@ def _state(actuator: Actuator) -> tuple[str, str]:
     return member.effort, member.conjugate
 
 
-def _rows_source(model: Model, names: Names, results: int) -> str:
+def _rows_source(model: Model, names: Names, results: int, *, stability: bool) -> str:
     tips = [names.function("tip", rod) for rod in names.rods]
     bodies = [names.function("body", body) for body in names.bodies]
     passed = ", parameters" if model.parameters.size else ""
@@ -132,15 +168,29 @@ def _rows_source(model: Model, names: Names, results: int) -> str:
         words["parameter_rows"] = ", all_parameters (PARAMETERS x count)"
         own = f"all_parameters + (size_t)i * {names.macro}_PARAMETERS"
         words["own_parameters"] = f"    const {real} *parameters = {own};\n"
-    return render("rows.c.in", words)
+    in_rows = {"stability_header": "", "stability_room": "", "stability_call": "", "stability_end": ""}
+    if stability:
+        in_rows = {
+            key: fill(text, {**words, "column": column, "next": column + 1}) for key, text in STABILITY_IN_ROWS.items()
+        }
+    return render("rows.c.in", {**words, **in_rows})
 
 
-def _loaded(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+def loaded(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    """A library that is compiled once in this process.
+
+    Args:
+        name: what the name of the object begins with.
+        files: sources and headers by name.
+
+    Raises:
+        ExportError: there is no C compiler, or it fails.
+    """
     # Threads wait for the one that compiles, instead of compiling too.
     with _LOCK:
-        return _library(files)
+        return _library(name, files)
 
 
 @cache
-def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
-    return ctypes.CDLL(str(compiled_texts(NAME, dict(files), find_compiler(), VERBATIM)))
+def _library(name: str, files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    return ctypes.CDLL(str(compiled_texts(name, dict(files), find_compiler(), VERBATIM)))

@@ -4,6 +4,6 @@ table ─▶ cases ─▶ misfit (equilibria, quantities) ─▶ fit ─▶ stat
 """
 
 from cosserat_casadi.identification.found import Identification, Row
-from cosserat_casadi.identification.identify import identify, identify_scene
+from cosserat_casadi.identification.search import identify, identify_scene
 
 __all__ = ["Identification", "Row", "identify", "identify_scene"]

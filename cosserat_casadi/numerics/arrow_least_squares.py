@@ -24,8 +24,11 @@ from cosserat_casadi.numerics.robust_loss import Loss
 FIRST_DAMPING = 1e-3
 """Damping of the first step relative to the squares of the columns."""
 
-MOST_RATIO = 3.0
+MOST_RATIO = 1.5
 """Ratio by which one step may change what is positive: a linear model would let a modulus vanish."""
+
+BACK_OFF = 10.0
+"""Growth of the damping where a step leads to no state at all."""
 
 HARDLY_DAMPED = 1e-12
 """Damping that leaves a step as it is, but for directions that no datum sees."""
@@ -416,6 +419,9 @@ class ArrowFit(Generic[StateType]):
                 search.damping = max(search.damping, 1e-15)
                 search.growth = 2.0
                 return None
+        elif search.damping < BACK_OFF * LARGEST_DAMPING:
+            # Far beyond what the linear model can say: come back in fewer tries.
+            search.damping *= BACK_OFF
         return self._more_damping(search, arrow)
 
     def _least_decrease(self, search: _Search[StateType]) -> float:

@@ -34,6 +34,16 @@ from cosserat_casadi.scene.values import (
 class InputColumn(Record):
     """Where the values of an input are: in a column, which is scaled and shifted, or one number for all rows."""
 
+    example: ClassVar[str] = """\
+[[measurements]]
+quantity = "position"
+file = "shapes.csv"
+inputs = { "push.force.z" = { column = "hung_grams", scale = -9.81e-3 } }
+rod = "finger"
+columns = ["x", "y", "z"]
+sigma = 1e-3
+"""
+
     column: str | None = Field(None, description="name of the column; without one the input is shift in every row")
     scale: Number = Field(1.0, description="factor on the cells, such as 9.81e-3 for grams that hang, without unit")
     shift: Number = Field(0.0, description="what is added to the scaled cells, in the unit of the input")
@@ -342,6 +352,12 @@ Measurement = Annotated[
 
 class Prior(Record):
     """What is known of an unknown beforehand: a normal distribution."""
+
+    example: ClassVar[str] = """\
+[[unknowns]]
+parameter = "finger.section.radius"
+prior = { mean = 2e-3, sigma = 2e-5 }
+"""
 
     mean: Component = Field(description="expected value in the unit of the unknown; a number, or one for each entry")
     sigma: PositiveComponent = Field(

@@ -6,5 +6,7 @@ table ─ variants ─▶ scenes and inputs ─ choice ─▶ one discretisation
 from cosserat_casadi.sweep.outcome_file import read_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import sweep_scene
+from cosserat_casadi.sweep.sobol import SobolIndices, sobol_indices
+from cosserat_casadi.sweep.table import sobol_table
 
-__all__ = ["Sweep", "read_sweep", "sweep_scene"]
+__all__ = ["SobolIndices", "Sweep", "read_sweep", "sobol_indices", "sobol_table", "sweep_scene"]

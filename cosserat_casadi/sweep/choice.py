@@ -92,7 +92,7 @@ def choose(variants: Variants, values: FloatArray, samples: int, progress: Progr
     rows = representative_rows(values, samples)
     cases = []
     for row in rows:
-        scene = unfixed(variants.of_row(row).scene, accuracy.tolerance)
+        scene = unfixed(variants.scene_of_row(row), accuracy.tolerance)
         cases.append((scene, variants.inputs_of_row(row)))
     # Each row once by itself and once on the union, which may have to be refined.
     expected = 2 * len(cases)
@@ -150,7 +150,7 @@ def check(
     checked = []
     for done, row in enumerate(rows):
         progress("Checking rows", done, len(rows))
-        scene = choice.scene(variants.of_row(row).scene)
+        scene = choice.scene(variants.scene_of_row(row))
         solution = solve_scene(scene, variants.inputs_of_row(row))
         entry = {"row": row, "error_estimate": None, "difference": None, "stable": None}
         if solution.converged:

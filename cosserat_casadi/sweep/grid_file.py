@@ -45,19 +45,19 @@ class _Random:
         return rng.normal(first, second, count)
 
 
-def read_grid(path: Path) -> tuple[tuple[str, ...], FloatArray]:
-    """Columns and rows of a grid file.
+def read_tables(path: Path) -> dict[str, Any]:
+    """The tables of a grid file.
 
     Raises:
-        SceneError: with every fault.
+        SceneError: it cannot be read, or is not TOML.
     """
     try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        tables: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(Problem(str(path), f"cannot be read: {error}")) from None
     except (ValueError, RecursionError) as error:
         raise SceneError(Problem(str(path), f"is not TOML: {error}")) from None
-    return grid(tables, str(path))
+    return tables
 
 
 def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatArray]:
@@ -67,6 +67,47 @@ def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatA
         SceneError: with every fault.
     """
     problems: list[Problem] = []
+    axes, samples = _axes(tables, where, problems)
+    # Counted before the rows are made: a grid too large would not fit into memory.
+    combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
+    _check_count(combinations * samples, where, problems)
+    if problems:
+        raise SceneError(*problems)
+    seed = int(tables.get("seed", 0))
+    return tuple(axes), _product(axes, samples, seed)
+
+
+def paired_draws(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatArray, tuple[str, ...]]:
+    """Columns and rows of the design that Sobol indices are estimated on, and its random columns.
+
+    Two independent draws A and B of ``samples`` rows each, then for each random column A with that column of B. See
+    :mod:`cosserat_casadi.sweep.sobol`.
+
+    Raises:
+        SceneError: with every fault: no column is random, or another one has several values.
+    """
+    problems: list[Problem] = []
+    axes, samples = _axes(tables, where, problems)
+    factors = tuple(name for name, axis in axes.items() if isinstance(axis, _Random))
+    for name, axis in axes.items():
+        if not isinstance(axis, _Random) and len(axis) > 1:
+            problem = "has several values; Sobol indices are of random columns beside fixed numbers"
+            problems.append(Problem(f"{where}, {name}", problem, "write { uniform = [0, 1] } or one number"))
+    if axes and not factors:
+        problems.append(Problem(where, "names no random column to find Sobol indices of", REMEDY))
+    if samples < 2 and factors:
+        problems.append(Problem(f"{where}, samples", "must be at least 2 for Sobol indices", "give some thousands"))
+    _check_count(samples * (len(factors) + 2), where, problems)
+    if problems:
+        raise SceneError(*problems)
+    seed = int(tables.get("seed", 0))
+    return tuple(axes), _pairs(axes, factors, samples, seed), factors
+
+
+def _axes(
+    tables: Mapping[str, Any], where: str, problems: list[Problem]
+) -> tuple[dict[str, FloatArray | _Random], int]:
+    """The columns of a grid and how often random ones are drawn; faults go to the problems."""
     axes: dict[str, FloatArray | _Random] = {}
     columns = {key: entry for key, entry in tables.items() if key not in ("samples", "seed")}
     for name, entry in _leaves(columns):
@@ -80,15 +121,12 @@ def grid(tables: Mapping[str, Any], where: str) -> tuple[tuple[str, ...], FloatA
     samples = _samples(tables, where, has_random, problems)
     if not axes and not problems:
         problems.append(Problem(where, "names no column", REMEDY))
-    # Counted before the rows are made: a grid too large would not fit into memory.
-    combinations = math.prod(len(axis) for axis in axes.values() if not isinstance(axis, _Random))
-    rows = combinations * samples
+    return axes, samples
+
+
+def _check_count(rows: int, where: str, problems: list[Problem]) -> None:
     if rows > MOST_ROWS:
         problems.append(Problem(where, f"asks for {rows:,} rows", f"at most {MOST_ROWS:,}"))
-    if problems:
-        raise SceneError(*problems)
-    seed = int(tables.get("seed", 0))
-    return tuple(axes), _product(axes, samples, seed)
 
 
 class _Refused(Exception):  # noqa: N818 - it never leaves this module
@@ -214,6 +252,26 @@ def _product(axes: Mapping[str, FloatArray | _Random], samples: int, seed: int) 
         else:
             columns.append(np.tile(mesh_of[name].ravel(), samples))
     return np.column_stack(columns)
+
+
+def _pairs(axes: Mapping[str, FloatArray | _Random], factors: tuple[str, ...], samples: int, seed: int) -> FloatArray:
+    """The rows of A, of B, and of A with one column of B after the other, shape ((factors + 2) samples, columns)."""
+    rng = np.random.default_rng(seed)
+    draws = []
+    for _ in range(2):
+        columns = [
+            axis.draw(rng, samples) if isinstance(axis, _Random) else np.full(samples, axis[0])
+            for axis in axes.values()
+        ]
+        draws.append(np.column_stack(columns))
+    first, second = draws
+    mixed = []
+    for name in factors:
+        column = list(axes).index(name)
+        rows = first.copy()
+        rows[:, column] = second[:, column]
+        mixed.append(rows)
+    return np.vstack([first, second, *mixed])
 
 
 def _number(value: Any) -> float:

@@ -22,6 +22,12 @@ from cosserat_casadi.sweep.outcome_table import LABELS, Sweep
 FORMATS = (".csv", ".parquet")
 """Suffixes of the results."""
 
+STABLE = "stable"
+"""A column of true and false; empty where stability is not judged."""
+
+WORDS = {"true": 1.0, "false": 0.0}
+"""Its cells as numbers."""
+
 BLOCK = 4096
 """Rows that are written at once."""
 
@@ -122,7 +128,8 @@ def _numbers(column: Sequence[Any]) -> FloatArray:
     for cell in column:
         # CSV leaves an empty text, Parquet nothing.
         missing = cell is None or cell == ""
-        numbers.append(np.nan if missing else float(cell))
+        number = WORDS.get(cell, cell)
+        numbers.append(np.nan if missing else float(number))
     return np.array(numbers)
 
 
@@ -138,6 +145,7 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
     """Rows of the CSV file; what was not found is an empty cell."""
     swept_count = len(sweep.swept)
     iterations = swept_count + sweep.found.index("iterations")
+    stable = swept_count + sweep.found.index(STABLE) if STABLE in sweep.found else None
     complete = np.isfinite(sweep.values.sum(axis=1)).tolist()
     # Lists of a block of rows: Python's own numbers print faster, and all at once would take too much memory.
     for first in range(0, len(sweep.values), BLOCK):
@@ -148,6 +156,8 @@ def _cells(sweep: Sweep) -> Iterator[list[str]]:
             else:
                 cells = ["" if math.isnan(cell) else repr(cell) for cell in row]
             cells[iterations] = str(int(row[iterations]))
+            if stable is not None and cells[stable]:
+                cells[stable] = str(bool(row[stable])).lower()
             outcome = LABELS[sweep.outcomes[index]]
             cells.insert(swept_count, outcome)
             yield cells
@@ -166,6 +176,8 @@ def _write_parquet(sweep: Sweep, path: Path) -> None:
         missing = ~np.isfinite(numbers)
         if name == "iterations":
             numbers = numbers.astype(np.int32)
+        if name == STABLE:
+            numbers = numbers == 1.0
         columns[name] = arrow.array(numbers, mask=missing)
     import pyarrow.parquet
 

@@ -22,24 +22,32 @@ class RowModel:
 
     Attributes:
         scene: text of the scene.
+        stability: whether rows end with the stability of their equilibria.
     """
 
     scene: str
+    stability: bool = False
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
         model = _model(self.scene)
-        width = len(row_results(model.scene))
+        width = len(row_results(model.scene, stability=self.stability))
         rows = []
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before.
             solution = solve(model, model.inputs.unpack(row))
-            rows.append(result_row(solution, width))
+            rows.append(result_row(solution, width, stability=self.stability))
         return np.array(rows).reshape(len(inputs), width)
 
 
-def result_row(solution: Solution, width: int) -> FloatArray:
-    """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended."""
+def result_row(solution: Solution, width: int, *, stability: bool = False) -> FloatArray:
+    """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
+
+    Args:
+        solution: of the row.
+        width: numbers in the row.
+        stability: whether it ends with the stability of the equilibrium, NaN where the loads have no potential.
+    """
     row = np.full(width, np.nan)
     outcome = OUTCOMES.index(solution.outcome)
     row[: len(JUDGED)] = (outcome, solution.iterations, solution.residual_norm)
@@ -55,7 +63,10 @@ def result_row(solution: Solution, width: int) -> FloatArray:
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
-    row[len(JUDGED) :] = numbers
+    if stability:
+        judged = (solution.smallest_eigenvalue, solution.stable)
+        numbers += [np.nan if number is None else float(number) for number in judged]
+    row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
 
 

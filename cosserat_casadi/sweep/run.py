@@ -17,23 +17,25 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.compiled import find_compiler
 from cosserat_casadi.codegen.names import scene_names
-from cosserat_casadi.codegen.rows import NAME, RowLibrary, row_library, row_results
+from cosserat_casadi.codegen.rows import NAME, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
+from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.choice import Choice, Progress, check, choose
 from cosserat_casadi.sweep.cluster import Cluster
 from cosserat_casadi.sweep.local import Cores
 from cosserat_casadi.sweep.outcome_file import check_format, read_record, read_sweep, record_file, write_sweep
 from cosserat_casadi.sweep.outcome_table import Sweep
+from cosserat_casadi.sweep.potential import rows_with_potential
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.store import Store
 from cosserat_casadi.sweep.table import Table, read_table, table_of
 from cosserat_casadi.sweep.variants import Variants, variants_of
-from cosserat_casadi.sweep.work import COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS, Chunk, Part, chunks
+from cosserat_casadi.sweep.work import COMPILED_ROWS, MODELLED_ROWS, Answer, Chunk, Parametrised, Part, chunks
 
 SAMPLES = 12
 """Rows that the discretisation is chosen on, unless said otherwise."""
@@ -49,6 +51,7 @@ class Plan:
         variants: the scenes and inputs of the rows.
         output: file of the results, if one is wanted.
         samples: rows that the discretisation is chosen on.
+        stability: whether each row says whether its equilibrium is stable.
     """
 
     scene: Scene
@@ -56,6 +59,7 @@ class Plan:
     variants: Variants
     output: Path | None
     samples: int
+    stability: bool = False
 
     @property
     def identity(self) -> str:
@@ -67,6 +71,8 @@ class Plan:
             self.samples,
             # They say which rows are solved in C: the same to the tolerance, but not to the last digit.
             [COMPILED_FROM, COMPILED_ROWS, MODELLED_ROWS],
+            self.stability,
+            self.table.factors,
         ]
         digest = hashlib.sha256(json.dumps(words).encode())
         values = np.ascontiguousarray(self.table.values, dtype="<f8")
@@ -78,9 +84,13 @@ class Plan:
         """Columns of numbers that the results will have."""
         # What is given and found alike, such as a tension, is in the table already; of a slack cable its length.
         # The outcome, which comes first, is no number.
-        names = row_results(self.scene)[1:]
-        results = [name for name in names if name not in self.table.columns]
+        results = [name for name in self.results[1:] if name not in self.table.columns]
         return (*self.table.columns, *results)
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """Names of the numbers that a row is answered with."""
+        return row_results(self.scene, stability=self.stability)
 
     @property
     def part(self) -> Path | None:
@@ -98,7 +108,9 @@ class Plan:
         return record is not None and record["sweep"] == self.identity
 
 
-def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: int = SAMPLES) -> Plan:
+def plan_sweep(
+    scene: Scene, table: Table, output: Path | None = None, samples: int = SAMPLES, *, stability: bool = False
+) -> Plan:
     """A sweep, refused before anything is computed where it could not be done.
 
     Args:
@@ -106,6 +118,7 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
         table: values of its inputs and parameters.
         output: file of the results, ``.csv`` or ``.parquet``; what a killed run of the same sweep left is gone on with.
         samples: rows that the discretisation is chosen on, at least 1.
+        stability: whether each row says whether its equilibrium is stable.
 
     Raises:
         SceneError: with every fault of scene, table and output.
@@ -118,7 +131,7 @@ def plan_sweep(scene: Scene, table: Table, output: Path | None = None, samples: 
     if samples < 1:
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
-        plan = Plan(scene, table, variants_of(scene, table), output, samples)
+        plan = Plan(scene, table, variants_of(scene, table), output, samples, stability)
     except SceneError as error:
         problems += error.problems
     problems += output_problems(output, plan)
@@ -138,6 +151,7 @@ def sweep_scene(
     scheduler: str | None = None,
     cores: int | None = None,
     samples: int = SAMPLES,
+    stability: bool = False,
     progress: Progress | None = None,
 ) -> Sweep:
     """Solve a scene for every row of a table of inputs and parameters.
@@ -150,6 +164,8 @@ def sweep_scene(
         scheduler: address of a dask.distributed scheduler; by default the cores of this machine work.
         cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
+        stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
+            units of EI/ℓ, and ``stable``, 1 or 0; NaN where the loads of a row have no potential.
         progress: told what is being done, how much of it is done, and of how much.
 
     Raises:
@@ -162,7 +178,7 @@ def sweep_scene(
     elif not isinstance(table, Table):
         table = read_table(Path(table))
     file = None if output is None else Path(output)
-    plan = plan_sweep(scene, table, file, samples)
+    plan = plan_sweep(scene, table, file, samples, stability=stability)
     return run_sweep(plan, scheduler=scheduler, cores=cores, progress=progress)
 
 
@@ -219,8 +235,7 @@ def _begun(plan: Plan, store: Store | None, progress: Progress) -> tuple[Choice,
     """The discretisation and what is done; of a new sweep the one is chosen now, and nothing is done."""
     head = None if store is None else store.head()
     if store is not None and head is not None:
-        width = len(row_results(plan.scene))
-        return Choice.read(head["choice"]), store.resume(width)
+        return Choice.read(head["choice"]), store.resume(len(plan.results))
     choice = choose(plan.variants, plan.table.values, plan.samples, progress)
     if store is not None:
         store.start({"sweep": plan.identity, "choice": choice.plain()})
@@ -239,7 +254,7 @@ def _solve_rest(
     """Solve every chunk that is not done, and keep it."""
     rest = [chunk for chunk in work if chunk.number not in done]
     count = sum(len(chunk.rows) for chunk in work if chunk.number in done)
-    tasks = _tasks(plan.variants, choice, rest, progress)
+    tasks = _tasks(plan, choice, rest, progress)
     for chunk, results in machine.run(tasks):
         done[chunk.number] = results
         if store is not None:
@@ -249,36 +264,38 @@ def _solve_rest(
 
 
 def _tasks(
-    variants: Variants,
+    plan: Plan,
     choice: Choice,
     rest: Sequence[Chunk],
     progress: Progress,
 ) -> Iterator[tuple[Chunk, list[Part]]]:
     """Chunks with what solves them; sources are generated when their first chunk comes."""
+    variants = plan.variants
     library: RowLibrary | None = None
     library_of: int | None = None
     for chunk in rest:
         if not chunk.compiled:
-            yield chunk, _modelled_parts(variants, choice, chunk)
+            yield chunk, _modelled_parts(plan, choice, chunk)
             continue
         # A compiled chunk has rows of one variant.
         ((variant, rows),) = chunk.pieces
         if library is None or library_of != variant:
             progress("Compiling", 0, 0)
             scene = choice.scene(variants.entries[variant].scene)
-            library = row_library(build(scene))
+            library = row_library(build(scene), stability=plan.stability)
             library_of = variant
-        yield chunk, [(library, variants.inputs[rows])]
+        answer: Answer = Parametrised(library) if variants.arguments else library
+        yield chunk, [(answer, variants.given(rows))]
 
 
-def _modelled_parts(variants: Variants, choice: Choice, chunk: Chunk) -> list[Part]:
+def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """What solves a chunk in Python: a model for each variant that it has rows of."""
     parts: list[Part] = []
     for variant, rows in chunk.pieces:
-        scene = choice.scene(variants.entries[variant].scene)
+        scene = choice.scene(plan.variants.entries[variant].scene)
         # Text, since models of CasADi do not travel to other processes.
-        model = RowModel(scene_text(scene))
-        parts.append((model, variants.inputs[rows]))
+        model = RowModel(scene_text(scene), plan.stability)
+        parts.append((model, plan.variants.inputs[rows]))
     return parts
 
 
@@ -290,10 +307,13 @@ def _sweep(
     progress: Progress,
 ) -> Sweep:
     """All results in the order of the table, some of them checked."""
-    names = row_results(plan.scene)
+    names = plan.results
     results = np.full((len(plan.table.values), len(names)), np.nan)
     for chunk in work:
         results[chunk.rows] = done[chunk.number]
+    if plan.stability:
+        judged = rows_with_potential(plan.variants, work)
+        results[~judged, -len(STABILITY) :] = np.nan
     checked = check(plan.variants, choice, results, progress)
     result_names = plan.columns[len(plan.table.columns) :]
     result_columns = [names.index(name) for name in result_names]
@@ -310,6 +330,7 @@ def _sweep(
 
 
 def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, Any]]) -> dict[str, Any]:
+    sobol = {"sobol": {"factors": list(plan.table.factors)}} if plan.table.factors else {}
     return {
         "schema": 1,
         "sweep": plan.identity,
@@ -322,6 +343,8 @@ def _record(plan: Plan, choice: Choice, sweep: Sweep, checked: list[dict[str, An
         "checked": checked,
         "swept": list(sweep.swept),
         "parameters": list(plan.variants.parameters),
+        "arguments": list(plan.variants.arguments),
+        **sobol,
         "scene": scene_text(plan.scene),
     }
 

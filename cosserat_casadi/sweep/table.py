@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.number_table import read_numbers, shortened
-from cosserat_casadi.sweep.grid_file import read_grid
+from cosserat_casadi.sweep.grid_file import grid, paired_draws, read_tables
 
 
 @dataclass(frozen=True)
@@ -24,12 +25,14 @@ class Table:
         values: shape (rows, columns), SI units.
         where: what a refusal calls it.
         lines: the line of each row in the file; without one rows are counted from 1.
+        factors: columns whose Sobol indices the rows are drawn for; see :func:`sobol_table`.
     """
 
     columns: tuple[str, ...]
     values: FloatArray
     where: str
     lines: tuple[int, ...] | None = None
+    factors: tuple[str, ...] = ()
 
     def where_of(self, row: int) -> str:
         """What a refusal calls a row."""
@@ -38,15 +41,22 @@ class Table:
         return f"{self.where}, line {self.lines[row]}"
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path, *, sobol: bool = False) -> Table:
     """The rows of a grid (``.toml``) or of a CSV file with a header.
+
+    Args:
+        path: the file.
+        sobol: whether the random columns of a grid are drawn for their Sobol indices.
 
     Raises:
         SceneError: with every fault.
     """
     if path.suffix.lower() == ".toml":
-        columns, values = read_grid(path)
-        return Table(columns, values, str(path))
+        tables = read_tables(path)
+        return _sobol_table(tables, str(path)) if sobol else Table(*grid(tables, str(path)), str(path))
+    if sobol:
+        remedy = "give a grid in TOML with random columns"
+        raise SceneError(Problem(str(path), "holds rows of its own; for Sobol indices they are drawn", remedy))
     header, values, lines, problems = read_numbers(path)
     if problems:
         raise SceneError(*shortened(problems, str(path)))
@@ -81,6 +91,26 @@ def table_of(columns: Mapping[str, npt.ArrayLike]) -> Table:
     count = max(lengths)
     full_columns = [np.broadcast_to(array, count) for array in arrays.values()]
     return Table(tuple(arrays), np.column_stack(full_columns), "table")
+
+
+def sobol_table(columns: Mapping[str, Any], samples: int, seed: int = 0) -> Table:
+    """Rows drawn for the Sobol indices of random columns, (columns + 2) for each sample.
+
+    Args:
+        columns: for each random column ``{"uniform": [low, high]}`` or ``{"normal": [mean, deviation]}``; a number for
+            each that keeps its value.
+        samples: draws, at least 2; the intervals narrow with the root of it.
+        seed: of the draws.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    return _sobol_table({**columns, "samples": samples, "seed": seed}, "table")
+
+
+def _sobol_table(tables: Mapping[str, Any], where: str) -> Table:
+    columns, values, factors = paired_draws(tables, where)
+    return Table(columns, values, where, factors=factors)
 
 
 def _column(name: str, values: npt.ArrayLike) -> FloatArray:

@@ -1,8 +1,9 @@
-"""What the columns of a table are to a scene: inputs at run time, or parameters that make another scene.
+"""What the columns of a table are to a scene: inputs at run time, or parameters.
 
 A column that may be an input is made one, whatever the scene's own ``inputs`` say, and all else is baked in: a load or
-a cable, the length of a rod, its base. Other columns are what ``--set`` takes, such as ``wire.section.radius``. Rows
-of equal parameters share a scene.
+a cable, the length of a rod, its base. Other columns are what ``--set`` takes, such as ``wire.section.radius``. In a
+table of many rows those that may be parameters of a model are arguments of one compiled library; what is left makes
+another scene for each set of values, which rows of equal values share.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.model.parameters import parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.scene import Scene, scene_from_dict
 from cosserat_casadi.scene.number_table import shortened
 from cosserat_casadi.scene.reading import override_path
 from cosserat_casadi.scene.writing import scene_tables
+from cosserat_casadi.sweep.arguments import accepts_parameters, argument_columns, extreme_rows
 from cosserat_casadi.sweep.table import Table
 
 NOT_PARAMETERS = ("schema", "title", "inputs", "accuracy", "targets", "bounds", "simulation", "motions")
@@ -36,10 +39,10 @@ STIFFNESS = ("material", "section", "stiffness", "linear_density")
 
 @dataclass(frozen=True)
 class Variant:
-    """Rows of equal parameters.
+    """Rows of one scene.
 
     Attributes:
-        scene: the scene with these parameters, its inputs those that are swept.
+        scene: the scene, its inputs those that are swept, and its parameters those that its library takes.
         rows: their numbers in the table, shape (k,).
     """
 
@@ -56,17 +59,28 @@ class Variants:
         inputs: stacked inputs of every row of the table, shape (rows, size).
         layout: of the inputs.
         parameters: columns that are no inputs.
+        arguments: those among them that libraries take as parameters.
+        p: their values in every row of the table, shape (rows, arguments).
     """
 
     entries: tuple[Variant, ...]
     inputs: FloatArray
     layout: InputLayout
     parameters: tuple[str, ...]
+    arguments: tuple[str, ...]
+    p: FloatArray
 
-    def of_row(self, row: int) -> Variant:
-        """The scene that a row belongs to."""
+    def scene_of_row(self, row: int) -> Scene:
+        """The scene of a row, whose numbers are all constants."""
         holders = (entry for entry in self.entries if row in entry.rows)
-        return next(holders)
+        scene = next(holders).scene
+        if not self.arguments:
+            return scene
+        return _overridden(scene_tables(scene.baked()), self.arguments, self.p[row], scene.input_names())
+
+    def given(self, rows: npt.NDArray[np.int64]) -> FloatArray:
+        """What a library is given for rows: inputs, and parameters behind them."""
+        return np.hstack([self.inputs[rows], self.p[rows]])
 
     def inputs_of_row(self, row: int) -> dict[str, FloatArray]:
         """Inputs of a row by name."""
@@ -88,12 +102,70 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     indices = [index_of[table.columns[k]] for k in input_columns]
     inputs[:, indices] = table.values[:, input_columns]
     parameters = tuple(table.columns[k] for k in parameter_columns)
+    reserved = any(_is_reserved(name) for name in parameters)
+    tables = scene_tables(free)
+    argument_indices = [] if reserved else argument_columns(tables, table.columns, parameter_columns, table.values)
+    arguments = tuple(table.columns[k] for k in argument_indices)
+    p = table.values[:, argument_indices]
     problems = list(_set_twice(free, [*layout.names, *parameters], table))
     problems += _refused_inputs(free, layout, inputs, table)
-    entries = list(_entries(free, table, parameter_columns, problems))
+    if arguments:
+        free = scene_from_dict({**tables, "parameters": list(arguments)})
+        problems += _refused_rows(free, table, argument_indices)
+    others = [k for k in parameter_columns if k not in argument_indices]
+    entries = list(_entries(free, table, others, problems))
     if problems:
         raise SceneError(*shortened(problems, table.where))
-    return Variants(tuple(entries), inputs, layout, parameters)
+    return Variants(tuple(entries), inputs, layout, parameters, arguments, p)
+
+
+def _overridden(
+    tables: Mapping[str, Any], names: Sequence[str], values: FloatArray, inputs: Sequence[str] | None = None
+) -> Scene:
+    """The scene with other numbers, and with these inputs where they are given.
+
+    A number is named as ``--set`` names it, or as ``parameters`` does, such as ``wire.intrinsic.curvature.y``.
+    """
+    overrides = []
+    numbers = {}
+    for name, value in zip(names, values, strict=True):
+        if _is_named_as_parameter(tables, name):
+            numbers[name] = float(value)
+        else:
+            overrides.append(f"{name}={float(value)!r}")
+    given = tables if inputs is None else {**tables, "inputs": list(inputs)}
+    if not numbers:
+        return scene_from_dict(given, overrides)
+    scene = scene_from_dict({**given, "parameters": list(numbers)}, overrides)
+    return parameter_layout(scene).set_in(scene, numbers)
+
+
+def _is_named_as_parameter(tables: Mapping[str, Any], name: str) -> bool:
+    """Whether a number has the name of a parameter, and none that ``--set`` takes."""
+    try:
+        override_path(tables, name)
+    except SceneError:
+        return accepts_parameters(tables, [name])
+    return False
+
+
+def _refused_rows(scene: Scene, table: Table, columns: Sequence[int]) -> Iterator[Problem]:
+    """Faults of the rows that are refused first, if any is."""
+    names = [table.columns[k] for k in columns]
+    values = table.values[:, columns]
+    tables = scene_tables(scene.baked())
+    joints_move = any(_moves_joints(tables, name) for name in names)
+    known = set[str]()
+    for row in extreme_rows(values):
+        try:
+            changed = _overridden(tables, names, values[row])
+            if joints_move:
+                check_constraints(changed)
+        except SceneError as error:
+            for problem in error.problems:
+                if str(problem) not in known:
+                    known.add(str(problem))
+                    yield _of_table(problem, table, row)
 
 
 def _with_swept_inputs(scene: Scene, columns: Sequence[str]) -> Scene:
@@ -187,10 +259,8 @@ def _scenes(
     joints_move = any(_moves_joints(tables, column) for column in columns)
     known = set[str]()
     for values, rows in _groups(table.values[:, list(parameter_columns)]):
-        pairs = zip(columns, values, strict=True)
-        overrides = [f"{column}={float(value)!r}" for column, value in pairs]
         try:
-            variant = Variant(scene_from_dict(tables, overrides), rows)
+            variant = Variant(_overridden(tables, columns, values), rows)
             # Building a model would find it too, but in a worker; it takes as long as that.
             if joints_move or rows[0] == 0:
                 check_constraints(variant.scene)

@@ -9,15 +9,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.rows import RowLibrary
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.variants import Variants
-
-COMPILED_FROM = 1000
-"""Rows of equal parameters from which a library is compiled for them; a sweep of inputs alone always has one.
-
-To generate and compile one took 13 s for a rod of 12 unknowns where building its model in Python took 0.07 s and a
-solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs grow with the size of the equations.
-"""
 
 COMPILED_ROWS = 512
 """Rows of a chunk that a compiled library solves: milliseconds, so that little is lost by a kill."""
@@ -32,6 +27,22 @@ class Answer(Protocol):
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results for rows of inputs."""
         ...
+
+
+@dataclass(frozen=True)
+class Parametrised:
+    """A library that takes parameters, as one that takes rows of inputs with parameters behind them.
+
+    Attributes:
+        library: the library.
+    """
+
+    library: RowLibrary
+
+    def solve(self, inputs: FloatArray) -> FloatArray:
+        """Rows of results for rows of inputs and parameters."""
+        split = self.library.inputs
+        return self.library.solve(inputs[:, :split], inputs[:, split:])
 
 
 Part = tuple[Answer, FloatArray]
@@ -69,7 +80,7 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk
     listed: list[Chunk] = []
     modelled = []
     for index, entry in enumerate(variants.entries):
-        if len(entry.rows) < compiled_from and variants.parameters:
+        if len(entry.rows) < compiled_from and variants.parameters and not variants.arguments:
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):

@@ -177,7 +177,7 @@ def test_derivatives_with_parameters(made: Exported) -> None:
 
 
 def polished(compiled: Compiled, inputs: FloatArray, p: FloatArray, x: FloatArray) -> FloatArray:
-    """An equilibrium near x to rounding: within the tolerance of the solver a slope has no sixth digit."""
+    """An equilibrium near x to rounding: one within its tolerance has no sixth digit of a slope."""
     size = compiled.size
     jacobian, residual = np.zeros((size, size)), np.zeros(size)
     for _ in range(4):

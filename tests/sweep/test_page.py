@@ -29,7 +29,7 @@ def blocks(language: str) -> list[str]:
 
 
 def table_of_block(language: str, suffix: str, folder: Path) -> Table:
-    (text,) = blocks(language)
+    text = blocks(language)[0]
     file = folder / f"table{suffix}"
     file.write_text(text)
     return read_table(file)
@@ -39,6 +39,14 @@ def test_grid_of_the_page(tmp_path: Path) -> None:
     table = table_of_block("toml", ".toml", tmp_path)
     assert len(table.values) == 200 * 21 * 3
     assert variants_of(read_scene(WIRE), table).parameters == ()
+
+
+def test_grid_for_sobol_indices_of_the_page(tmp_path: Path) -> None:
+    grid = tmp_path / "tolerances.toml"
+    grid.write_text(blocks("toml")[1])
+    table = read_table(grid, sobol=True)
+    assert len(table.values) == 2000 * 5
+    assert variants_of(read_scene(WIRE), table).arguments == ("wire.section.radius", "wire.material.youngs_modulus")
 
 
 def test_csv_of_the_page(tmp_path: Path) -> None:

@@ -154,7 +154,7 @@ def test_rows_of_equal_parameters_share_a_scene() -> None:
     found = seen(rod__stiffness__bending_y=[3.0, 2.0, 3.0, 1.0, 2.0])
     assert [entry.rows.tolist() for entry in found.entries] == [[0, 2], [1, 4], [3]]
     assert [entry.scene.rods[0].stiffness.bending_y for entry in found.entries] == [3.0, 2.0, 1.0]  # type: ignore[union-attr]
-    assert found.of_row(4) is found.entries[1]
+    assert found.scene_of_row(4) is found.entries[1].scene
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,10 @@ from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
-from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
+from cosserat_casadi.codegen.fmu import check_fmu, refuse_parameters, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
+from cosserat_casadi.codegen.stability import check_stability
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
@@ -50,6 +51,9 @@ def export(
     dynamics: Annotated[
         bool, typer.Option("--dynamics", help="With motions: a step of fixed length with its derivatives.")
     ] = False,
+    stability: Annotated[
+        bool, typer.Option("--stability", help="With a function that says whether an equilibrium is stable.")
+    ] = False,
     settings: Settings = None,
 ) -> None:
     """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
@@ -66,7 +70,8 @@ def export(
         remedy = "name a folder for the sources, or a file with --page or --fmu"
         raise ExportError(Problem("--output", "missing", remedy))
     if output is None:
-        _refuse_without_sources({"--derivatives": derivatives, "--dynamics": dynamics})
+        asked = {"--derivatives": derivatives, "--dynamics": dynamics, "--stability": stability}
+        _refuse_without_sources(asked)
     else:
         check_export(output, name)
     if page is not None:
@@ -79,7 +84,11 @@ def export(
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
+    if fmu is not None:
+        refuse_parameters(exported_scene)
     scene_names(name, exported_scene)
+    if stability:
+        check_stability(build(exported_scene, discretise(exported_scene, 1, 2)))
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     solution = solve_with_progress(exported_scene.held() if moves else exported_scene)
@@ -93,7 +102,15 @@ def export(
     # Folder and FMU keep the estimate, which is for these inputs; tune gives one for a range of them.
     estimate = solution.error_estimate
     if output is not None:
-        export_model(model, output, name, error_estimate=estimate, derivatives=derivatives, dynamics=dynamics)
+        export_model(
+            model,
+            output,
+            name,
+            error_estimate=estimate,
+            derivatives=derivatives,
+            dynamics=dynamics,
+            stability=stability,
+        )
         print_export(console, solution, output)
     if fmu is not None:
         with Console(stderr=True).status("Compiling the FMU"):

@@ -11,12 +11,17 @@ from rich.console import Console
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems
 from cosserat_casadi.cli.progress import sweep_display
+from cosserat_casadi.cli.reports.format import print_written
+from cosserat_casadi.cli.reports.sobol import print_sobol
 from cosserat_casadi.cli.reports.sweep import print_stopped_sweep, print_sweep
 from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.sobol_file import sobol_text
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import SAMPLES, Plan, output_problems, plan_sweep, run_sweep
+from cosserat_casadi.sweep.sobol import sobol_indices
 from cosserat_casadi.sweep.table import Table, read_table
 
 
@@ -31,7 +36,16 @@ def sweep(
     samples: Annotated[
         int, typer.Option(min=1, max=10_000, help="Rows that the discretisation is chosen on.")
     ] = SAMPLES,
-    plot: Annotated[Path | None, typer.Option(help="Draw the workspace here: .png, .pdf or .svg.")] = None,
+    stability: Annotated[
+        bool, typer.Option("--stability", help="Say of every row whether its equilibrium is stable.")
+    ] = False,
+    sobol: Annotated[
+        Path | None,
+        typer.Option(help="Draw the random columns for sensitivity indices, and write those here: .json."),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw the workspace, or with --sobol the indices, here: .png, .pdf or .svg.")
+    ] = None,
     colour: Annotated[
         str | None, typer.Option(metavar="COLUMN", help="Colour the figure by this column, or by 'outcome'.")
     ] = None,
@@ -44,8 +58,10 @@ def sweep(
     """
     problems: list[Problem] = []
     with collect_problems(problems):
-        check_outputs(None, plot)
-    plan = _check_table(scene, tuple(settings or ()), over, output, samples, problems)
+        check_outputs(sobol, plot)
+    if sobol is not None and colour is not None:
+        problems.append(Problem("--colour", "is for the workspace", "leave it out beside --sobol"))
+    plan = _check_table(scene, tuple(settings or ()), over, output, samples, stability, sobol is not None, problems)
     _check_colour(colour, plot, plan, problems)
     if problems or plan is None:
         raise SceneError(*problems)
@@ -59,16 +75,27 @@ def sweep(
         print_stopped_sweep(Console(stderr=True), plan)
         raise StoppedError from None
 
-    if plot is not None:
-        _draw(swept, plot, colour)
-    print_sweep(Console(), swept, output, plot, finished=finished_before)
+    if sobol is not None:
+        print_sweep(Console(), swept, output, None, finished=finished_before)
+        _write_sobol(swept, sobol, plot)
+    else:
+        if plot is not None:
+            _draw(swept, plot, colour)
+        print_sweep(Console(), swept, output, plot, finished=finished_before)
     # The rows are written in any case; the exit code says whether they can be trusted.
     if not swept.holds:
         raise typer.Exit(NOT_FOUND)
 
 
 def _check_table(
-    scene_file: Path, settings: tuple[str, ...], over: Path, output: Path, samples: int, problems: list[Problem]
+    scene_file: Path,
+    settings: tuple[str, ...],
+    over: Path,
+    output: Path,
+    samples: int,
+    stability: bool,
+    sobol: bool,
+    problems: list[Problem],
 ) -> Plan | None:
     """The sweep that is asked for; None where the scene, the table or the output is refused."""
     scene: Scene | None = None
@@ -76,13 +103,13 @@ def _check_table(
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
     with collect_problems(problems):
-        table = read_table(over)
+        table = read_table(over, sobol=sobol)
     if scene is None or table is None:
         # Without them the output is all that can still be looked at.
         problems.extend(output_problems(output, None))
         return None
     with collect_problems(problems):
-        return plan_sweep(scene, table, output, samples)
+        return plan_sweep(scene, table, output, samples, stability=stability)
     return None
 
 
@@ -97,6 +124,21 @@ def _check_colour(colour: str | None, plot: Path | None, plan: Plan | None, prob
     columns = ("outcome", *plan.columns)
     if colour not in columns:
         problems.append(Problem("--colour", f"{colour!r} is no column", f"there are {', '.join(columns)}"))
+
+
+def _write_sobol(swept: Sweep, file: Path, plot: Path | None) -> None:
+    """Write, draw and print the indices of a sweep that was drawn for them."""
+    indices = sobol_indices(swept)
+    write_atomically(file, sobol_text(indices).encode())
+    written = [file]
+    if plot is not None:
+        # Imported here, because matplotlib is an extra and takes long to load.
+        from cosserat_casadi.plots.sobol_plot import save_sobol_plot
+
+        save_sobol_plot(indices, plot, swept.record["title"])
+        written.append(plot)
+    print_sobol(Console(), indices)
+    print_written(Console(), written, soft_wrap=True)
 
 
 def _draw(swept: Sweep, file: Path, colour: str | None) -> None:

@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import listed, plural, print_plain, print_written, title_line
-from cosserat_casadi.sweep.outcome_file import record_file
+from cosserat_casadi.sweep.outcome_file import STABLE, record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan
 
@@ -32,7 +33,7 @@ def print_sweep(console: Console, sweep: Sweep, output: Path, plot: Path | None,
     print_plain(console, title_line(record["title"]))
     console.print(_outcome_table(sweep))
     print_plain(console, _choice_sentence(record["chosen"], tolerance), soft_wrap=True)
-    for sentence in _check_sentences(record["checked"], tolerance):
+    for sentence in (*_check_sentences(record["checked"], tolerance), *_stability_sentences(sweep)):
         print_plain(console, sentence, soft_wrap=True)
 
     written: list[Path] = []
@@ -111,8 +112,20 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
     if unstable:
         yield (
             f"[bold yellow]Unstable among these: {_rows(unstable)}.[/] A real rod leaves such an equilibrium. "
-            "The stability of other rows is not judged."
+            "--stability judges every row."
         )
+
+
+def _stability_sentences(sweep: Sweep) -> Iterator[str]:
+    """How many rows are stable, where each was judged."""
+    if STABLE not in sweep.found:
+        return
+    stable = sweep[STABLE][sweep.converged]
+    sentence = f"Stable: {plural(int(np.sum(stable == 1.0)), 'row')}, unstable: {int(np.sum(stable == 0.0))}"
+    without_potential = int(np.sum(np.isnan(stable)))
+    if without_potential:
+        sentence += f", not judged, since their loads have no potential: {without_potential}"
+    yield f"{sentence}."
 
 
 def _rows(entries: list[dict[str, Any]]) -> str:

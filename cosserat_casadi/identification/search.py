@@ -40,6 +40,9 @@ SAME_COST = 1e-3
 NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins."
 """Why a case has none there."""
 
+NEAREST = 0.05
+"""Share of the way to a start at which it is given up, and the search begins where the first one does."""
+
 SAMPLES = 4
 """Cases that a discretisation is chosen on."""
 
@@ -279,15 +282,24 @@ class _Task:
         fits = []
         for number, shared in enumerate(self._start_points(first.shared)):
             self.report("fitting" if self.starts == 1 else f"fitting, start {number + 1} of {self.starts}")
-            state: MisfitState | None = first
-            if number:
-                point, reached = misfit.moved(shared, first.own, first)
-                state = misfit.first(point, shared, first.own) if np.all(reached) else None
-            if state is not None:
-                fits.append(arrow_fit.run(shared, first.own, state, self.progress))
+            state = self._towards(misfit, first, shared) if number else first
+            fits.append(arrow_fit.run(state.shared, first.own, state, self.progress))
         best = min(fits, key=lambda fit: fit.cost)
         alike = [fit for fit in fits if fit.cost - best.cost <= SAME_COST * (1 + best.cost)]
         return best, len(alike)
+
+    def _towards(self, misfit: Misfit, first: MisfitState, shared: FloatArray) -> MisfitState:
+        """The state at a start, or as far on the way to it as all cases can be followed."""
+        ratios = self.layout.shared_limits.ratios
+        share = 1.0
+        while share > NEAREST:
+            way = first.shared + share * (shared - first.shared)
+            way[ratios] = first.shared[ratios] * (shared[ratios] / first.shared[ratios]) ** share
+            point, reached = misfit.moved(way, first.own, first)
+            if np.all(reached):
+                return misfit.first(point, way, first.own)
+            share /= 2
+        return first
 
     def _start_points(self, first: FloatArray) -> list[FloatArray]:
         """Where the searches begin: at the scene's values, then at random between bounds or from priors."""

@@ -1,0 +1,80 @@
+"""Stability of equilibria in C: sources beside a library, which a folder holds only where they are asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.library import SINGLE, render
+from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.equilibrium.judge import ASIDE
+from cosserat_casadi.equilibrium.stability import DEPENDENT, ZERO, variations
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.continuation import ContinuationSettings
+
+ALWAYS = "The loads of this scene have a potential whatever the inputs."
+AT_TIMES = (
+    "The loads of this scene have a potential only where some inputs, such\n   as a force that turns with the rod, are "
+    "zero: elsewhere the result means nothing."
+)
+
+
+def stability_files(name: str) -> tuple[str, str]:
+    """Names of the sources of the stability of a library: source and header."""
+    return f"{name}_stability.c", f"{name}_stability.h"
+
+
+def check_stability(model: Model) -> None:
+    """Refuse the stability of a scene whose loads have no potential.
+
+    Raises:
+        ExportError: an eigenvalue would say nothing at the scene's own inputs.
+    """
+    if not model.has_potential(model.pack()):
+        remedy = "leave it out; cosserat modes judges such equilibria by their motion"
+        raise ExportError(Problem("--stability", "the loads have no potential at the scene's inputs", remedy))
+
+
+def stability_sources(model: Model, names: Names) -> dict[str, str]:
+    """Source and header of the stability of equilibria by file name.
+
+    Args:
+        model: what is exported.
+        names: of the library that they stand beside.
+    """
+    allowed = variations(model)
+    units = allowed.units
+    # As in Python: rods of one energy unit need no scaling, and keep their digits.
+    roots = np.sqrt(units / units.max()) if len(set(units)) > 1 else np.ones(len(units))
+    everywhere = model.has_potential(np.ones(model.inputs.size))
+    words: dict[str, Any] = {
+        "name": names.name,
+        "MACRO": names.macro,
+        "free": len(allowed.free),
+        "held": len(allowed.held),
+        # C has no array without entries.
+        "held_room": max(len(allowed.held), 1),
+        "free_unknowns": numbers(allowed.free.tolist()),
+        "held_unknowns": numbers(allowed.held.tolist() or [0]),
+        "roots": numbers(roots.tolist()),
+        "zero": ZERO,
+        "dependent": DEPENDENT,
+        "aside": ASIDE,
+        "tolerance": ContinuationSettings().newton.tolerance,
+        "single_tolerance": SINGLE["single_tolerance"],
+        **_parameter_words(model, names),
+        "potential_note": ALWAYS if everywhere else AT_TIMES,
+    }
+    source, header = stability_files(names.name)
+    return {source: render("stability.c.in", words), header: render("stability.h.in", words)}
+
+
+def _parameter_words(model: Model, names: Names) -> dict[str, str]:
+    """The argument of parameters where there are some, as in the library's own header and source."""
+    if not model.parameters.size:
+        return {"parameters": "", "passed": ""}
+    argument = f"const {names.name}_real *parameters"
+    return {"parameters": f", {argument}", "passed": ", parameters"}

@@ -1,0 +1,85 @@
+"""The figure of Sobol indices: a panel for each result that varies, two bars with their intervals for each input.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.colours import CATEGORIES
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.sweep.sobol import Estimates, SobolIndices
+
+COLUMNS = 3
+"""Panels in a row."""
+
+HEIGHT = 0.38
+"""Of a bar, where inputs are one apart."""
+
+
+def save_sobol_plot(indices: SobolIndices, file: str | Path, title: str | None = None) -> None:
+    """Draw Sobol indices into a file, whole or not at all; the same indices give the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_sobol(indices, title), file)
+
+
+def plot_sobol(indices: SobolIndices, title: str | None = None) -> Any:
+    """Figure of Sobol indices.
+
+    Args:
+        indices: of the results; those that do not vary are left out.
+        title: of the scene.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    shown = {name: found for name, found in indices.results.items() if np.all(np.isfinite(found.first))}
+    columns = max(1, min(COLUMNS, len(shown)))
+    rows = max(1, ceil(len(shown) / COLUMNS))
+    size = (1.6 + 3.4 * columns, 1.2 + rows * (0.8 + 0.45 * len(indices.factors)))
+    figure = figure_class()(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    for panel, (name, found) in zip(panels, shown.items(), strict=False):
+        _draw(panel, name, found, indices.factors)
+    for panel in panels[len(shown) :]:
+        panel.set_visible(False)
+    if shown:
+        panels[0].legend(fontsize=8, frameon=False, loc="upper right")
+    add_title(figure, title)
+    return figure
+
+
+def _draw(panel: Any, name: str, found: Estimates, factors: tuple[str, ...]) -> None:
+    places = np.arange(len(factors))
+    bars = (
+        (found.first, found.first_interval, -HEIGHT / 2, CATEGORIES[0], "first order"),
+        (found.total, found.total_interval, HEIGHT / 2, CATEGORIES[1], "total"),
+    )
+    for values, intervals, shift, colour, label in bars:
+        whiskers = _whiskers(values, intervals)
+        style = {"height": HEIGHT, "color": colour, "label": label, "error_kw": {"elinewidth": 1.0, "capsize": 2.0}}
+        panel.barh(places + shift, values, xerr=whiskers, **style)
+    panel.set_yticks(places, factors)
+    panel.set_ylim(len(factors) - 0.4, -0.6)
+    panel.set_xlabel(f"share of the variance of {name}")
+    panel.grid(axis="x", alpha=0.3)
+
+
+def _whiskers(values: FloatArray, intervals: FloatArray) -> FloatArray:
+    """Distances from values to their bounds, shape (2, columns)."""
+    distances = np.vstack([values - intervals[:, 0], intervals[:, 1] - values])
+    # A percentile may lie on the wrong side of an estimate by rounding.
+    return np.maximum(distances, 0.0)

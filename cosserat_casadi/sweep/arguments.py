@@ -1,0 +1,94 @@
+"""Columns of a table that become parameters of one compiled library, so that rows which differ in them share it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import build
+from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.parameters import parameter_layout
+from cosserat_casadi.scene import scene_from_dict
+
+COMPILED_FROM = 1000
+"""Rows of equal parameters from which a library is compiled for them; a sweep of inputs alone always has one.
+
+To generate and compile one took 13 s for a rod of 12 unknowns where building its model in Python took 0.07 s and a
+solve there 5 to 20 ms: the two break even at about a thousand rows. Both costs grow with the size of the equations.
+"""
+
+
+def argument_columns(
+    tables: Mapping[str, Any], columns: Sequence[str], chosen: Sequence[int], values: FloatArray
+) -> list[int]:
+    """Which columns a compiled library takes as parameters; none where too few rows would share it.
+
+    Args:
+        tables: of the scene.
+        columns: of the table.
+        chosen: those among them that are no inputs.
+        values: of the table, shape (rows, columns).
+    """
+    if len(values) < COMPILED_FROM:
+        return []
+    # A column of one value is a constant, which costs nothing.
+    varying = [k for k in chosen if np.ptp(values[:, k]) > 0.0]
+    arguments = [k for k in varying if accepts_parameters(tables, [columns[k]])]
+    rest = [k for k in chosen if k not in arguments]
+    if rest:
+        _, counts = np.unique(values[:, rest], axis=0, return_counts=True)
+        if counts.min() < COMPILED_FROM:
+            return []
+    names = [columns[k] for k in arguments]
+    if not names or not accepts_parameters(tables, names):
+        return []
+    try:
+        scene = scene_from_dict({**tables, "parameters": names})
+        build(scene, discretise(scene, 1, 2))
+    except SceneError:
+        # A load may be bound to where the unloaded rod was.
+        return []
+    return arguments
+
+
+def accepts_parameters(tables: Mapping[str, Any], names: Sequence[str]) -> bool:
+    """Whether these are parameters of the scene, of one number each."""
+    try:
+        scene = scene_from_dict({**tables, "parameters": list(names)})
+    except SceneError:
+        return False
+    return parameter_layout(scene).size == len(names)
+
+
+def extreme_rows(values: FloatArray) -> list[int]:
+    """Rows that a scene is asked about in place of all: those nearest to the corners of every two columns.
+
+    What a scene refuses is a number beyond a bound, or two of which one must be less than the other; among all rows
+    these are the first to be refused.
+
+    Args:
+        values: shape (rows, columns).
+    """
+    low = values.min(axis=0)
+    width = np.ptp(values, axis=0)
+    scaled = (values - low) / np.where(width > 0.0, width, 1.0)
+    chosen = dict.fromkeys([0])
+    columns = range(values.shape[1])
+    for column in columns:
+        chosen |= dict.fromkeys([int(np.argmin(values[:, column])), int(np.argmax(values[:, column]))])
+    for one, other in combinations(columns, 2):
+        for signs in product((-1.0, 1.0), repeat=2):
+            chosen[_farthest(scaled[:, [one, other]], np.array(signs))] = None
+            # In the unit that both may have: the one that comes nearest to being larger than the other.
+            chosen[_farthest(values[:, [one, other]], np.array(signs))] = None
+    return list(chosen)
+
+
+def _farthest(points: FloatArray, direction: npt.NDArray[np.float64]) -> int:
+    return int(np.argmax(points @ direction))
