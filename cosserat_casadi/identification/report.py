@@ -130,8 +130,9 @@ class Ending:
             directions = "; ".join(described(direction) for direction in known.unseen)
             remedy = "Leave unknowns out, give priors, or measure more."
             return "not_determined", f"Not found: the data do not determine {directions}. {remedy}"
-        numbers = len(fit.state.residual)
-        return "converged", f"Found: {len(fit.shared)} unknowns from {numbers} numbers."
+        unknowns = counted(len(fit.shared), "unknown")
+        numbers = counted(len(fit.state.residual), "number")
+        return "converged", f"Found: {unknowns} from {numbers}."
 
     def _remarks(self, found: Identification) -> list[str]:
         """What a user must know of what was found."""
@@ -154,6 +155,11 @@ class Ending:
         if self.left_out:
             remarks.append(f"Left out: {named([case.where for case in self.left_out])}. {self.left_out[0].reason}")
         return remarks
+
+
+def counted(count: int, noun: str) -> str:
+    """A count and what is counted."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def named(cases: Sequence[str]) -> str:
