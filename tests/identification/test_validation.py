@@ -7,10 +7,10 @@ import re
 import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks.validation import PAGE, STUDIES, marks, pages_tables, validated
+from benchmarks.validation import PAGE, SCENES, STUDIES, marks, pages_tables, validated
 from cosserat_casadi.identification.cases import read_cases
-from cosserat_casadi.scene import read_scene
 from cosserat_casadi.model.build import build
+from cosserat_casadi.scene import read_scene
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
@@ -20,8 +20,6 @@ def numbers(text: str) -> list[float]:
 
 
 def test_scenes_read_their_data() -> None:
-    from benchmarks.validation import SCENES
-
     assert sorted(path.stem for path in SCENES.glob("*.toml")) == sorted(study.name for study in STUDIES)
     scene = read_scene(SCENES / "three_tendon_robot.toml")
     assert len(read_cases(scene, build(scene.with_unknowns()).inputs)) == 77
