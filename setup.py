@@ -10,7 +10,9 @@ from setuptools.command.build_py import build_py
 SHIPPED = (
     "examples/*.toml",
     "examples/data/*.csv",
+    "examples/data/*/*",
     "examples/sweeps/*.toml",
+    "examples/validation/*.toml",
     "examples/*.py",
     "examples/*.c",
     "docs/*.md",

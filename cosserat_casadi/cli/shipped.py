@@ -7,6 +7,7 @@ there when a wheel is built.
 from __future__ import annotations
 
 import ast
+import os
 import re
 import tomllib
 from dataclasses import dataclass
@@ -44,7 +45,7 @@ def examples() -> dict[str, Example]:
     """All examples by name: scenes, tables of sweeps, programs."""
     folder = shipped_folder("examples")
     found = {}
-    for pattern in ("*.toml", "sweeps/*.toml", "*.py"):
+    for pattern in ("*.toml", "sweeps/*.toml", "validation/*.toml", "*.py"):
         for file in sorted(folder.glob(pattern)):
             name = file.relative_to(folder).with_suffix("").as_posix()
             found[name] = Example(name, file, _title(file), _needs(file, folder))
@@ -65,11 +66,17 @@ def page_title(page: Path) -> str:
 
 
 def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
-    """Tables that a scene names; scenes and sources in C whose names stand in a program or a table of a sweep."""
-    if file.suffix == ".toml" and file.parent == folder:
+    """What else an example reads or speaks of.
+
+    Tables that a scene names, and what their folder says of source and licence; scenes and sources in C whose names
+    stand in a program or a table of a sweep.
+    """
+    if file.suffix == ".toml" and file.parent.name != "sweeps":
         scene = tomllib.loads(file.read_text(encoding="utf-8"))
-        tables = [*scene.get("measurements", []), *scene.get("motions", [])]
-        return tuple(sorted({folder / table["file"] for table in tables if "file" in table}))
+        entries = [*scene.get("measurements", []), *scene.get("motions", [])]
+        tables = {Path(os.path.normpath(file.parent / entry["file"])) for entry in entries if "file" in entry}
+        notices = {table.with_name("README.md") for table in tables}
+        return tuple(sorted(tables | {notice for notice in notices if notice.exists()}))
     words = set(re.findall(r"\w+", file.read_text(encoding="utf-8")))
     others = [*sorted(folder.glob("*.toml")), *sorted(folder.glob("*.c"))]
     return tuple(other for other in others if other.stem in words)

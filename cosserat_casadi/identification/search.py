@@ -18,7 +18,7 @@ from cosserat_casadi.identification.checks import plausibility
 from cosserat_casadi.identification.equilibria import Equilibria, Point
 from cosserat_casadi.identification.found import Identification, LeftOut, Row
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.identification.report import Ending
+from cosserat_casadi.identification.report import Ending, counted
 from cosserat_casadi.identification.statistics import Statistics, statistics
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
@@ -193,7 +193,8 @@ def _refuse_few_data(layout: UnknownLayout, cases: Sequence[Case], scene: scenes
     priors += len(cases) * int(np.count_nonzero(layout.own_limits.weight))
     unknowns = shared + own * len(cases)
     if data + priors < unknowns:
-        problem = f"there are {unknowns} unknowns in {len(cases)} cases, and {data + priors} numbers that say anything"
+        wanted = f"{counted(unknowns, 'unknown')} in {counted(len(cases), 'case')}"
+        problem = f"{wanted} are too many for {counted(data + priors, 'number')}"
         raise SceneError(Problem("unknowns", problem, "leave some out, give priors, or measure more"))
 
 

@@ -92,6 +92,12 @@ def test_examples_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
         assert name in listed
 
 
+def test_measured_data_come_with_their_licence(tmp_path: Path) -> None:
+    assert cosserat("examples", "validation/steel_strip", "--output", str(tmp_path)) == 0
+    assert "strip_tip.csv" in (tmp_path / "data" / "cantilever-steel" / "README.md").read_text()
+    assert cosserat("check", str(tmp_path / "validation" / "steel_strip.toml")) == 0
+
+
 def test_examples_are_copied(tmp_path: Path) -> None:
     folder = tmp_path / "examples"
     assert cosserat("examples", "--output", str(folder)) == 0

@@ -287,7 +287,7 @@ def test_what_was_found_goes_into_the_scene(wire_model: Model, found: Identifica
 
 def test_fewer_data_than_unknowns_are_refused(wire_model: Model, shapes: MadeUp) -> None:
     one = {name: values[:1] for name, values in shapes.columns.items()}
-    with pytest.raises(SceneError, match="4 unknowns in 1 cases, and 3 numbers"):
+    with pytest.raises(SceneError, match="4 unknowns in 1 case are too many for 3 numbers"):
         identify(wire_model, {"shapes.csv": one})
 
 
