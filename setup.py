@@ -7,7 +7,15 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-SHIPPED = ("examples/*.toml", "examples/sweeps/*.toml", "examples/*.py", "examples/*.c", "docs/*.md", "docs/api/*.md")
+SHIPPED = (
+    "examples/*.toml",
+    "examples/data/*.csv",
+    "examples/sweeps/*.toml",
+    "examples/*.py",
+    "examples/*.c",
+    "docs/*.md",
+    "docs/api/*.md",
+)
 """Files of the repository that lie in the package of a wheel, in folders of the same names."""
 
 

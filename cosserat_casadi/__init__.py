@@ -28,6 +28,7 @@ from cosserat_casadi.control import Inverse, inverse, inverse_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import CosseratError, ExportError, Problem, SceneError, SolveError
+from cosserat_casadi.identification import Identification, identify, identify_scene
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.motion.linear_model import LinearModel, linearise
@@ -40,6 +41,7 @@ from cosserat_casadi.page.page import export_page
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.paths.trace import PathOutcome
+from cosserat_casadi.results.identification_file import identification_result
 from cosserat_casadi.results.inverse_file import inverse_result
 from cosserat_casadi.results.modes_file import modes_result
 from cosserat_casadi.results.motion_file import motion_result, write_motion
@@ -59,6 +61,7 @@ __all__ = [
     "Discretisation",
     "EquilibriumPath",
     "ExportError",
+    "Identification",
     "Inverse",
     "LinearModel",
     "LinearMotion",
@@ -92,6 +95,9 @@ __all__ = [
     "export_page",
     "follow_path",
     "follow_scene_path",
+    "identification_result",
+    "identify",
+    "identify_scene",
     "inverse",
     "inverse_result",
     "inverse_scene",

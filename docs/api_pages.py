@@ -125,6 +125,12 @@ CONCEPTS = (
         ),
     ),
     Concept(
+        "identification",
+        "Identification",
+        "Numbers of a scene from measurements; see [identify](../identify.md).",
+        ("identify_scene", "identify", "Identification"),
+    ),
+    Concept(
         "export",
         "Export and load",
         "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md). "
@@ -157,7 +163,16 @@ CONCEPTS = (
         "results",
         "Results",
         "Solutions, motions, modes, paths and inverse problems as plain data and as files.",
-        ("result", "write_result", "motion_result", "write_motion", "modes_result", "path_result", "inverse_result"),
+        (
+            "result",
+            "write_result",
+            "motion_result",
+            "write_motion",
+            "modes_result",
+            "path_result",
+            "inverse_result",
+            "identification_result",
+        ),
     ),
 )
 """All pages; every public name is on exactly one."""

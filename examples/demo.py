@@ -32,9 +32,12 @@ SCENES = (
     "needle_in_tissue",
     "rod_in_stream",
     "rubbing_tendon",
+    "wire_from_shapes",
 )
 
 WITH_TARGETS = ("finger_to_point",)
+
+WITH_MEASUREMENTS = ("wire_from_shapes",)
 
 MOTIONS = (
     "fishing_rod_cast",
@@ -58,6 +61,8 @@ def arguments_of(name: str, folder: Path) -> list[str]:
     command = "solve"
     if name in WITH_TARGETS:
         command = "inverse"
+    if name in WITH_MEASUREMENTS:
+        command = "identify"
     if name in MOTIONS:
         command = "simulate"
     scene = Path(__file__).with_name(f"{name}.toml")

@@ -1,4 +1,4 @@
-"""The command line: begin, solve, view, follow a path, simulate, find inputs, sweep, check, export, tune, bench."""
+"""The command line: begin, solve, view, follow a path, simulate, find inputs, identify, sweep, check, export."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from cosserat_casadi.cli.commands.check import check
 from cosserat_casadi.cli.commands.docs import docs
 from cosserat_casadi.cli.commands.examples import examples
 from cosserat_casadi.cli.commands.export import export
+from cosserat_casadi.cli.commands.identify import identify
 from cosserat_casadi.cli.commands.inverse import inverse
 from cosserat_casadi.cli.commands.modes import modes
 from cosserat_casadi.cli.commands.new import new
@@ -52,7 +53,23 @@ app = typer.Typer(
 )
 
 # In the order in which --help lists them.
-for command in (new, examples, docs, solve, view, path, simulate, modes, inverse, sweep, check, export, tune, bench):
+for command in (
+    new,
+    examples,
+    docs,
+    solve,
+    view,
+    path,
+    simulate,
+    modes,
+    inverse,
+    identify,
+    sweep,
+    check,
+    export,
+    tune,
+    bench,
+):
     app.command()(command)
 
 

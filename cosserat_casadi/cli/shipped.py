@@ -31,7 +31,7 @@ class Example:
         name: its path in the folder of examples, without suffix.
         file: a scene, a table of a sweep, or a program.
         title: one sentence.
-        needs: files of the same folder that a program or a table of a sweep reads or speaks of.
+        needs: files of the folder of examples that it reads or speaks of.
     """
 
     name: str
@@ -65,9 +65,11 @@ def page_title(page: Path) -> str:
 
 
 def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
-    """Scenes and sources in C whose names stand in a program or a table of a sweep; a scene needs none."""
+    """Tables that a scene names; scenes and sources in C whose names stand in a program or a table of a sweep."""
     if file.suffix == ".toml" and file.parent == folder:
-        return ()
+        scene = tomllib.loads(file.read_text(encoding="utf-8"))
+        tables = [*scene.get("measurements", []), *scene.get("motions", [])]
+        return tuple(sorted({folder / table["file"] for table in tables if "file" in table}))
     words = set(re.findall(r"\w+", file.read_text(encoding="utf-8")))
     others = [*sorted(folder.glob("*.toml")), *sorted(folder.glob("*.c"))]
     return tuple(other for other in others if other.stem in words)

@@ -17,27 +17,29 @@ FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
 
 
-def load_path(model: Model, inputs: FloatArray) -> Path:
+def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:
     """The path from the unloaded scene to the scene, all loads growing together.
 
     Args:
         model: what to solve.
         inputs: stacked inputs at t = 1, shape (model.inputs.size,).
+        p: parameters of a model that has them, shape (model.parameters.size,).
     """
     no_change = np.zeros(model.inputs.size)
+    given = (inputs,) if p is None else (inputs, p)
 
     # The load factor is t itself.
     def residual(x: FloatArray, load_factor: float) -> FloatArray:
-        g = model.path_residual(x, inputs, load_factor)
+        g = model.path_residual(x, *given, load_factor)
         return column(g)
 
     def jacobian(x: FloatArray, load_factor: float) -> Jacobian:
-        sparse = model.path_jacobian(x, inputs, load_factor)
+        sparse = model.path_jacobian(x, *given, load_factor)
         return _solvable(model, sparse)
 
     def rate(x: FloatArray, load_factor: float) -> FloatArray:
         load_factor_rate = 1.0
-        dg_dt = model.path_rate(x, inputs, load_factor, no_change, load_factor_rate)
+        dg_dt = model.path_rate(x, *given, load_factor, no_change, load_factor_rate)
         return column(dg_dt)
 
     return Path(
@@ -45,7 +47,7 @@ def load_path(model: Model, inputs: FloatArray) -> Path:
         jacobian,
         rate,
         start=model.unloaded(),
-        tangent=column(model.path_tangent(inputs)),
+        tangent=column(model.path_tangent(*given)),
         step_weights=step_weights(model),
         first_step=first_step(model),
     )

@@ -24,6 +24,9 @@ from cosserat_casadi.maths.typing import AnyMatrix, Columns, FloatArray, Matrix
 # Largest entry of RᵀR − 1 in what still passes for a rotation matrix.
 ROTATION_TOLERANCE = 1e-6
 
+# Square of tan(θ/2) below which a rotation vector is a series: its error is below rounding there.
+NEAR_IDENTITY = 1e-3
+
 
 def cross(a: Columns, b: Columns) -> Columns:
     """Cross product of each column of ``a`` with the same column of ``b``: report (A.2).
@@ -176,6 +179,33 @@ def rotate(q: Columns, v: Columns) -> Columns:
     double = 2 * cross(axis, v)
     scaled = [w * row for row in _rows(double, 3)]
     return v + _from_rows(*scaled) + cross(axis, double)
+
+
+def rotation_vector(q: AnyMatrix) -> Matrix:
+    """The rotation vector of a unit quaternion, angle times axis, rad: of an angle up to π.
+
+    It can be differentiated everywhere but where the angle is π.
+
+    Args:
+        q: 4×1; q and −q are the same rotation.
+
+    Returns:
+        3×1.
+    """
+    quaternion = ca.MX(q)
+    upper = ca.if_else(quaternion[0] < 0, -quaternion, quaternion)
+    cosine = upper[0]
+    axis = upper[1:]
+    # tan²(θ/2) decides between the quotient and its series: a root has no derivative at zero.
+    square = ca.sumsqr(axis)
+    near = square < NEAR_IDENTITY * cosine**2
+    sine = ca.sqrt(ca.if_else(near, 1.0, square))
+    quotient = 2 * ca.atan2(sine, cosine) / sine
+    some_cosine = ca.if_else(near, cosine, 1.0)
+    ratio = ca.if_else(near, square, 0.0) / some_cosine**2
+    series = 1 - ratio / 3 + ratio**2 / 5 - ratio**3 / 7 + ratio**4 / 9
+    factor: Matrix = ca.if_else(near, 2 * series / some_cosine, quotient)
+    return factor * axis
 
 
 def quaternion_rate_matrix(k: AnyMatrix) -> AnyMatrix:

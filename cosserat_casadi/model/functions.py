@@ -197,7 +197,7 @@ class ModelFunctions:
         For k abscissae, ``shape[rod].map(k)`` with x and inputs repeated, or ``Solution.pose``.
         """
         rod_shape = written.system.rods[written.owner].shape
-        weights = _interpolation_weights(written.discrete, written.owner, written["X"])
+        weights = interpolation_weights(written.discrete, written.owner, written["X"])
         quaternion = rod_shape.quaternion @ weights
         unit_quaternion = quaternion / ca.sqrt(ca.sumsqr(quaternion))
         section = _in_world(written.system.base(written.owner), Pose(rod_shape.position @ weights, unit_quaternion))
@@ -458,7 +458,7 @@ def _operations(scalar: ca.Function) -> int:
     return total
 
 
-def _interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
+def interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
     """Weights of the nodal values at X, M×1: Chebyshev series of the element that holds X."""
     grid = discrete.rods[rod].grid
     to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))

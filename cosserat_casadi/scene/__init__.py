@@ -36,6 +36,14 @@ from cosserat_casadi.scene.loads import (
     TipWrench,
 )
 from cosserat_casadi.scene.magnet import Dipole, Magnet
+from cosserat_casadi.scene.measurements import (
+    MEASUREMENTS,
+    Identification,
+    Measurement,
+    MeasurementRecord,
+    Prior,
+    Unknown,
+)
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.parameters import NamedNumbers
 from cosserat_casadi.scene.reading import parse_scene, read_scene, scene_from_dict
@@ -59,6 +67,7 @@ __all__ = [
     "ACTUATORS",
     "JOINTS",
     "LOADS",
+    "MEASUREMENTS",
     "SUPPORTS",
     "Accuracy",
     "Actuator",
@@ -82,6 +91,7 @@ __all__ = [
     "FreeInput",
     "Gravity",
     "Helix",
+    "Identification",
     "InputField",
     "InputMotion",
     "Intrinsic",
@@ -91,11 +101,14 @@ __all__ = [
     "LoadRecord",
     "Magnet",
     "Material",
+    "Measurement",
+    "MeasurementRecord",
     "NamedNumbers",
     "PinnedSupport",
     "PointWrench",
     "PoseTarget",
     "PositionTarget",
+    "Prior",
     "PrismaticJoint",
     "Rectangle",
     "RevoluteJoint",
@@ -110,6 +123,7 @@ __all__ = [
     "Target",
     "Tendon",
     "TipWrench",
+    "Unknown",
     "parse_scene",
     "read_scene",
     "scene_from_dict",

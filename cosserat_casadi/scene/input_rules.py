@@ -103,6 +103,37 @@ def field_faults(field: str, record: type[Entry] | None, table: Table, scene: Sc
         yield Fault((), problem, listing(fields, "magnitudes"))
 
 
+def input_field_of(name: str, owners: Owners) -> tuple[str, str] | None:
+    """The input that a name is of, as (owner, field), where the name may go on with a part such as ``.z``.
+
+    Returns:
+        None where no load, actuator or rod has such a field; the longest field where there are several.
+    """
+    owner, _, rest = name.partition(".")
+    record, table = owners.get(owner, (None, {}))
+    if record is None:
+        return None
+    fields = [field for field in record.free_fields(table) if rest == field or rest.startswith(f"{field}.")]
+    if not fields:
+        return None
+    return owner, max(fields, key=len)
+
+
+def input_part_faults(name: str, scene: SceneTables) -> Iterator[Fault]:
+    """Why a name is no input, and no part of one, without path; which parts there are is the model's to say."""
+    owners = owners_of(scene)
+    owner, _, rest = name.partition(".")
+    if not rest:
+        yield Fault((), f"must read 'load.field', got {shown(name)}")
+        return
+    if owner not in owners:
+        yield Fault((), f"no load, actuator or rod is named {shown(owner)}", listing(owners, "names"))
+        return
+    record, table = owners[owner]
+    named = input_field_of(name, owners)
+    yield from field_faults(rest if named is None else named[1], record, table, scene)
+
+
 def _entry_counts(scene: SceneTables) -> dict[str, int | None]:
     """Numbers of entries of what the tables leave free at run time, by name; None of inputs that are faulty."""
     owners = owners_of(scene)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.scene.faults import Fault, shown
+from cosserat_casadi.scene.faults import Fault, Path, shown
 from cosserat_casadi.scene.fields import unit_of, varies_by_component, varying_mark
 from cosserat_casadi.scene.inputs import AXES
 from cosserat_casadi.scene.profiles import ENDS
@@ -274,20 +274,21 @@ def _stored(form: Form, grid: Mapping[Cell, Any], values: Mapping[Cell, Any]) ->
     return tuple(component[0] if len(component) == 1 else component for component in components)
 
 
-def parameter_faults(names: Any, holders: Holders, inputs: Iterable[str]) -> Iterator[Fault]:
+def parameter_faults(
+    names: Sequence[Any], paths: Sequence[Path], holders: Holders, inputs: Iterable[str]
+) -> Iterator[Fault]:
     """What is wrong with the names of the parameters of a scene.
 
     Args:
-        names: the value of the key ``parameters``, which may be faulty.
+        names: what the scene gives as names, which may be faulty.
+        paths: where each stands.
         holders: entries that may have parameters.
         inputs: names of what stays free at run time already.
     """
-    if not isinstance(names, list | tuple):
-        return
     free = set(inputs)
     first: dict[tuple[str, int, tuple[str, ...], Cell], str] = {}
     seen: set[str] = set()
-    for i, name in enumerate(names):
+    for name, path in zip(names, paths, strict=True):
         # A text that is listed twice has a fault already.
         if not isinstance(name, str) or name in seen:
             continue
@@ -296,18 +297,18 @@ def parameter_faults(names: Any, holders: Holders, inputs: Iterable[str]) -> Ite
             numbers = named_numbers(name, holders)
         except RefusedParameter as refused:
             problem, remedy = refused.args
-            yield Fault(("parameters", i), f"{shown(name)}: {problem}", remedy)
+            yield Fault(path, f"{shown(name)}: {problem}", remedy)
             continue
         if numbers is None:
             continue
         if numbers.field in free:
             problem = f"{shown(name)} is an input already"
-            yield Fault(("parameters", i), problem, "leave it out here, or list inputs without it")
+            yield Fault(path, problem, "leave it out here, or list inputs without it")
         places = [(numbers.holder.table, numbers.holder.index, numbers.keys, cell) for cell in numbers.cells]
         again = next((first[place] for place in places if place in first), None)
         if again is not None:
             problem = f"{shown(name)} names what {shown(again)} names already"
-            yield Fault(("parameters", i), problem, "name each number once")
+            yield Fault(path, problem, "name each number once")
         for place in places:
             first.setdefault(place, name)
 

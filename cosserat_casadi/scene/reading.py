@@ -126,11 +126,12 @@ def _validated(tables: Any, overrides: Sequence[str], folder: Path) -> Scene:
 
 
 def _locate_files(tables: dict[str, Any], folder: Path) -> None:
-    """Put the folder of the scene before the files that its motions name."""
-    for _, motion in SceneTables(tables).tables("motions"):
-        file = motion.get("file")
-        if isinstance(file, str) and isinstance(motion, dict):
-            motion["file"] = str(folder / file)
+    """Put the folder of the scene before the files that its motions and measurements name."""
+    given = SceneTables(tables)
+    for _, entry in (*given.tables("motions"), *given.tables("measurements")):
+        file = entry.get("file")
+        if isinstance(file, str) and isinstance(entry, dict):
+            entry["file"] = str(folder / file)
 
 
 def _copy(value: Any) -> Any:

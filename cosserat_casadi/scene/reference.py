@@ -95,7 +95,7 @@ def _list_or_table(key: str, kinds: Family[Any] | type[Record]) -> Iterator[str]
 
 def _title(key: str) -> str:
     """A table of a scene as its file heads it."""
-    if key in ("accuracy", "simulation"):
+    if key in ("accuracy", "simulation", "identification"):
         return f"[{key}]"
     return f"[[{key}]]"
 
@@ -196,6 +196,9 @@ def _value(node: Mapping[str, Any]) -> str:
     if "enum" in node:
         *first, last = (_word(word) for word in node["enum"])
         return f"{', '.join(first)} or {last}"
+    # Tables whose keys are the user's, such as columns by input.
+    if isinstance(node.get("additionalProperties"), Mapping):
+        return "table by name"
     # Records are referred to: what is an object here is the table of what varies.
     if node.get("type") == "object":
         return ALONG

@@ -17,6 +17,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not
 from cosserat_casadi.scene.loads import LOADS
+from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of, parameter_faults
@@ -36,6 +37,8 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "targets": TARGETS,
     "bounds": Bound,
     "motions": InputMotion,
+    "measurements": MEASUREMENTS,
+    "unknowns": Unknown,
 }
 """What the lists of a scene hold."""
 
@@ -208,8 +211,21 @@ def miscounted_modes(scene: SceneTables) -> Iterator[Fault]:
 
 
 def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
-    """A parameter names no number of the scene, or one that cannot be a parameter."""
-    names = scene.get("parameters")
+    """A parameter, or an unknown, names no number of the scene, or one that cannot be a parameter."""
+    listed = scene.get("parameters")
+    names = list(listed) if isinstance(listed, list | tuple) else []
+    paths: list[Path] = [("parameters", i) for i in range(len(names))]
+    first: dict[str, int] = {}
+    for i, table in scene.tables("unknowns"):
+        name = table.get("parameter", table.get("input"))
+        if not isinstance(name, str):
+            continue
+        if first.setdefault(name, i) != i:
+            key = "parameter" if "parameter" in table else "input"
+            yield Fault(("unknowns", i, key), f"unknowns[{first[name]}] is {shown(name)} already", "name it once")
+        elif "parameter" in table and name not in names:
+            names.append(name)
+            paths.append(("unknowns", i, "parameter"))
     if not names:
         return
     by_list: dict[str, list[tuple[Holder, Any]]] = {key: [] for key in PARAMETER_LISTS}
@@ -219,7 +235,7 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
             by_list[str(key)].append((holder, table.get("name")))
     entries = [entry for key in PARAMETER_LISTS for entry in by_list[key]]
     holders = holders_of([holder for holder, _ in entries], [name for _, name in entries])
-    yield from parameter_faults(names, holders, free_names(scene))
+    yield from parameter_faults(names, paths, holders, free_names(scene))
 
 
 RULES: tuple[Rule, ...] = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -14,6 +14,7 @@ from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
+from cosserat_casadi.scene.measurements import Identification, Measurement, Unknown
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
 from cosserat_casadi.scene.records import Record, refusal
@@ -87,6 +88,11 @@ inputs = ["push.force", "cable.tension"]
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
+    measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")
+    unknowns: tuple[Unknown, ...] = Field((), description="what is to be found; for `cosserat identify` alone")
+    identification: Identification = Field(
+        Identification(), description="how the unknowns are looked for; for `cosserat identify` alone"
+    )
     simulation: Simulation | None = Field(None, description="how a motion is computed; for `cosserat simulate` alone")
     motions: tuple[InputMotion, ...] = Field((), description="inputs over time; for `cosserat simulate` alone")
 
@@ -153,10 +159,32 @@ inputs = ["push.force", "cable.tension"]
 
     def with_motion_inputs(self) -> Scene:
         """The scene in which what its motions move is free as well, behind what it leaves free already."""
-        free = self.input_names()
         # Several motions of one input add up.
         moving = dict.fromkeys(motion.input for motion in self.motions)
-        further = [name for name in moving if name not in free]
+        return self._with_inputs(moving)
+
+    def with_unknowns(self) -> Scene:
+        """The scene in which what its measurements set is an input, and what is unknown an input or a parameter."""
+        names = [name for measurement in self.measurements for name in measurement.set_inputs]
+        names += [unknown.input for unknown in self.unknowns if unknown.input is not None]
+        # The same owners as in the rules: inputs of a load or an actuator hide those of a rod of the same name.
+        owners = {record.name: record for record in (*self.rods, *self.causes)}
+        fields = []
+        for name in names:
+            owner, _, rest = name.partition(".")
+            known = [field for field in owners[owner].inputs if rest == field or rest.startswith(f"{field}.")]
+            fields.append(f"{owner}.{max(known, key=len)}")
+        parameters = [unknown.parameter for unknown in self.unknowns if unknown.parameter is not None]
+        further = [name for name in parameters if name not in self.parameters]
+        scene = self._with_inputs(dict.fromkeys(fields))
+        if not further:
+            return scene
+        return scene.model_copy(update={"parameters": (*self.parameters, *further)})
+
+    def _with_inputs(self, names: Iterable[str]) -> Scene:
+        """The scene in which these inputs are free as well, behind what it leaves free already."""
+        free = self.input_names()
+        further = [name for name in names if name not in free]
         if not further:
             return self
         return self.model_copy(update={"inputs": (*free, *further)})

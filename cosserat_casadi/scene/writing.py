@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -46,8 +47,13 @@ def _assignments(table: Mapping[str, Any]) -> list[str]:
     for key, value in table.items():
         # TOML has no null: a key that is given as None from Python is left out.
         if value is not None:
-            assignments.append(f"{key} = {_value(value)}")
+            assignments.append(f"{_key(key)} = {_value(value)}")
     return assignments
+
+
+def _key(key: str) -> str:
+    """A key, in quotes where it is none of TOML's bare ones: a dot would mean a table."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _value(key)
 
 
 def _value(value: Any) -> str:

@@ -15,6 +15,7 @@ import pytest
 from cosserat_casadi import scene_from_dict
 from cosserat_casadi.scene import Scene, reference
 from cosserat_casadi.scene.families import Family, contents_of
+from cosserat_casadi.scene.measurements import MeasurementRecord
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.rods import SectionRecord
 
@@ -134,13 +135,15 @@ def in_a_heading(record: type[Record], key: str) -> bool:
     """Whether a key heads a section: a table of the scene, or the word of a kind."""
     if record is Scene:
         return reference.contents_by_key(Scene)[key] is not None
+    if key == "quantity":
+        return issubclass(record, MeasurementRecord)
     return key == "kind" or (key == "shape" and issubclass(record, SectionRecord))
 
 
 def test_every_number_has_a_unit_or_has_none_by_nature() -> None:
     without = [row[0] for row in lines() if row[2] == "–" and re.search("number|component", row[1])]
-    in_another_unit = {"`amplitude`", "`lower`", "`upper`", "`values`"}
-    counts = {"`frames`", "`modes`", "`nodes`"}
+    in_another_unit = {"`amplitude`", "`lower`", "`mean`", "`shift`", "`sigma`", "`upper`", "`values`"}
+    counts = {"`frames`", "`modes`", "`nodes`", "`starts`"}
     assert set(without) == in_another_unit | counts | {"`quaternion`", "`span`"}
 
 

@@ -1,0 +1,80 @@
+"""``cosserat identify``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.progress import solve_display
+from cosserat_casadi.cli.reports.identification import print_identification, print_identification_warnings
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.files import check_writable, write_atomically
+from cosserat_casadi.identification import identify_scene
+from cosserat_casadi.identification.fitted import beside
+from cosserat_casadi.results.identification_file import identification_text
+from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.writing import scene_text
+
+
+def identify(
+    scene: SceneFile,
+    settings: Settings = None,
+    output: Annotated[Path | None, typer.Option(help="Write what was found (JSON) here.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw measurements, residuals and ellipses here: .png, .pdf or .svg.")
+    ] = None,
+    hold_out: Annotated[
+        float | None, typer.Option(metavar="SHARE", help="Share of the cases that is predicted and not fitted.")
+    ] = None,
+    starts: Annotated[int | None, typer.Option(metavar="N", help="Places from which the search begins.")] = None,
+    write: Annotated[Path | None, typer.Option(help="Write the scene with what was found here (TOML).")] = None,
+) -> None:
+    """Find numbers of a scene from measurements, and what these leave open.
+
+    Exit codes: 0 found, 2 refused, 3 not found, or not determined by the data.
+    """
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        check_outputs(output, plot)
+    if write is not None:
+        with collect_problems(problems):
+            check_writable(write, "--write")
+    if starts is not None and starts < 1:
+        problems.append(Problem("--starts", f"must be 1 or more, got {starts}"))
+    if hold_out is not None and not 0.0 <= hold_out < 1.0:
+        problems.append(Problem("--hold-out", f"must be >= 0 and < 1, got {hold_out:g}"))
+    checked_scene: Scene | None = None
+    with collect_problems(problems):
+        checked_scene = read_scene(scene, tuple(settings or ()))
+    if problems or checked_scene is None:
+        raise SceneError(*problems)
+
+    with solve_display("Identifying") as display:
+
+        def show_step(step: int, cost: float) -> None:
+            display.show_share(step / (step + 10))
+
+        found = identify_scene(
+            checked_scene, hold_out=hold_out, starts=starts, report=display.show_stage, progress=show_step
+        )
+    if output is not None:
+        write_atomically(output, identification_text(found).encode())
+    if plot is not None:
+        # Imported here, because matplotlib is an extra and takes long to load.
+        from cosserat_casadi.plots.identification_plot import save_identification_plot
+
+        save_identification_plot(found, plot)
+    written = given_files(output, plot)
+    # A scene with numbers that were not found would look like one that was.
+    if write is not None and found.converged:
+        write_atomically(write, scene_text(beside(found.fitted_scene(checked_scene), write.parent)).encode())
+        written.append(write)
+    print_identification(Console(), found, written)
+    print_identification_warnings(Console(stderr=True), found)
+    if not found.converged:
+        raise typer.Exit(NOT_FOUND)

@@ -1,0 +1,94 @@
+"""What ``identify`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import (
+    discretisation_sentences,
+    plural,
+    print_plain,
+    print_written,
+    table_of,
+    title_line,
+)
+from cosserat_casadi.identification import Identification
+
+MOST_CASES = 10
+"""Unknowns of single cases that are printed for so many cases; the file has them all."""
+
+
+def print_identification(console: Console, found: Identification, written: Sequence[Path]) -> None:
+    """Print the outcome, what was found, how well it is known, and the files that were written."""
+    print_plain(console, title_line(found.model.scene.title))
+    colour = "green" if found.converged else "red"
+    print_plain(console, f"[bold {colour}]{escape(found.message)}[/]")
+    if found.labels and found.cases:
+        console.print(_unknowns(found))
+    if found.converged and found.layout.own:
+        console.print(_own_unknowns(found))
+    if found.rows:
+        print_plain(console, _residuals(found))
+        print_plain(console, escape("; ".join(discretisation_sentences(found.model))))
+    print_written(console, written)
+
+
+def print_identification_warnings(console: Console, found: Identification) -> None:
+    """Print what a user must know of what was found."""
+    for warning in found.warnings:
+        print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
+
+
+def _unknowns(found: Identification) -> Table:
+    table = Table()
+    # A name that is cut off names nothing.
+    table.add_column("unknown", overflow="fold")
+    for heading in ("value", "σ", "95 % from", "to", "unit"):
+        table.add_column(heading)
+    units = [entry.unit for entry in found.layout.shared for _ in entry.labels]
+    for label, value, sigma, interval, unit in zip(
+        found.labels, found.shared, found.sigma, found.intervals, units, strict=True
+    ):
+        known = [_number(sigma, 2), _number(interval[0], 5), _number(interval[1], 5)]
+        if not found.converged:
+            known = ["", "", ""]
+        elif not np.isfinite(sigma):
+            known = ["not determined", "", ""]
+        table.add_row(escape(label), _number(value, 6), *known, "" if unit == "1" else unit)
+    return table
+
+
+def _own_unknowns(found: Identification) -> Table:
+    table = table_of("case", *(escape(label) for label in found.layout.own_labels))
+    for case, values, sigma in list(zip(found.cases, found.own, found.statistics.own, strict=True))[:MOST_CASES]:
+        cells = [f"{value:.4g} ± {deviation:.1g}" for value, deviation in zip(values, sigma, strict=True)]
+        table.add_row(escape(case), *cells)
+    if len(found.cases) > MOST_CASES:
+        table.add_row(f"… and {len(found.cases) - MOST_CASES} more")
+    return table
+
+
+def _number(value: float, figures: int) -> str:
+    return f"{value:.{figures}g}" if np.isfinite(value) else ""
+
+
+def _residuals(found: Identification) -> str:
+    """How far model and measurements are apart, as a sentence."""
+    numbers = sum(not row.held_out for row in found.rows)
+    sentence = f"{plural(numbers, 'number')} in {plural(len(found.cases), 'case')}, residuals {found.rms():.3g} σ (rms)"
+    held_out = found.rms(held_out=True)
+    if held_out is not None:
+        sentence += f"; held out {held_out:.3g} σ"
+    outliers = len(found.outliers)
+    if outliers:
+        sentence += f"; {plural(outliers, 'outlier')}"
+    starts, ended_here = found.starts
+    if starts > 1:
+        sentence += f"; {ended_here} of {starts} starts ended here"
+    return sentence

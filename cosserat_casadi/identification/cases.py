@@ -1,0 +1,308 @@
+"""From tables to cases: what was measured in each equilibrium.
+
+A case is one equilibrium. Rows of one file are cases of their own; measurements of the same file share them. Rows
+whose inputs are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column
+``case`` joins rows, of several files too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.table import Table, read_table, table_of
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.scene.number_table import shortened
+
+Data = Mapping[str, Mapping[str, npt.ArrayLike]]
+"""Columns by measurement, by its name or its file."""
+
+
+@dataclass(frozen=True)
+class Datum:
+    """One row of a measurement.
+
+    Attributes:
+        where: the row in words.
+        at: abscissa of its section; NaN where the quantity has none.
+        values: in SI units, shape (entries,); NaN where not measured.
+    """
+
+    where: str
+    at: float
+    values: FloatArray
+
+
+@dataclass
+class Case:
+    """What was measured in one equilibrium.
+
+    Attributes:
+        where: its first row in words.
+        inputs: stacked inputs, shape (size of the inputs,); those that are unknown have the scene's values.
+        data: rows by the number of their measurement.
+    """
+
+    where: str
+    inputs: FloatArray
+    data: dict[int, list[Datum]] = field(default_factory=dict)
+
+
+@dataclass
+class _Row:
+    """A row of a measurement before it has its case.
+
+    Attributes:
+        measurement: its number.
+        place: its table and its line there: what measurements of one file share.
+        label: its cell in the column that joins rows to cases; None without one.
+        set_inputs: values by index in the stacked inputs.
+        datum: what was measured.
+    """
+
+    measurement: int
+    place: tuple[str, int]
+    label: str | None
+    set_inputs: dict[int, float]
+    datum: Datum
+
+
+def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
+    """The cases of a scene's measurements.
+
+    Args:
+        scene: with measurements and unknowns.
+        layout: inputs of its model.
+        data: columns that stand for files, by the name or the file of a measurement.
+
+    Raises:
+        SceneError: with every fault of the tables.
+    """
+    tables, problems = _tables(scene, data)
+    per_row = any(unknown.per_row for unknown in scene.unknowns)
+    rows: list[_Row] = []
+    for number, measurement in enumerate(scene.measurements):
+        if number in tables:
+            reader = _Reader(number, measurement, tables[number], layout)
+            rows += reader.rows()
+            problems += shortened(reader.problems, tables[number].source)
+    if problems:
+        raise SceneError(*problems)
+    return _joined(rows, layout, per_row)
+
+
+def _tables(scene: scenes.Scene, data: Data | None) -> tuple[dict[int, Table], list[Problem]]:
+    """The table of each measurement by its number, and what is wrong with others."""
+    given = dict(data or {})
+    names = [name for measurement in scene.measurements for name in (measurement.title, measurement.file)]
+    problems = [Problem(name, "is no measurement of this scene") for name in given if name not in names]
+    tables: dict[int, Table] = {}
+    files: dict[str, Table | None] = {}
+    for number, measurement in enumerate(scene.measurements):
+        name = measurement.title if measurement.title in given else measurement.file
+        if name not in files:
+            files[name] = None
+            try:
+                files[name] = table_of(name, given[name]) if name in given else read_table(Path(name))
+            except SceneError as error:
+                problems += error.problems
+        table = files[name]
+        if table is not None:
+            tables[number] = table
+    return tables, problems
+
+
+@dataclass
+class _Reader:
+    """Reads the rows of one measurement.
+
+    Attributes:
+        number: of the measurement.
+        measurement: its record.
+        table: its rows.
+        layout: inputs of the model.
+        problems: what was wrong.
+    """
+
+    number: int
+    measurement: scenes.MeasurementRecord
+    table: Table
+    layout: InputLayout
+    problems: list[Problem] = field(default_factory=list)
+
+    def rows(self) -> list[_Row]:
+        """The rows in which something was measured."""
+        measurement, table = self.measurement, self.table
+        columns = [column for column in measurement.columns if column]
+        columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
+        columns += list(measurement.where)
+        at = getattr(measurement, "at", None)
+        if isinstance(at, str):
+            columns.append(at)
+        if measurement.case is not None:
+            columns.append(measurement.case)
+        self.problems += table.missing(columns)
+        if self.problems:
+            return []
+        chosen = [
+            row
+            for row in range(len(table))
+            if all(table.holds(column, row, value) for column, value in measurement.where.items())
+        ]
+        values = self._values(chosen)
+        measured = np.any(np.isfinite(values), axis=1)
+        kept = [row for row, is_measured in zip(chosen, measured, strict=True) if is_measured]
+        if not kept:
+            remedy = "look at its columns, and at where"
+            self.problems.append(Problem(table.source, f"{measurement.title}: nothing was measured in any row", remedy))
+        return self._rows(kept, values[measured], self._abscissae(kept), self._inputs(kept))
+
+    def _rows(
+        self, kept: Sequence[int], values: FloatArray, abscissae: FloatArray, inputs: dict[int, FloatArray]
+    ) -> list[_Row]:
+        table = self.table
+        rows = []
+        for i, row in enumerate(kept):
+            set_inputs = {index: float(column[i]) for index, column in inputs.items()}
+            datum = Datum(table.where(row), float(abscissae[i]), values[i])
+            place = (table.source, table.lines[row])
+            case = self.measurement.case
+            label = None if case is None else table.columns[case][row].strip()
+            rows.append(_Row(self.number, place, label, set_inputs, datum))
+        return rows
+
+    def _values(self, rows: Sequence[int]) -> FloatArray:
+        """Cells of the quantity in SI units, shape (rows, entries); NaN where not measured."""
+        measurement = self.measurement
+        count = len(measurement.columns)
+        scale = np.broadcast_to(np.asarray(measurement.scale), count)
+        shift = np.broadcast_to(np.asarray(measurement.shift), count)
+        values = np.full((len(rows), count), np.nan)
+        for k, column in enumerate(measurement.columns):
+            if column:
+                numbers, problems = self.table.numbers(column, rows)
+                self.problems += problems
+                values[:, k] = scale[k] * numbers + shift[k]
+        if measurement.quantity == "pose":
+            self._check_quaternions(values[:, 3:], rows)
+        return values
+
+    def _check_quaternions(self, quaternions: FloatArray, rows: Sequence[int]) -> None:
+        """A quaternion is there with all its numbers, or not at all."""
+        given = np.isfinite(quaternions)
+        norms = np.linalg.norm(np.where(given, quaternions, 0.0), axis=1)
+        for row, known, norm in zip(rows, given, norms, strict=True):
+            if known.any() and not known.all():
+                problem = Problem(self.table.where(row), "has a quaternion with empty cells", "give all four, or none")
+                self.problems.append(problem)
+            elif known.all() and norm == 0.0:
+                self.problems.append(Problem(self.table.where(row), "has a quaternion that is zero"))
+
+    def _abscissae(self, rows: Sequence[int]) -> FloatArray:
+        """Abscissa of the section of each row; NaN where the quantity has none."""
+        at = getattr(self.measurement, "at", None)
+        if not isinstance(at, str):
+            return np.full(len(rows), np.nan if at is None else at)
+        values, problems = self.table.numbers(at, rows)
+        self.problems += problems
+        for row, value in zip(rows, values, strict=True):
+            if not 0.0 <= value <= 1.0:
+                got = "an empty cell" if np.isnan(value) else f"{value:g}"
+                problem = f"{at} must be an abscissa from 0 to 1, got {got}"
+                remedy = "divide the distance along the rod by its length"
+                self.problems.append(Problem(self.table.where(row), problem, remedy))
+        return values
+
+    def _inputs(self, rows: Sequence[int]) -> dict[int, FloatArray]:
+        """Values of the inputs that columns set, each of shape (rows,), by index in the stacked inputs."""
+        indices = column_indices(self.layout)
+        values = {}
+        for name, entry in self.measurement.set_inputs.items():
+            where = f"{self.measurement.title}: inputs"
+            if name not in indices:
+                parts = [column for column in indices if column.startswith(f"{name}.")]
+                problem = "has several numbers" if parts else "is no input"
+                self.problems.append(Problem(where, f"{name} {problem}", f"one of {', '.join(parts or indices)}"))
+                continue
+            column = np.full(len(rows), entry.shift)
+            if entry.column is not None:
+                numbers, problems = self.table.numbers(entry.column, rows)
+                self.problems += problems
+                column = column + entry.scale * numbers
+                for row, number in zip(rows, numbers, strict=True):
+                    if np.isnan(number) and not problems:
+                        problem = f"{entry.column} is empty, but sets {name}"
+                        self.problems.append(Problem(self.table.where(row), problem, "give it, or leave the row out"))
+            values[indices[name]] = column
+        return values
+
+
+def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Case]:
+    """Rows of one equilibrium as one case.
+
+    Args:
+        rows: of all measurements.
+        layout: inputs of the model.
+        per_row: whether inputs are unknown anew in each row.
+
+    Raises:
+        SceneError: rows of one case set an input to different values.
+    """
+    joining = _Joining({index: name for name, index in column_indices(layout).items()})
+    # What one measurement of a file says of the inputs of a line holds for all measurements of that file.
+    by_place = joining.settled(rows, [row.place for row in rows])
+    keys: list[Hashable] = []
+    for row in rows:
+        stacked = layout.pack()
+        for index, (value, _) in by_place[row.place].items():
+            stacked[index] = value
+        if row.label is not None:
+            keys.append(("case", row.label))
+        elif per_row:
+            keys.append(("row", row.place))
+        else:
+            keys.append(("inputs", *stacked.tolist()))
+    by_case = joining.settled(rows, keys)
+    if joining.problems:
+        raise SceneError(*shortened(joining.problems, "measurements"))
+    cases: dict[Hashable, Case] = {}
+    for row, key in zip(rows, keys, strict=True):
+        case = cases.setdefault(key, Case(row.datum.where, layout.pack()))
+        for index, (value, _) in {**by_case[key], **by_place[row.place]}.items():
+            case.inputs[index] = value
+        case.data.setdefault(row.measurement, []).append(row.datum)
+    return list(cases.values())
+
+
+@dataclass
+class _Joining:
+    """Joins what rows say of the inputs.
+
+    Attributes:
+        names: of the stacked inputs, by index.
+        problems: rows that contradict each other.
+    """
+
+    names: Mapping[int, str]
+    problems: list[Problem] = field(default_factory=list)
+
+    def settled(self, rows: Sequence[_Row], keys: Sequence[Hashable]) -> dict[Hashable, dict[int, tuple[float, str]]]:
+        """Value of each input that rows of one key set, and the row that did, by key and index."""
+        known: dict[Hashable, dict[int, tuple[float, str]]] = {}
+        for row, key in zip(rows, keys, strict=True):
+            settled = known.setdefault(key, {})
+            for index, value in row.set_inputs.items():
+                first, where = settled.setdefault(index, (value, row.datum.where))
+                if first != value:
+                    name = self.names[index]
+                    problem = f"sets {name} to {value:g}, but {where} sets it to {first:g} in the same case"
+                    self.problems.append(Problem(row.datum.where, problem))
+        return known

@@ -1,0 +1,61 @@
+"""What looks like a wrong unit: told, not refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from cosserat_casadi.identification.found import Row
+from cosserat_casadi.identification.unknowns import UnknownLayout
+from cosserat_casadi.model.build import Model
+
+SECTION_KEYS = ("radius", "outer_radius", "inner_radius", "width", "height")
+"""Keys of sizes of a section."""
+
+FAR = 3.0
+"""Lengths of all rods together beyond which a measured position, counted from the base, is hardly one of the scene."""
+
+
+def plausibility(model: Model, layout: UnknownLayout, rows: Sequence[Row]) -> list[str]:
+    """Sentences on numbers that can hardly be in SI units."""
+    return [*_thick_rods(model), *_wide_bounds(model, layout), *_far_positions(model, rows)]
+
+
+def _thick_rods(model: Model) -> Iterator[str]:
+    for rod in model.scene.rods:
+        section = getattr(rod, "section", None)
+        if section is None:
+            continue
+        for key in SECTION_KEYS:
+            size = getattr(section, key, None)
+            largest = 0.0 if size is None else float(np.max(size))
+            if largest >= rod.length:
+                yield f"{rod.name}.section.{key} is {largest:g} m in a rod of {rod.length:g} m: is it in metres?"
+
+
+def _wide_bounds(model: Model, layout: UnknownLayout) -> Iterator[str]:
+    """Sizes of a section whose range begins above the length of the rod."""
+    lengths = {rod.name: rod.length for rod in model.scene.rods}
+    for entry in layout.shared:
+        owner, _, key = entry.record.name.partition(".")
+        lower = entry.limits()[0]
+        is_size = any(part in SECTION_KEYS for part in key.split("."))
+        if is_size and owner in lengths and np.any(lower >= lengths[owner]):
+            yield f"{entry.record.name} is sought from {lower.max():g} m on in a rod of {lengths[owner]:g} m: metres?"
+
+
+def _far_positions(model: Model, rows: Sequence[Row]) -> Iterator[str]:
+    length = sum(rod.length for rod in model.scene.rods)
+    bases = [np.abs(rod.base.position).max() for rod in model.scene.rods]
+    reach = FAR * (length + max(bases))
+    for number, measurement in enumerate(model.scene.measurements):
+        if measurement.quantity not in ("position", "pose"):
+            continue
+        distances = [abs(row.measured) for row in rows if row.measurement == number and row.entry < 3]
+        if distances and max(distances) > reach:
+            farthest = max(distances)
+            yield (
+                f"{measurement.title}: a position of {farthest:g} m is measured, where the rods together are "
+                f"{length:g} m long: are the columns in mm? Then scale = 1e-3."
+            )

@@ -1,0 +1,176 @@
+"""The end of an identification: what was found, how well it is known, and what it leaves of the data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.fitted import with_found
+from cosserat_casadi.identification.statistics import Statistics
+from cosserat_casadi.identification.unknowns import UnknownLayout
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene import Scene
+
+OUTLIER = 4.0
+"""Residual, in standard deviations as the residuals have them, beyond which a number is told as an outlier."""
+
+NORMAL_MEDIAN = 0.6744897501960817
+"""Median of the size of what is normally distributed, in standard deviations."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measured number beside the model's.
+
+    Attributes:
+        where: its row in words.
+        measurement: number of its measurement.
+        entry: which number of the quantity it is.
+        case: number of its case.
+        measured: in SI units; of an orientation 0.
+        modelled: measured plus the difference.
+        residual: the difference in standard deviations.
+        weight: what the loss leaves of it, 1 for all.
+        held_out: whether it was predicted and not fitted.
+    """
+
+    where: str
+    measurement: int
+    entry: int
+    case: int
+    measured: float
+    modelled: float
+    residual: float
+    weight: float
+    held_out: bool
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A case that took no part.
+
+    Attributes:
+        where: its first row in words.
+        reason: why.
+    """
+
+    where: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Identification:
+    """The end of an identification.
+
+    Attributes:
+        model: that was fitted, with its parameters.
+        layout: what was unknown.
+        shared: numbers found that all cases share, shape (n,), in the order of ``layout.shared_labels``.
+        own: those of each case, shape (cases, k).
+        statistics: what is known of them.
+        converged: whether they are the least misfit and determined by data and priors.
+        outcome: how it ended, in a word.
+        message: in sentences.
+        iterations: steps of the search.
+        cost: half the sum of squares, in squared standard deviations, priors among them.
+        rows: every measured number beside the model's.
+        cases: their first rows in words.
+        unknowns_x: unknowns of the model in each case, shape (cases, size).
+        inputs: stacked inputs of each case, shape (cases, size of the inputs).
+        unstable: cases whose equilibrium is unstable.
+        left_out: cases that took no part.
+        at_bounds: names of the numbers that are at a bound.
+        warnings: sentences on what looks wrong.
+        starts: how many starts there were, and how many ended here.
+    """
+
+    model: Model
+    layout: UnknownLayout
+    shared: FloatArray
+    own: FloatArray
+    statistics: Statistics
+    converged: bool
+    outcome: str
+    message: str
+    iterations: int
+    cost: float
+    rows: tuple[Row, ...]
+    cases: tuple[str, ...]
+    unknowns_x: FloatArray
+    inputs: FloatArray
+    unstable: tuple[str, ...]
+    left_out: tuple[LeftOut, ...]
+    at_bounds: tuple[str, ...]
+    warnings: tuple[str, ...]
+    starts: tuple[int, int]
+
+    @cached_property
+    def parameters(self) -> dict[str, FloatArray]:
+        """Values of the parameters by name, as ``solve(…, parameters=…)`` takes them."""
+        values = self.layout.found_parameters(self.shared)
+        defaults = {entry.name: entry.shape for entry in self.model.parameters.entries}
+        return {name: value.reshape(defaults[name], order="F") for name, value in values.items()}
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the numbers that all cases share."""
+        return self.layout.shared_labels
+
+    @property
+    def sigma(self) -> FloatArray:
+        """Standard deviations, shape (n,); NaN where not determined."""
+        return self.statistics.sigma
+
+    @property
+    def intervals(self) -> FloatArray:
+        """Intervals that hold the true values in 95 % of all experiments, shape (n, 2); NaN where not determined."""
+        half = self.statistics.quantile * self.sigma
+        return np.column_stack([self.shared - half, self.shared + half])
+
+    def rms(self, *, held_out: bool = False, measurement: int | None = None) -> float | None:
+        """Root mean square of the residuals in standard deviations; None where there are none."""
+        chosen = [
+            row.residual for row in self.rows if row.held_out is held_out and measurement in (None, row.measurement)
+        ]
+        return float(np.sqrt(np.mean(np.square(chosen)))) if chosen else None
+
+    @property
+    def outliers(self) -> tuple[Row, ...]:
+        """Numbers that are far from the model, the farthest first.
+
+        Where most residuals are larger than stated, they are measured by their median: what sticks out counts.
+        """
+        sizes = [abs(row.residual) for row in self.rows if not row.held_out]
+        spread = max(1.0, float(np.median(sizes)) / NORMAL_MEDIAN) if sizes else 1.0
+        rows = [row for row in self.rows if not row.held_out and abs(row.residual) > OUTLIER * spread]
+        return tuple(sorted(rows, key=lambda row: -abs(row.residual)))
+
+    def fitted_scene(self, scene: Scene | None = None) -> Scene:
+        """The scene with what was found for its numbers; unknowns of single cases stay as they are.
+
+        Args:
+            scene: the scene that was identified; by default that of the model, with its inputs and parameters.
+
+        Raises:
+            SceneError: nothing was found, or the scene refuses it.
+        """
+        if not self.converged:
+            raise SceneError(Problem("unknowns", "were not found", self.message))
+        return with_found(scene or self.model.scene, self.model, self.layout, self.shared)
+
+    def value(self, name: str) -> float | npt.NDArray[np.float64]:
+        """The value found of an unknown that all cases share, by its name.
+
+        Raises:
+            KeyError: there is no such unknown.
+        """
+        values = {**self.layout.found_parameters(self.shared), **self.layout.found_inputs(self.shared)}
+        if name not in values:
+            raise KeyError(f"{name!r} is not an unknown that all cases share; they are {', '.join(values) or 'none'}")
+        found = values[name]
+        return float(found[0]) if found.size == 1 else found

@@ -1,0 +1,447 @@
+"""Nonlinear least squares with unknowns that all blocks of data share, and unknowns of each block's own.
+
+A Levenberg–Marquardt method with bounds. The Jacobian is a block arrow: rows of block b see the shared unknowns and
+its own. Own unknowns are eliminated block by block with orthogonal transformations, which is the Schur complement of
+the normal equations without their squared condition; what is left is dense in the shared unknowns. J. J. Moré, *The
+Levenberg–Marquardt algorithm*, Lecture Notes in Mathematics 630, 1978 (scaling by the columns); H. B. Nielsen,
+*Damping parameter in Marquardt's method*, DTU 1999 (damping); C. Kanzow, N. Yamashita, M. Fukushima, J. Comput. Appl.
+Math. 172, 2004 (projection on bounds).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.robust_loss import Loss
+
+FIRST_DAMPING = 1e-3
+"""Damping of the first step relative to the squares of the columns."""
+
+MOST_RATIO = 1.5
+"""Ratio by which one step may change what is positive: a linear model would let a modulus vanish."""
+
+BACK_OFF = 10.0
+"""Growth of the damping where a step leads to no state at all."""
+
+HARDLY_DAMPED = 1e-12
+"""Damping that leaves a step as it is, but for directions that no datum sees."""
+
+LARGEST_DAMPING = 1e12
+"""Damping beyond which a step is too small to change anything."""
+
+SUFFICIENT = 1e-4
+"""Share of the predicted decrease that a step must bring."""
+
+ROUNDING = 1e-9
+"""Predicted decrease of half the sum of squares, in squared standard deviations, that evaluation errors may hide."""
+
+
+class State(Protocol):
+    """What a problem knows at some unknowns.
+
+    Attributes:
+        residual: differences in standard deviations, all blocks one after the other, shape (m,).
+    """
+
+    @property
+    def residual(self) -> FloatArray:
+        """Differences in standard deviations, shape (m,)."""
+
+
+StateType = TypeVar("StateType", bound=State)
+
+
+class Problem(Protocol[StateType]):
+    """Residuals of blocks.
+
+    Attributes:
+        offsets: where the rows of each block begin, and at the end their number, shape (blocks + 1,).
+    """
+
+    @property
+    def offsets(self) -> npt.NDArray[np.int64]:
+        """Where the rows of each block begin, and at the end their number, shape (blocks + 1,)."""
+
+    def at(self, shared: FloatArray, own: FloatArray, near: StateType) -> StateType | None:
+        """The state at shared unknowns, shape (n,), and own ones, shape (blocks, k); None where there is none."""
+
+    def jacobians(self, state: StateType) -> tuple[FloatArray, FloatArray]:
+        """Derivatives of the residual with the shared unknowns, (m, n), and with those of the row's block, (m, k)."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What holds some unknowns besides the data.
+
+    Attributes:
+        lower: least values, shape (n,).
+        upper: largest values, shape (n,).
+        mean: expected values, shape (n,); any where nothing is expected.
+        weight: one over the standard deviation of these, shape (n,); 0 where nothing is expected.
+        ratios: whether an unknown is positive and its changes count by their ratio, as those of a modulus: then one
+            step changes it by MOST_RATIO at most; shape (n,).
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+    mean: FloatArray
+    weight: FloatArray
+    ratios: npt.NDArray[np.bool_]
+
+    def clipped(self, values: FloatArray) -> FloatArray:
+        """Values brought into their range."""
+        return np.clip(values, self.lower, self.upper)
+
+    def stepped(self, values: FloatArray, step: FloatArray) -> FloatArray:
+        """Values after a step, within their range and no farther than one step may go."""
+        least = np.where(self.ratios, values / MOST_RATIO, -np.inf)
+        most = np.where(self.ratios, values * MOST_RATIO, np.inf)
+        return self.clipped(np.clip(values + step, least, most))
+
+    def residual(self, values: FloatArray) -> FloatArray:
+        """Differences from the expected values in standard deviations, shape as the values."""
+        return (values - self.mean) * self.weight
+
+    def held(self, values: FloatArray, gradient: FloatArray) -> npt.NDArray[np.bool_]:
+        """Which unknowns are at a bound that the descent would cross, shape as the values."""
+        at_lower = (values <= self.lower) & (gradient > 0)
+        at_upper = (values >= self.upper) & (gradient < 0)
+        return at_lower | at_upper
+
+
+class FitOutcome(Enum):
+    """How a fit ends."""
+
+    CONVERGED = "No step lessens the misfit any more."
+    MAX_ITERATIONS = "The iterations ran out before the misfit was least."
+    STALLED = "No step that can be followed lessens the misfit, though its gradient is not zero."
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """Limits of a fit.
+
+    Attributes:
+        iterations: most steps tried.
+        decrease: predicted decrease of half the sum of squares at which to stop: a step in standard deviations of the
+            unknowns is about its root.
+        relative: the same relative to half the sum of squares.
+    """
+
+    iterations: int = 200
+    decrease: float = 1e-13
+    relative: float = 1e-14
+
+
+@dataclass(frozen=True)
+class Fit(Generic[StateType]):
+    """The end of a fit.
+
+    Attributes:
+        shared: shared unknowns, shape (n,).
+        own: those of each block, shape (blocks, k).
+        state: what the problem knows there.
+        cost: half the sum of what residuals and priors cost.
+        iterations: steps tried.
+        outcome: how it ended.
+    """
+
+    shared: FloatArray
+    own: FloatArray
+    state: StateType
+    cost: float
+    iterations: int
+    outcome: FitOutcome
+
+
+@dataclass
+class Arrow:
+    """A weighted least-squares problem, linear in the changes of the unknowns.
+
+    Attributes:
+        residual: shape (m,).
+        by_shared: shape (m, n).
+        by_own: shape (m, k).
+        offsets: shape (blocks + 1,).
+        shared_prior: weights of the priors of the shared unknowns and their residuals, each of shape (n,).
+        own_prior: likewise of the own ones: weights of shape (k,), residuals of shape (blocks, k).
+        shared_held: shared unknowns that must not change, shape (n,).
+        own_held: own unknowns that must not change, shape (blocks, k).
+    """
+
+    residual: FloatArray
+    by_shared: FloatArray
+    by_own: FloatArray
+    offsets: npt.NDArray[np.int64]
+    shared_prior: tuple[FloatArray, FloatArray]
+    own_prior: tuple[FloatArray, FloatArray]
+    shared_held: npt.NDArray[np.bool_]
+    own_held: npt.NDArray[np.bool_]
+    _triangles: list[FloatArray] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._triangles = self._compressed()
+
+    @property
+    def sizes(self) -> tuple[int, int]:
+        """Numbers of shared unknowns and of those of each block."""
+        return self.by_shared.shape[1], self.by_own.shape[1]
+
+    def _compressed(self) -> list[FloatArray]:
+        """For each block the triangle of [own, shared, residual], which has all that its rows say."""
+        n, k = self.sizes
+        by_shared = np.where(self.shared_held, 0.0, self.by_shared)
+        if not k:
+            return [_triangle(np.hstack([by_shared, self.residual[:, None]]))]
+        triangles = []
+        weights, prior_residuals = self.own_prior
+        for block, held in enumerate(self.own_held):
+            rows = slice(self.offsets[block], self.offsets[block + 1])
+            own = np.where(held, 0.0, self.by_own[rows])
+            data = np.hstack([own, by_shared[rows], self.residual[rows, None]])
+            prior = np.zeros((k, k + n + 1))
+            prior[:, :k] = np.diag(np.where(held, 0.0, weights))
+            prior[:, -1] = prior_residuals[block]
+            triangles.append(_triangle(np.vstack([data, prior])))
+        return triangles
+
+    def eliminated(self, own_damping: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+        """The rows that are left of [shared, residual], and for each block those that own unknowns follow from.
+
+        Args:
+            own_damping: least rows of the own unknowns, shape (k,); zero for none.
+        """
+        n, k = self.sizes
+        if not k:
+            return np.vstack(self._triangles), []
+        damping = np.zeros((k, k + n + 1))
+        damping[:, :k] = np.diag(own_damping)
+        left = []
+        eliminations = []
+        for triangle in self._triangles:
+            whole = _triangle(np.vstack([triangle, damping]))
+            eliminations.append(whole[:k])
+            left.append(whole[k:, k:])
+        return np.vstack(left), eliminations
+
+    def step(self, shared_damping: FloatArray, own_damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The change of the shared unknowns, (n,), and of the own ones, (blocks, k), that lessens the damped sum most.
+
+        Args:
+            shared_damping: rows that are added to the shared unknowns, shape (n,), positive.
+            own_damping: likewise, shape (k,).
+        """
+        n, k = self.sizes
+        left, eliminations = self.eliminated(own_damping)
+        weights, prior_residuals = self.shared_prior
+        free_weights = np.where(self.shared_held, 0.0, weights)
+        rows = np.vstack([left[:, :n], np.diag(free_weights), np.diag(shared_damping)])
+        right = np.concatenate([left[:, n], prior_residuals, np.zeros(n)])
+        # Unknowns differ by many orders of magnitude: unscaled, the small columns would pass for rounding.
+        sizes = np.linalg.norm(rows, axis=0)
+        shared = -np.linalg.lstsq(rows / sizes, right, rcond=None)[0] / sizes
+        own = np.zeros(self.own_held.shape)
+        for block, elimination in enumerate(eliminations):
+            known = elimination[:, k : k + n] @ shared + elimination[:, -1]
+            own[block] = -np.linalg.solve(elimination[:, :k], known)
+        return shared, own
+
+    def decrease(self, shared: FloatArray, own: FloatArray) -> float:
+        """How much half the sum of squares falls, by the linear model, where the unknowns change."""
+        change = self.by_shared @ shared + np.sum(self.by_own * self._spread(own), axis=1)
+        falls = _decrease(self.residual, change)
+        falls += _decrease(self.shared_prior[1], self.shared_prior[0] * shared)
+        return falls + _decrease(self.own_prior[1].ravel(), (self.own_prior[0] * own).ravel())
+
+    def _spread(self, own: FloatArray) -> FloatArray:
+        """Own unknowns of each row's block, shape (m, k)."""
+        return np.repeat(own, np.diff(self.offsets), axis=0)
+
+
+def _decrease(residual: FloatArray, change: FloatArray) -> float:
+    """Half the sum of squares of a residual less that after a change."""
+    return -float(change @ (residual + change / 2))
+
+
+def _triangle(rows: FloatArray) -> FloatArray:
+    """The triangle R of rows = Q R, square at least."""
+    triangle = np.asarray(np.linalg.qr(rows, mode="r"))
+    missing = rows.shape[1] - len(triangle)
+    if missing > 0:
+        triangle = np.vstack([triangle, np.zeros((missing, rows.shape[1]))])
+    return triangle
+
+
+@dataclass
+class _Search(Generic[StateType]):
+    """What changes from one step to the next.
+
+    Attributes:
+        shared: shape (n,).
+        own: shape (blocks, k).
+        state: what the problem knows there.
+        cost: half the sum of all that residuals and priors cost.
+        damping: relative to the squares of the columns.
+        growth: factor on the damping where the next step fails.
+        shared_scale: largest norms of the columns so far, shape (n,).
+        own_scale: likewise, shape (k,).
+    """
+
+    shared: FloatArray
+    own: FloatArray
+    state: StateType
+    cost: float
+    shared_scale: FloatArray
+    own_scale: FloatArray
+    damping: float = FIRST_DAMPING
+    growth: float = 2.0
+
+
+@dataclass(frozen=True)
+class ArrowFit(Generic[StateType]):
+    """A fit to be made.
+
+    Attributes:
+        problem: its residuals.
+        shared: limits of the shared unknowns, each entry of shape (n,).
+        own: limits of the own ones, each of shape (k,), the same for all blocks.
+        loss: what residuals cost.
+        settings: limits of the search.
+    """
+
+    problem: Problem[StateType]
+    shared: Limits
+    own: Limits
+    loss: Loss = field(default_factory=Loss)
+    settings: FitSettings = field(default_factory=FitSettings)
+
+    def run(
+        self,
+        shared: FloatArray,
+        own: FloatArray,
+        state: StateType,
+        progress: Callable[[int, float], None] | None = None,
+    ) -> Fit[StateType]:
+        """Lessen the misfit from a start within the bounds.
+
+        Args:
+            shared: shared unknowns, shape (n,).
+            own: own ones, shape (blocks, k).
+            state: what the problem knows there.
+            progress: told the number of steps and the present cost.
+        """
+        n, k = len(shared), own.shape[1]
+        search = _Search(shared, own, state, self._cost(shared, own, state), np.zeros(n), np.zeros(k))
+        outcome = FitOutcome.MAX_ITERATIONS
+        tried = 0
+        arrow = self.linear(search.shared, search.own, search.state)
+        self._rescale(search, arrow)
+        while tried < self.settings.iterations:
+            if progress is not None:
+                progress(tried, search.cost)
+            tried += 1
+            ended = self._try_step(search, arrow)
+            if ended is None:
+                arrow = self.linear(search.shared, search.own, search.state)
+                self._rescale(search, arrow)
+            elif isinstance(ended, FitOutcome):
+                outcome = ended
+                break
+        return Fit(search.shared, search.own, search.state, search.cost, tried, outcome)
+
+    def linear(self, shared: FloatArray, own: FloatArray, state: StateType) -> Arrow:
+        """The problem in the changes of the unknowns, its rows weighted by the loss."""
+        by_shared, by_own = self.problem.jacobians(state)
+        roots = np.sqrt(self.loss.weights(state.residual))
+        residual = roots * state.residual
+        by_shared = roots[:, None] * by_shared
+        by_own = roots[:, None] * by_own
+        shared_prior = (self.shared.weight, self.shared.residual(shared))
+        own_prior = (self.own.weight, self.own.residual(own))
+        shared_gradient = by_shared.T @ residual + self.shared.weight * shared_prior[1]
+        own_gradient = np.zeros_like(own)
+        if own.size:
+            rows = residual[:, None] * by_own
+            own_gradient = np.add.reduceat(rows, self.problem.offsets[:-1], axis=0) + self.own.weight * own_prior[1]
+        return Arrow(
+            residual,
+            by_shared,
+            by_own,
+            self.problem.offsets,
+            shared_prior,
+            own_prior,
+            self.shared.held(shared, shared_gradient),
+            self.own.held(own, own_gradient),
+        )
+
+    def _cost(self, shared: FloatArray, own: FloatArray, state: StateType) -> float:
+        priors = np.concatenate([self.shared.residual(shared), self.own.residual(own).ravel()])
+        return self.loss.cost(state.residual) + float(priors @ priors) / 2
+
+    def _rescale(self, search: _Search[StateType], arrow: Arrow) -> None:
+        """Let the scales of the unknowns grow with the columns; what no datum sees has the scale 1."""
+        shared = np.sqrt(np.sum(arrow.by_shared**2, axis=0) + arrow.shared_prior[0] ** 2)
+        search.shared_scale = np.maximum(search.shared_scale, shared)
+        if search.own.size:
+            blocks = len(search.own)
+            own = np.sqrt(np.sum(arrow.by_own**2, axis=0) / blocks + arrow.own_prior[0] ** 2)
+            search.own_scale = np.maximum(search.own_scale, own)
+
+    def _try_step(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool | None:
+        """Try a step; None where it was taken, an outcome where the search ends, False where it failed."""
+        root = np.sqrt(search.damping)
+        shared_damping = root * np.where(search.shared_scale > 0, search.shared_scale, 1.0)
+        own_damping = root * np.where(search.own_scale > 0, search.own_scale, 1.0)
+        shared_step, own_step = arrow.step(shared_damping, own_damping)
+        shared = self.shared.stepped(search.shared, shared_step)
+        own = self.own.stepped(search.own, own_step)
+        predicted = arrow.decrease(shared - search.shared, own - search.own)
+        if predicted <= self._least_decrease(search):
+            # What a bound cuts off, or damping makes small, says nothing of the misfit.
+            cut = np.any(shared != search.shared + shared_step) or np.any(own != search.own + own_step)
+            if not cut or search.damping > LARGEST_DAMPING:
+                return self._ended(search, arrow)
+            return self._more_damping(search, arrow)
+        state = self.problem.at(shared, own, search.state)
+        if state is not None and np.all(np.isfinite(state.residual)):
+            cost = self._cost(shared, own, state)
+            gain = (search.cost - cost) / predicted
+            if gain > SUFFICIENT:
+                search.shared, search.own, search.state, search.cost = shared, own, state, cost
+                search.damping *= max(0.1, 1 - (2 * gain - 1) ** 3)
+                search.damping = max(search.damping, 1e-15)
+                search.growth = 2.0
+                return None
+        elif search.damping < BACK_OFF * LARGEST_DAMPING:
+            # Far beyond what the linear model can say: come back in fewer tries.
+            search.damping *= BACK_OFF
+        return self._more_damping(search, arrow)
+
+    def _least_decrease(self, search: _Search[StateType]) -> float:
+        """Predicted decrease below which there is nothing left to gain."""
+        return max(self.settings.decrease, self.settings.relative * search.cost)
+
+    def _more_damping(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome | bool:
+        """Let the next step be shorter; an outcome where it would be too short to change anything."""
+        search.damping *= search.growth
+        search.growth *= 2
+        if search.damping > LARGEST_DAMPING:
+            return self._ended(search, arrow)
+        return False
+
+    def _ended(self, search: _Search[StateType], arrow: Arrow) -> FitOutcome:
+        """How a search ends whose steps bring nothing: by what a step that is hardly damped would bring."""
+        shared_scale = np.where(search.shared_scale > 0, search.shared_scale, 1.0)
+        own_scale = np.where(search.own_scale > 0, search.own_scale, 1.0)
+        hardly = np.sqrt(HARDLY_DAMPED)
+        shared_step, own_step = arrow.step(hardly * shared_scale, hardly * own_scale)
+        left = arrow.decrease(shared_step, own_step)
+        bound = max(ROUNDING, self._least_decrease(search))
+        return FitOutcome.CONVERGED if left <= bound else FitOutcome.STALLED

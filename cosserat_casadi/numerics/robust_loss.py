@@ -1,0 +1,47 @@
+"""What a residual costs in a fit: its square, or less where it is large, so that outliers weigh less.
+
+The cost of a residual r in standard deviations is ½ ρ(r²); its derivative is r times the weight ρ′(r²). P. J. Huber,
+E. M. Ronchetti, *Robust Statistics*, 2nd ed., Wiley 2009, chapter 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Loss:
+    """A cost of residuals.
+
+    Attributes:
+        kind: "squares", "huber" or "cauchy".
+        width: residual from which on it costs less than its square; "squares" has no use for it.
+    """
+
+    kind: str = "squares"
+    width: float = 2.0
+
+    def cost(self, residual: FloatArray) -> float:
+        """Half the sum of ρ(r²)."""
+        squares = residual * residual
+        if self.kind == "squares":
+            rho = squares
+        elif self.kind == "huber":
+            beyond = 2 * self.width * np.abs(residual) - self.width**2
+            rho = np.where(squares <= self.width**2, squares, beyond)
+        else:
+            rho = self.width**2 * np.log1p(squares / self.width**2)
+        return float(np.sum(rho)) / 2
+
+    def weights(self, residual: FloatArray) -> FloatArray:
+        """ρ′(r²) of each residual, from 1 where it is small to 0; shape as the residuals."""
+        if self.kind == "squares":
+            return np.ones_like(residual)
+        if self.kind == "huber":
+            return self.width / np.maximum(np.abs(residual), self.width)
+        weights: FloatArray = 1 / (1 + (residual / self.width) ** 2)
+        return weights

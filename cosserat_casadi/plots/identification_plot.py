@@ -1,0 +1,132 @@
+"""The figure of an identification: measured beside modelled, residuals by measurement, and ellipses of the unknowns.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.identification import Identification, Row
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+
+MOST_PANELS = 4
+"""Measured quantities that have a panel of their own."""
+
+MOST_ELLIPSES = 6
+"""Pairs of unknowns that have an ellipse: those with the strongest correlation."""
+
+CHI_SQUARE_95 = 5.991464547107979
+"""What the square of a normal distribution in the plane, in standard deviations, stays below in 95 % of all draws."""
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+
+
+def save_identification_plot(found: Identification, file: str | Path) -> None:
+    """Draw an identification into a file, whole or not at all; the same one gives the same bytes.
+
+    Args:
+        found: the end of the identification.
+        file: its suffix is one of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+
+    Raises:
+        SceneError: the suffix is none that can be drawn.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_identification(found), file)
+
+
+def plot_identification(found: Identification) -> Any:
+    """The matplotlib.figure.Figure of an identification.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    numbers = sorted({row.measurement for row in found.rows})[:MOST_PANELS]
+    pairs = _pairs(found)
+    columns = max(2, min(3, len(numbers) + 1 + len(pairs)))
+    panels = len(numbers) + 1 + len(pairs)
+    lines = -(-panels // columns)
+    figure = figure_class()(figsize=(4.6 * columns, 3.9 * lines), layout="constrained")
+    axes = iter(figure.subplots(lines, columns, squeeze=False).ravel())
+    for number in numbers:
+        _draw_measurement(next(axes), found, number)
+    _draw_residuals(next(axes), found)
+    for first, second in pairs:
+        _draw_ellipse(next(axes), found, first, second)
+    for unused in axes:
+        unused.set_axis_off()
+    add_title(figure, found.model.scene.title)
+    return figure
+
+
+def _draw_measurement(axes: Any, found: Identification, number: int) -> None:
+    """Modelled over measured; on the line they are equal."""
+    measurement = found.model.scene.measurements[number]
+    rows = [row for row in found.rows if row.measurement == number]
+    for entry, name in enumerate(measurement.entries[: len(measurement.differences)]):
+        for held_out in (False, True):
+            chosen = [row for row in rows if row.entry == entry and row.held_out is held_out]
+            if chosen:
+                label = f"{name}, held out" if held_out else name
+                style = {"marker": "x"} if held_out else {"marker": "o", "alpha": 0.6}
+                colour = COLOURS[entry % len(COLOURS)]
+                axes.scatter(*_values(chosen).T, s=14, color=colour, label=label, **style)
+    values = _values(rows)
+    ends = [float(values.min()), float(values.max())]
+    axes.plot(ends, ends, color="0.5", linewidth=0.8, zorder=0)
+    units = ", ".join(dict.fromkeys(measurement.differences))
+    axes.set(xlabel=f"measured, {units}", ylabel=f"modelled, {units}", title=measurement.title)
+    axes.legend(fontsize=8)
+
+
+def _values(rows: list[Row]) -> FloatArray:
+    return np.array([[row.measured, row.modelled] for row in rows])
+
+
+def _draw_residuals(axes: Any, found: Identification) -> None:
+    """Residuals of every measurement in standard deviations, case after case."""
+    for number, measurement in enumerate(found.model.scene.measurements):
+        for held_out in (False, True):
+            rows = [row for row in found.rows if row.measurement == number and row.held_out is held_out]
+            if not rows:
+                continue
+            # Cases that were held out stand behind those that were fitted.
+            shift = len(found.cases) if held_out else 0
+            places = [row.case + 1 + shift for row in rows]
+            label = f"{measurement.title}, held out" if held_out else measurement.title
+            style = {"marker": "x"} if held_out else {"marker": "o", "alpha": 0.6}
+            axes.scatter(places, [row.residual for row in rows], s=12, label=label, color=COLOURS[number % 7], **style)
+    for level in (-2.0, 0.0, 2.0):
+        axes.axhline(level, color="0.5", linewidth=0.8, linestyle="-" if level == 0.0 else ":", zorder=0)
+    axes.set(xlabel="case", ylabel="residual, σ", title="Residuals")
+    axes.legend(fontsize=8)
+
+
+def _pairs(found: Identification) -> list[tuple[int, int]]:
+    """Pairs of unknowns that are determined, those with the strongest correlation first."""
+    known = np.flatnonzero(np.nan_to_num(found.sigma) > 0.0).tolist()
+    correlation = np.abs(found.statistics.correlation)
+    pairs = sorted(combinations(known, 2), key=lambda pair: -correlation[pair])
+    return pairs[:MOST_ELLIPSES]
+
+
+def _draw_ellipse(axes: Any, found: Identification, first: int, second: int) -> None:
+    """The ellipse that holds both unknowns in 95 % of all experiments."""
+    chosen = [first, second]
+    covariance = found.statistics.covariance[np.ix_(chosen, chosen)]
+    sizes = np.sqrt(np.diagonal(covariance))
+    # Scaled first: unknowns may differ by many orders of magnitude.
+    root = np.linalg.cholesky(covariance / np.outer(sizes, sizes) + 1e-12 * np.eye(2))
+    angles = np.linspace(0.0, 2 * np.pi, 200)
+    circle = np.sqrt(CHI_SQUARE_95) * np.stack([np.cos(angles), np.sin(angles)])
+    ellipse = found.shared[chosen, None] + sizes[:, None] * (root @ circle)
+    axes.plot(*ellipse, color=COLOURS[0])
+    axes.plot(*found.shared[chosen], marker="+", color=COLOURS[1], markersize=10)
+    correlation = found.statistics.correlation[first, second]
+    axes.set(xlabel=found.labels[first], ylabel=found.labels[second], title=f"95 %, correlation {correlation:.2f}")
