@@ -42,6 +42,7 @@ test-slow: $(STAMP)
 
 fuzz: $(STAMP)
 	$(BIN)/python benchmarks/fuzz.py --write --log out/fuzz.jsonl
+	$(BIN)/python benchmarks/held_rods.py
 
 bench: $(STAMP)
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'

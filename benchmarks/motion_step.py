@@ -1,17 +1,22 @@
-"""What steps of a motion cost in C: instructions of the kernels, and µs, best of many, on one core."""
+"""What steps of a motion cost in C: µs, best of many, on one core, `gcc -O2`.
+
+    python benchmarks/motion_step.py [--page] [NAME …]
+
+With --page the table of all models goes to docs/c-interface.md.
+"""
 
 from __future__ import annotations
 
 import json
 import re
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from rich.console import Console
-from rich.table import Table
+import markdown
+import typer
+from rich.progress import track
 
 from cosserat_casadi import Discretisation, Model, build, discretise, export, read_scene, scene_from_dict
 
@@ -31,14 +36,37 @@ LOADS = [
     {"name": "weight", "kind": "gravity", "acceleration": [0.3, -0.2, -2.0]},
 ]
 
-KERNELS = {"inverse_dynamics": "motion_residual", "matrices": "motion_matrices"}
-"""Kernels whose instructions are printed."""
+THIN = {
+    "name": "rod",
+    "length": 0.8,
+    "strain": "kirchhoff",
+    "stiffness": {"bending_x": 1.0, "bending_y": 1.0, "torsion": 0.75},
+    "linear_density": 0.9,
+}
+"""A rod without rotary inertia and damping."""
+
+PAGE = ROOT / "docs" / "c-interface.md"
+BEGIN, END = "<!-- cost of a step -->", "<!-- end of the cost of a step -->"
+
+COLUMNS = {
+    "inverse_dynamics": "inverse dynamics",
+    "matrices": "K, C, M",
+    "step": "step",
+    "step_with_new_jacobian": "with a new Jacobian",
+    "step_sensitivity": "with sensitivities",
+}
 
 
 def rod() -> Model:
     """A Kirchhoff rod of 12 unknowns."""
     scene = scene_from_dict({"schema": 1, "rods": [ROD], "loads": LOADS, "inputs": ["push.force"]})
-    return build(scene, discretise(scene, 4, 10), moving=True)
+    return build(scene, discretise(scene, 4, 10, "magnus4"), moving=True)
+
+
+def thin_rod() -> Model:
+    """The same under a tip force alone."""
+    scene = scene_from_dict({"schema": 1, "rods": [THIN], "loads": LOADS[:1], "inputs": ["push.force"]})
+    return build(scene, discretise(scene, 4, 10, "magnus4"), moving=True)
 
 
 def platform() -> Model:
@@ -52,14 +80,18 @@ def platform() -> Model:
     return build(scene, chosen, moving=True)
 
 
-MODELS = {"kirchhoff": rod, "platform": platform}
+MODELS = {
+    "Kirchhoff rod, tip force": thin_rod,
+    "with rotary inertia, damping and weight": rod,
+    "six-rod platform": platform,
+}
 
 
-def measured(name: str, model: Model, repeat: int, dt: float) -> tuple[dict[str, Any], dict[str, int]]:
-    """Times of tasks, and instructions of kernels."""
+def measured(model: Model, repeat: int, dt: float) -> dict[str, Any]:
+    """Times of tasks, and what steps took."""
+    name = "timed"
     with tempfile.TemporaryDirectory() as scratch:
         folder = export(model, Path(scratch) / name, name, dynamics=True)
-        described = json.loads((folder / "manifest.json").read_text())
         harness = Path(scratch) / "harness.c"
         words = {"name": name, "MACRO": name.upper()}
         text = (ROOT / "benchmarks" / "motion_step.c").read_text()
@@ -68,29 +100,29 @@ def measured(name: str, model: Model, repeat: int, dt: float) -> tuple[dict[str,
         subprocess.run(["gcc", *FLAGS, "-I.", *sources, "-o", "harness", "-lm"], cwd=folder, check=True)
         command = ["./harness", str(repeat), repr(dt)]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
-    counts = dict.fromkeys(KERNELS, 0)
-    for task, kernel in KERNELS.items():
-        for function in described["functions"]:
-            if f"_k_{kernel}" in function["name"]:
-                counts[task] += function["instructions"]
     times: dict[str, Any] = json.loads(done.stdout)
-    return times, counts
+    return times
 
 
-def main() -> None:
-    """Print a table for each model that is named, or for all."""
-    for name in sys.argv[1:] or MODELS:
-        model = MODELS[name]()
-        times, counts = measured(name, model, 50, 1e-3)
-        table = Table(title=f"{name}: {model.size} unknowns, steps of 1 ms")
-        for heading in ("task", "µs", "instructions of its kernels", "iterations", "Jacobians"):
-            table.add_column(heading, justify="left" if heading == "task" else "right")
-        for task, found in times.items():
-            instructions = f"{counts[task]:,}" if task in counts else ""
-            counted = [f"{found[key]:.2f}" if key in found else "" for key in ("iterations", "jacobians")]
-            table.add_row(task.replace("_", " "), f"{found['us']:.2f}", instructions, *counted)
-        Console().print(table)
+def row(name: str, model: Model) -> list[str]:
+    """Cells of a model: unknowns, µs of each task, Newton iterations of a step."""
+    times = measured(model, 100, 1e-3)
+    found = [f"{times[task]['us']:.3g}" for task in COLUMNS]
+    return [name, str(model.size), *found, f"{times['step']['iterations']:.1f}"]
+
+
+def main(
+    names: Annotated[list[str] | None, typer.Argument(help="Models; all by default.")] = None,
+    page: Annotated[bool, typer.Option("--page", help="Write the table to the page on C.")] = False,
+) -> None:
+    """Print the table."""
+    headings = ["µs, steps of 1 ms", "unknowns", *COLUMNS.values(), "iterations"]
+    rows = [row(name, MODELS[name]()) for name in track(names or list(MODELS), transient=True)]
+    text = markdown.table(headings, rows)
+    print(text)
+    if page:
+        markdown.put(PAGE, BEGIN, END, text)
 
 
 if __name__ == "__main__":
-    main()
+    typer.run(main)

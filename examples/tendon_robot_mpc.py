@@ -339,7 +339,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, default=120, help="steps of 0.05 s")
     parser.add_argument("--repeats", type=int, default=3, help="times that each step is solved; the best counts")
-    parser.add_argument("--exact", action="store_true", help="second derivatives of the rod too: minutes of gcc, once")
+    parser.add_argument("--exact", action="store_true", help="second derivatives of the rod too")
     parser.add_argument("--output", type=Path, default=Path("tendon_robot_mpc.png"), help="figure")
     parser.add_argument("--animation", type=Path, help="the robot in motion, a .gif")
     arguments = parser.parse_args()

@@ -231,7 +231,7 @@ class Resting(Controller):
     def __init__(self, model: Model, x: np.ndarray) -> None:
         super().__init__()
         self.x = x
-        stage = compiled_stage(model, "swing_free_rest")
+        stage = compiled_stage(model, "swing_free_rest", curvature=False)
         unknowns, inputs = stage.mx_in()
         outputs = [ca.DM(model.size, 1), ca.DM(7, 1)]
         by_x, by_inputs, pose_by_x, pose_by_inputs = stage.jacobian()(unknowns, inputs, *outputs)

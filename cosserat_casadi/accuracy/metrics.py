@@ -84,11 +84,11 @@ def largest_turn(solution: Solution) -> float:
 
 
 def prolong(solution: Solution, model: Model) -> FloatArray:
-    """Unknowns of a finer model of the same scene: the coefficients that exist, zeros for the rest.
+    """Unknowns of another model of the same scene: the coefficients that exist, zeros for the rest.
 
     Args:
-        solution: on the coarser model.
-        model: the finer one, with the same elements.
+        solution: on some model.
+        model: the other one, finer more often than not, with the same elements.
 
     Returns:
         shape (model.size,).
@@ -104,7 +104,8 @@ def prolong(solution: Solution, model: Model) -> FloatArray:
             modes = fine_rod.at_nodes[component].shape[1] // elements
             # Polynomials are sorted by degree, so a finer model adds its coefficients at the end.
             fine = np.zeros((elements, modes))
-            fine[:, : coarse.shape[1]] = coarse
+            common = min(modes, coarse.shape[1])
+            fine[:, :common] = coarse[:, :common]
             blocks.append(fine.ravel())
     # Multipliers and poses of floating frames do not depend on the discretisation.
     blocks.append(solution.x[discrete.unknowns.count(BlockKind.STRAIN) :])

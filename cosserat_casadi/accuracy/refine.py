@@ -5,6 +5,9 @@ the tolerance. From there modes per component, intervals and the order of the ro
 the tolerance needs. The coarsened model is solved, and its distance to the reference, with what the reference itself
 may be off, is the estimate of its error.
 
+A rod that is held at both ends has several equilibria near each other. Which of them is found must not hang on the
+discretisation: it is decided on levels that are the same for every tolerance, and for modes that the user fixes.
+
 The choice is made at the inputs of the scene, or those given: a component that they do not excite keeps one mode. Who
 changes the inputs afterwards, to load the rod harder or in another direction, fixes modes and nodes or chooses at the
 inputs that excite most.
@@ -37,7 +40,7 @@ from cosserat_casadi.accuracy.preview import SAMPLES
 from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.accuracy.signals import signal_modes
 from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
+from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY, can_relax
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, solve, stabilised
 from cosserat_casadi.maths.numbers import known
@@ -55,6 +58,9 @@ LARGEST_SHAPE_ERROR = 0.1
 
 COARSENING_SHARES = (0.85, 0.35)
 """Shares of the tolerance that coarsening may use up, one try after the other."""
+
+DECIDING_TOLERANCE = 1e-5
+"""Tolerance of the solution that decides which equilibrium of a held rod is meant."""
 
 MARGIN = 1.02
 """Factor on the distance to a reference solution whose own error is known."""
@@ -149,9 +155,17 @@ class _SceneSolver:
     @property
     def reference_transport(self) -> str:
         """Rotation integrator of a reference solution that suits the tolerance."""
-        if self.tolerance < TIGHT:
+        if self.tolerance < TIGHT or self.is_held:
             return "magnus8"
         return "magnus6"
+
+    @cached_property
+    def is_held(self) -> bool:
+        """Whether rods are held at both ends, so that several equilibria are near each other, and can relax."""
+        if not self.scene.supports:
+            return False
+        coarsest = build(self.scene, discretise(self.scene, 1, 2))
+        return can_relax(coarsest)
 
     @cached_property
     def unloaded_turn(self) -> float:
@@ -212,6 +226,21 @@ class _SceneSolver:
         return relaxed
 
 
+@dataclass(frozen=True)
+class _Reference:
+    """A solution that can serve as a reference for a tolerance.
+
+    Attributes:
+        solution: on a uniform discretisation.
+        level: of this discretisation.
+        resolution: its errors.
+    """
+
+    solution: Solution
+    level: Level
+    resolution: Resolution
+
+
 def _with_tolerance(solver: _SceneSolver) -> Solution:
     """The cheapest solution found whose estimated error is below the tolerance.
 
@@ -221,12 +250,55 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     if solver.signal_modes > REFERENCE_MODES[-1]:
         # Not even the finest level sees what the scene asks for: whatever is found is no reference.
         return _blind(solver)
-    level: Level | None = Level.first(solver.tolerance, solver.signal_modes)
+    found = _of_held_rod(solver) if solver.is_held else _from_first_level(solver)
+    if isinstance(found, _Reference):
+        return _coarsened(solver, found.resolution)
+    return found
+
+
+def _from_first_level(solver: _SceneSolver) -> _Reference | Solution:
+    """A reference for the tolerance, refined from the level that it begins with; or a failure."""
+    first = Level.first(solver.tolerance, solver.signal_modes)
+    return _refined(solver, first, solver.tolerance)
+
+
+def _of_held_rod(solver: _SceneSolver) -> _Reference | Solution:
+    """A reference for the tolerance, refined from the equilibrium that is meant; or a failure."""
+    found = _deciding(solver)
+    if isinstance(found, _Reference):
+        if solver.tolerance >= DECIDING_TOLERANCE:
+            return found
+        return _refined(solver, found.level, solver.tolerance, found.solution)
+    if found.outcome is Outcome.UNRESOLVED and solver.tolerance > DECIDING_TOLERANCE:
+        # No level resolves it so well, but one may do for less.
+        return _from_first_level(solver)
+    return found
+
+
+def _deciding(solver: _SceneSolver) -> _Reference | Solution:
+    """The equilibrium of a held rod that is meant, whatever is asked of the discretisation; or a failure."""
+    first = Level.first(DECIDING_TOLERANCE, solver.signal_modes)
+    return _refined(solver, first, DECIDING_TOLERANCE)
+
+
+def _refined(
+    solver: _SceneSolver, first: Level, tolerance: float, on_first: Solution | None = None
+) -> _Reference | Solution:
+    """A solution that can serve as a reference; without one the last failure, or the finest solution as UNRESOLVED.
+
+    Args:
+        solver: what is solved.
+        first: the level to begin with.
+        tolerance: wanted error.
+        on_first: the solution of that level, where it is known.
+    """
+    level: Level | None = first
     coarser: Solution | None = None
     failures: list[Solution] = []
     while level is not None:
-        solution = _at_level(solver, level, coarser)
-        verdict = assess(solution, solver.tolerance, solver.wave_modes > 0)
+        solution = on_first or _at_level(solver, level, coarser)
+        on_first = None
+        verdict = assess(solution, tolerance, solver.wave_modes > 0)
         if isinstance(verdict, NoEquilibrium):
             failures.append(solution)
             # Too few modes may have no equilibrium where the rod has one: some more levels are tried.
@@ -238,7 +310,7 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
             # Only now: with few modes a rod may seem unstable that is not.
             relaxed = solver.relax(solution)
             if relaxed is solution or not relaxed.stable:
-                return _coarsened(solver, verdict.resolution)
+                return _Reference(solution, level, verdict.resolution)
             coarser = relaxed
         level = _next_level(level, verdict)
     if coarser is None:
@@ -316,7 +388,8 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     nodes = nodes_for(most_modes) if accuracy.nodes is None else accuracy.nodes
     transport = accuracy.rotation or solver.reference_transport
     discretisation = discretise(solver.scene, modes, nodes, transport)
-    solution = solver.relax(solver.solve(discretisation, None))
+    meant = _meant(solver)
+    solution = solver.relax(solver.solve(discretisation, meant))
     if not solution.converged:
         return solution
     turn = largest_turn(solution)
@@ -331,7 +404,7 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     finer_nodes = max(nodes + FINER_NODES, resolving_nodes)
     # The fixed integrator may leave an error of its own: the reference takes the one that suits the tolerance.
     finer = discretise(solver.scene, finer_modes, finer_nodes, solver.reference_transport)
-    reference = solver.solve(finer, solution)
+    reference = solver.solve(finer, meant or solution)
     if not reference.converged:
         return _unresolved(solution)
     judged = with_estimate(solution, reference)
@@ -340,6 +413,18 @@ def _with_fixed(solver: _SceneSolver) -> Solution:
     if shape_error is not None and shape_error <= LARGEST_SHAPE_ERROR:
         return judged
     return _unresolved(judged)
+
+
+def _meant(solver: _SceneSolver) -> Solution | None:
+    """The equilibrium of a held rod that is meant; None where nothing holds it, or none is found."""
+    if not solver.is_held or solver.signal_modes > REFERENCE_MODES[-1]:
+        return None
+    found = _deciding(solver)
+    if isinstance(found, _Reference):
+        return found.solution
+    # The modes of the user may have an equilibrium all the same, and one to relax to.
+    solver.relaxing_failed = False
+    return None
 
 
 def _corrected(model: Model, start: FloatArray, inputs: FloatArray) -> Solution | None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.writing import scene_tables
 
@@ -26,7 +28,7 @@ class Tuning:
     """A discretisation that meets a tolerance over a set of load cases, or the best found.
 
     Attributes:
-        scene: the scene with its modes, nodes and rotation integrator fixed.
+        scene: the scene with its modes, nodes and rotation integrator fixed, and the ranges that they hold over.
         solutions: of every case on that discretisation, each with its error estimate.
         met: whether every case converged with an estimate within the tolerance.
     """
@@ -54,7 +56,7 @@ def tune(
 
     Args:
         scene: a validated scene; modes and nodes that it fixes are chosen anew.
-        cases: inputs by name, at least one; those not named keep the scene's values.
+        cases: inputs and parameters by name, at least one; those not named keep the scene's values.
         tolerance: wanted error of the tip poses relative to length; the scene's own by default.
         progress: told how many solves are done.
 
@@ -63,7 +65,10 @@ def tune(
     """
     if tolerance is None:
         tolerance = scene.accuracy.tolerance
-    free = unfixed(scene.baked(), tolerance)
+    layout = case_layout(scene)
+    rows = np.array([layout.pack(values) for values in cases])
+    free = unfixed(scene, tolerance)
+    variants = [_variant(free, layout, values) for values in cases]
     solved_cases = 0
     # Each case once by itself and once on the union, which may have to be refined.
     expected = 2 * len(cases)
@@ -76,14 +81,20 @@ def tune(
             progress(solved_cases, max(solved_cases, expected))
         return solution
 
-    alone = [solve_reporting(free, values) for values in cases]
-    chosen, together = common_discretisation(
-        [(free, values) for values in cases],
-        alone,
-        solve_reporting,
-    )
+    alone = [solve_reporting(variant, values) for variant, values in variants]
+    chosen, together = common_discretisation(variants, alone, solve_reporting)
     met = all(_error(solution) <= tolerance for solution in together)
-    return Tuning(fixed(free, chosen), tuple(together), met)
+    tuned = _with_accuracy(fixed(free, chosen), chosen_for=list(layout.ranges(rows)) or None)
+    return Tuning(tuned, tuple(together), met)
+
+
+def _variant(free: scenes.Scene, layout: CaseLayout, values: Values) -> tuple[scenes.Scene, Values]:
+    """The scene with the parameters of a case as constants, and its inputs."""
+    parameters = {name: value for name, value in values.items() if name in layout.parameters.names}
+    inputs = {name: value for name, value in values.items() if name not in parameters}
+    if not parameters:
+        return free.baked(), inputs
+    return layout.parameters.set_in(free, parameters), inputs
 
 
 def common_discretisation(
@@ -143,6 +154,7 @@ def unfixed(scene: scenes.Scene, tolerance: float) -> scenes.Scene:
         modes=None,
         nodes=None,
         rotation=None,
+        chosen_for=None,
     )
 
 

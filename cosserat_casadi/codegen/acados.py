@@ -27,7 +27,6 @@ from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.codegen.stage import check_scalar, written
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
@@ -46,6 +45,7 @@ class AcadosExpressions:
         xdot: their derivatives.
         u: controls: the rates of the inputs, units per second.
         z: algebraic states: the unknowns of the model, shape (model.size,); in motion the algebraic ones of them.
+        p: parameters of the scene, shape (model.parameters.size,); often none.
         f_impl_expr: what the integrator holds at zero: ẋ − u, in motion q̇ − v before it, then the residual.
     """
 
@@ -54,18 +54,28 @@ class AcadosExpressions:
     xdot: ca.SX
     u: ca.SX
     z: ca.SX
+    p: ca.SX
     f_impl_expr: ca.SX
 
-    def assign(self, target: Any) -> None:
-        """Set these attributes of an ``AcadosModel``; costs and constraints are the user's, in x, u and z."""
+    def assign(self, target: Any, *, parameters: str = "p") -> None:
+        """Set these attributes of an ``AcadosModel``; costs and constraints are the user's, in x, u, z and p.
+
+        Args:
+            target: the ``AcadosModel``.
+            parameters: what the parameters of the scene, if it names some, are there: ``p``, a value for each stage, or
+                ``p_global``, one for all of them, which acados can differentiate solutions with.
+        """
         for entry in fields(self):
-            setattr(target, entry.name, getattr(self, entry.name))
+            word = parameters if entry.name == "p" else entry.name
+            if entry.name != "p" or self.p.numel():
+                setattr(target, word, getattr(self, entry.name))
 
 
 def acados_expressions(model: Model, name: str, *, moving: bool = False) -> AcadosExpressions:
     """The model as an implicit DAE in SX.
 
-    Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like.
+    Outputs for a cost in the same symbols are, at rest, ``model.tip[rod](expressions.z, expressions.x)`` and the like;
+    of a scene with parameters ``expressions.p`` is a third argument.
     In motion a model without algebraic unknowns has ``model.tip[rod](expressions.x[: model.size], inputs)`` with the
     last entries of ``expressions.x`` for its inputs.
 
@@ -81,7 +91,7 @@ def acados_expressions(model: Model, name: str, *, moving: bool = False) -> Acad
     """
     _check(model, name, moving)
     dae = _dae(model, moving)
-    return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.value)
+    return AcadosExpressions(name, dae.x, dae.xdot, dae.u, dae.z, dae.p, dae.value)
 
 
 def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[ca.Function]:
@@ -101,7 +111,7 @@ def acados_functions(model: Model, name: str, *, moving: bool = False) -> list[c
         "fun_jac_x_xdot_u": ("fun", "jac_x", "jac_xdot", "jac_u"),
         "jac_x_xdot_u_z": ("jac_x", "jac_xdot", "jac_u", "jac_z"),
     }
-    symbols = [dae.x, dae.xdot, dae.u, dae.z, ca.SX.sym("t"), ca.SX.sym("p", 0)]
+    symbols = [dae.x, dae.xdot, dae.u, dae.z, ca.SX.sym("t"), dae.p]
     words = ["x", "xdot", "u", "z", "t", "p"]
     return [
         written(ca.Function(called, symbols, [blocks[word] for word in outputs], words, list(outputs)), called)
@@ -147,6 +157,7 @@ class _Dae:
         xdot: their derivatives.
         u: controls.
         z: algebraic states.
+        p: parameters.
         value: what is held at zero.
         slopes: its derivatives with x, ẋ, u and z under the names that they have in acados' functions.
     """
@@ -155,6 +166,7 @@ class _Dae:
     xdot: ca.SX
     u: ca.SX
     z: ca.SX
+    p: ca.SX
     value: ca.SX
     slopes: dict[str, ca.SX]
 
@@ -169,16 +181,18 @@ def _dae_at_rest(model: Model) -> _Dae:
     xdot = ca.SX.sym("xdot", count)
     u = ca.SX.sym("u", count)
     z = ca.SX.sym("z", model.size)
-    by_z, _ = model.jacobian(z, x)
+    p = ca.SX.sym("p", model.parameters.size)
+    at = [z, x, p] if model.parameters.size else [z, x]
+    by_z, _ = model.jacobian(*at)
     identity = ca.SX.eye(count)
     slopes = {
-        "jac_x": ca.vertcat(ca.SX(count, count), model.input_jacobian(z, x)),
+        "jac_x": ca.vertcat(ca.SX(count, count), model.input_jacobian(*at)),
         "jac_xdot": ca.vertcat(identity, ca.SX(model.size, count)),
         "jac_u": ca.vertcat(-identity, ca.SX(model.size, count)),
         "jac_z": ca.vertcat(ca.SX(count, model.size), by_z),
     }
-    value = ca.vertcat(xdot - u, ca.cse(model.residual(z, x)))
-    return _Dae(x, xdot, u, z, value, slopes)
+    value = ca.vertcat(xdot - u, ca.cse(model.residual(*at)))
+    return _Dae(x, xdot, u, z, p, value, slopes)
 
 
 def _dae_in_motion(model: Model) -> _Dae:
@@ -191,10 +205,12 @@ def _dae_in_motion(model: Model) -> _Dae:
     xdot = ca.SX.sym("xdot", states)
     u = ca.SX.sym("u", count)
     z = ca.SX.sym("z", held.shape[1])
+    p = ca.SX.sym("p", model.parameters.size)
     position, velocity, inputs = ca.vertsplit(x, [0, size, 2 * size, states])
     position_rate, acceleration, inputs_rate = ca.vertsplit(xdot, [0, size, 2 * size, states])
     steady = ca.DM(count, 1)
-    at = [places @ position + held @ z, places @ velocity, places @ acceleration, inputs, u, steady]
+    given = [inputs, p] if model.parameters.size else [inputs]
+    at = [places @ position + held @ z, places @ velocity, places @ acceleration, *given, u, steady]
     residual = ca.cse(model.inverse_dynamics(*at))
     stiffness, damping, mass, _ = model.dynamics_jacobian(*at)
     by_inputs = ca.jacobian(residual, inputs)
@@ -218,12 +234,11 @@ def _dae_in_motion(model: Model) -> _Dae:
         "jac_u": ca.vertcat(ca.SX(size, count), by_rate, -one_input),
         "jac_z": ca.vertcat(ca.SX(size, z.numel()), stiffness @ held, ca.SX(count, z.numel())),
     }
-    return _Dae(x, xdot, u, z, value, slopes)
+    return _Dae(x, xdot, u, z, p, value, slopes)
 
 
 def _check(model: Model, name: str, moving: bool) -> None:
     library_names(name)
-    refuse_parameters(model.scene)
     check_scalar(model)
     if not model.inputs.size:
         raise ExportError(Problem("inputs", "none is free: there is nothing to control", "name some in the scene"))

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.motion_status import STATUSES, MotionStatus
+from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues
 from cosserat_casadi.codegen.plain import pointer, vector
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -68,11 +69,13 @@ class StepSensitivity:
         by_start: by x and v at the start, shape (2 size, 2 size).
         by_inputs: by the inputs at the start, shape (2 size, inputs).
         by_inputs_rate: by their rates at the start, shape (2 size, inputs).
+        by_parameters: by the parameters, which stay what they are, shape (2 size, parameters).
     """
 
     by_start: FloatArray
     by_inputs: FloatArray
     by_inputs_rate: FloatArray
+    by_parameters: FloatArray
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,7 @@ class LinearMotion:
         mass: by a, shape (size, size), s².
         by_inputs: by the inputs, shape (size, inputs).
         by_inputs_rate: by their rates, shape (size, inputs).
+        by_parameters: by the parameters, shape (size, parameters).
     """
 
     stiffness: FloatArray
@@ -92,6 +96,7 @@ class LinearMotion:
     mass: FloatArray
     by_inputs: FloatArray
     by_inputs_rate: FloatArray
+    by_parameters: FloatArray
 
 
 @dataclass(frozen=True)
@@ -122,6 +127,16 @@ class StepMemory:
     workspace: Any
 
 
+@dataclass(frozen=True)
+class _Given:
+    """What a step is given: inputs at its start, their rates and accelerations, parameters."""
+
+    inputs: npt.ArrayLike
+    inputs_rate: npt.ArrayLike | None
+    inputs_acceleration: npt.ArrayLike | None
+    parameters: ParameterValues
+
+
 class _Options(ctypes.Structure):
     _fields_ = (
         ("tolerance", ctypes.c_double),
@@ -145,7 +160,8 @@ class _Info(ctypes.Structure):
 class CompiledMotion(ABC):
     """What a folder that was exported with ``dynamics=True`` offers beyond statics.
 
-    Every member but these four raises an AttributeError where the folder was exported without.
+    Parameters are given by name or stacked; the scene's own are the default. They may change from one step to the next.
+    Every member but these five raises an AttributeError where the folder was exported without.
     """
 
     @property
@@ -158,6 +174,11 @@ class CompiledMotion(ABC):
     def defaults(self) -> FloatArray:
         """The scene's own inputs, stacked."""
 
+    @property
+    @abstractmethod
+    def parameters(self) -> ListedParameters:
+        """Names, units and default values of the parameters; often none."""
+
     @abstractmethod
     def _function(self, word: str) -> Any: ...
 
@@ -168,17 +189,25 @@ class CompiledMotion(ABC):
         """What steps keep from one to the next, and work in: one for each motion, new for a new one."""
         return StepMemory(_room(self._motion_function("step_memory_size")()), self._workspace())
 
-    def rest(self, inputs: npt.ArrayLike | None = None, x: npt.ArrayLike | None = None) -> StepState | None:
+    def rest(
+        self,
+        inputs: npt.ArrayLike | None = None,
+        x: npt.ArrayLike | None = None,
+        *,
+        parameters: ParameterValues = None,
+    ) -> StepState | None:
         """A state at rest; None where supports, joints or cables are not closed there.
 
         Args:
             inputs: stacked inputs; the scene's own by default.
             x: unknowns, such as of an equilibrium; the unloaded scene by default.
+            parameters: by name or stacked.
         """
         given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         start = vector(np.zeros(self.size) if x is None else x, self.size, "x")
         state = np.zeros(3 * self.size)
-        status = self._motion_function("rest")(pointer(given), pointer(start), pointer(state), self._workspace())
+        p = self.parameters.passed(parameters)
+        status = self._motion_function("rest")(pointer(given), *p, pointer(start), pointer(state), self._workspace())
         return self._unpacked(state) if STATUSES[status] is MotionStatus.DONE else None
 
     def step(
@@ -189,6 +218,7 @@ class CompiledMotion(ABC):
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
+        parameters: ParameterValues = None,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> CompiledStep:
@@ -201,11 +231,12 @@ class CompiledMotion(ABC):
             inputs_rate: at the start, shape (inputs,), per s; none by default.
             inputs_acceleration: in the step, shape (inputs,), per s²; none by default. A base or a length whose rate
                 changes from step to step needs it, for its inertia forces.
+            parameters: by name or stacked.
             memory: of the steps before, :meth:`step_memory`; it is written to.
             options: when Newton's method is done.
         """
-        path = (inputs, inputs_rate, inputs_acceleration)
-        taken, _ = self._take("step", state, dt, path, memory, options, [])
+        given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
+        taken, _ = self._take("step", state, dt, given, memory, options, [])
         return taken
 
     def step_sensitivity(
@@ -216,6 +247,7 @@ class CompiledMotion(ABC):
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
         *,
+        parameters: ParameterValues = None,
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
@@ -223,13 +255,24 @@ class CompiledMotion(ABC):
 
         They are those by the inputs and their rates at the start, with the acceleration held.
         """
-        size, count = 2 * self.size, len(self.defaults)
-        results = [np.zeros((columns, size)) for columns in (size, count, count)]
-        path = (inputs, inputs_rate, inputs_acceleration)
-        taken, status = self._take("step_sensitivity", state, dt, path, memory, options, results)
+        size = 2 * self.size
+        by_start = np.zeros((size, size))
+        by_inputs, by_rate, by_parameters = self._columns(size)
+        results = [by_start, *self._ordered(by_inputs, by_rate, by_parameters)]
+        given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
+        taken, status = self._take("step_sensitivity", state, dt, given, memory, options, results)
         if status is not MotionStatus.DONE:
             return taken, None
-        return taken, StepSensitivity(*(result.T for result in results))
+        return taken, StepSensitivity(by_start.T, by_inputs.T, by_rate.T, by_parameters.T)
+
+    def _columns(self, size: int) -> list[FloatArray]:
+        """Room for columns of so many entries by inputs, by their rates and by parameters."""
+        count = len(self.defaults)
+        return [np.zeros((columns, size)) for columns in (count, count, self.parameters.size)]
+
+    def _ordered(self, by_inputs: FloatArray, by_rate: FloatArray, by_parameters: FloatArray) -> list[FloatArray]:
+        """The same as functions in C take them; a scene without parameters has no derivative with them."""
+        return [by_inputs, by_parameters, by_rate] if self.parameters.size else [by_inputs, by_rate]
 
     def inverse_dynamics(
         self,
@@ -237,48 +280,58 @@ class CompiledMotion(ABC):
         inputs: npt.ArrayLike,
         inputs_rate: npt.ArrayLike | None = None,
         inputs_acceleration: npt.ArrayLike | None = None,
+        *,
+        parameters: ParameterValues = None,
     ) -> FloatArray:
         """Residual of the equations of motion, shape (size,): generalised forces that a motion asks for."""
         residual = np.zeros(self.size)
-        rates = [self._given(value) for value in (inputs, inputs_rate, inputs_acceleration)]
+        p = self.parameters.passed(parameters)
+        given = [self._given(inputs), *p, self._given(inputs_rate), self._given(inputs_acceleration)]
         # A slice of a table is no vector in memory: C reads what lies side by side.
         named = {"x": state.x, "v": state.v, "a": state.a}
         arguments = [pointer(vector(value, self.size, name)) for name, value in named.items()]
-        self._motion_function("inverse_dynamics")(*arguments, *rates, pointer(residual), self._workspace())
+        self._motion_function("inverse_dynamics")(*arguments, *given, pointer(residual), self._workspace())
         return residual
 
     def linearise(
-        self, state: StepState, inputs: npt.ArrayLike, inputs_rate: npt.ArrayLike | None = None
+        self,
+        state: StepState,
+        inputs: npt.ArrayLike,
+        inputs_rate: npt.ArrayLike | None = None,
+        *,
+        parameters: ParameterValues = None,
     ) -> LinearMotion:
         """Derivatives of the equations of motion at a state."""
-        size, count = self.size, len(self.defaults)
-        results = [np.zeros((columns, size)) for columns in (size, size, size, count, count)]
-        arguments = [pointer(self._packed(state)), self._given(inputs), self._given(inputs_rate)]
+        stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
+        by_inputs, by_rate, by_parameters = self._columns(self.size)
+        results = [stiffness, damping, mass, *self._ordered(by_inputs, by_rate, by_parameters)]
+        p = self.parameters.passed(parameters)
+        arguments = [pointer(self._packed(state)), self._given(inputs), *p, self._given(inputs_rate)]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
-        return LinearMotion(*(result.T for result in results))
+        return LinearMotion(stiffness.T, damping.T, mass.T, by_inputs.T, by_rate.T, by_parameters.T)
 
     def _take(
         self,
         word: str,
         state: StepState,
         dt: float,
-        path: tuple[npt.ArrayLike, npt.ArrayLike | None, npt.ArrayLike | None],
+        given: _Given,
         memory: StepMemory | None,
         options: StepOptions | None,
         results: Sequence[FloatArray],
     ) -> tuple[CompiledStep, MotionStatus]:
-        """A step by one of the two functions in C, and what it returned; a path is inputs, rates, accelerations."""
-        inputs, inputs_rate, inputs_acceleration = path
+        """A step by one of the two functions in C, and what it returned."""
         chosen = options or StepOptions()
         # It must outlive the call: the struct alone does not keep it.
-        acceleration = self._given(inputs_acceleration)
+        acceleration = self._given(given.inputs_acceleration)
         budget = _Options(chosen.tolerance, chosen.iterations, chosen.parts, acceleration)
         packed = self._packed(state)
         info = _Info()
         room = memory or self.step_memory()
         status = self._motion_function(word)(
-            pointer(self._vector(inputs)),
-            self._given(inputs_rate),
+            pointer(self._vector(given.inputs)),
+            *self.parameters.passed(given.parameters),
+            self._given(given.inputs_rate),
             ctypes.c_double(dt),
             pointer(packed),
             room.kept,

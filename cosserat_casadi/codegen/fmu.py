@@ -22,10 +22,10 @@ from cosserat_casadi.codegen.library import VERBATIM, render, resource
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import Names, model_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene import Scene
 
 SUFFIX = ".fmu"
 
@@ -114,6 +114,18 @@ def write_fmu(
     }
     write_atomically(Path(path), _archive(files))
     return Path(path)
+
+
+def refuse_parameters(scene: Scene) -> None:
+    """Refuse a scene that names parameters.
+
+    Raises:
+        ExportError: with the first of them.
+    """
+    if scene.parameters:
+        problem = f"{scene.parameters[0]!r} is a parameter, and an FMU has inputs alone"
+        remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
+        raise ExportError(Problem("parameters[0]", problem, remedy))
 
 
 def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float) -> dict[str, str]:

@@ -48,6 +48,8 @@ def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> lis
         suffixes = column_suffixes(*entry.shape)
         for suffix, start in zip(suffixes, entry.default.ravel(order="F").tolist(), strict=True):
             described = f"Entry of {entry.name}{axes}."
+            if entry.declared.geometry:
+                described += " Moves linearly over a communication step; jumps of its speed exert no inertia forces."
             listed.append(Variable(f"{entry.name}{suffix}", entry.unit, described, "input", start))
     listed += [Variable(output.name, output.unit, output.description, "output") for output in outputs]
     described = "Longest step of the integrator: every communication step is divided into equal ones."

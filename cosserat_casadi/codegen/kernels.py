@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import QUERIES, Names
+from cosserat_casadi.codegen.parameters import parameter_rate
 from cosserat_casadi.codegen.parts import in_one, sharing
 from cosserat_casadi.codegen.routines import improved
 from cosserat_casadi.errors import WriteError
@@ -36,9 +37,10 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
     """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
     wanted = functions_in_c(model, names)
     of_motion = [] if motion is None else motion.kernels
+    of_parameters = _parameter_kernels(model, names, parts)
     if parts is None:
-        return [*(kernel(model, entry.function, entry.kernel) for entry in wanted), *of_motion]
-    every = [*parts.kernels, *of_motion]
+        return [*(kernel(model, entry.function, entry.kernel) for entry in wanted), *of_parameters, *of_motion]
+    every = [*parts.kernels, *of_parameters, *of_motion]
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]
@@ -50,6 +52,17 @@ def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionI
         else:
             every += sharing([entry.function for entry in entries], plain, names.kernel(f"{kind}_of_each"))
     return every
+
+
+def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> list[ca.Function]:
+    """What the solver needs for parameters; nothing where there are none."""
+    if not model.parameters.size:
+        return []
+    name = names.kernel("parameter_rate")
+    plain = kernel(model, parameter_rate(model, name), name)
+    if parts is None or not plain.is_a("SXFunction"):
+        return [plain]
+    return [in_one(parameter_rate(model, name), parts.blocks.owners, name)]
 
 
 def kernel(model: Model, function: ca.Function, name: str) -> ca.Function:

@@ -22,7 +22,7 @@ from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.stage import bare_second, differentiated, jacobian_of, poses_of, written
+from cosserat_casadi.codegen.stage import bare_second, differentiated, exact_second, jacobian_of, poses_of, written
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.motion.stage import MotionStage
 
@@ -32,9 +32,9 @@ class CompiledMotionStage:
     """What a solver evaluates of a stage in motion, in C.
 
     Attributes:
-        equations: (state, unknowns, inputs, inputs_rate) ↦ residual, that of :attr:`MotionStage.equations`.
-        poses: (state, inputs) ↦ for every rod and body ``tip_…`` or ``body_…``, shape (7,): position, m, and
-            quaternion w x y z.
+        equations: with the arguments and the residual of :attr:`MotionStage.equations`.
+        poses: (state, inputs), with parameters (state, inputs, p), ↦ for every rod and body ``tip_…`` or ``body_…``,
+            shape (7,): position, m, and quaternion w x y z.
     """
 
     equations: ca.Function
@@ -85,46 +85,50 @@ def equations_functions(stage: MotionStage, name: str, curvature: bool) -> list[
     plain = stage.equations_by(inverse_dynamics, name)
     slopes = _equations_jacobian(stage, plain)
     adjoint = plain.reverse(1)
-    second = adjoint.jacobian() if curvature else bare_second(plain, slopes, adjoint)
+    make_second = exact_second if curvature else bare_second
+    second = make_second(plain, slopes, adjoint)
     return [plain, slopes, adjoint, second]
 
 
 def poses_functions(stage: MotionStage, name: str, curvature: bool) -> list[ca.Function]:
     """As :func:`equations_functions`, of the poses of tips and bodies."""
     model = stage.model
-    state, _, inputs, _ = stage.symbols
+    state, _, *given, _ = stage.symbols
     x = stage.x(state)
     poses = poses_of(model)
     results = []
     for pose in poses.values():
-        position, quaternion, _ = pose(x, inputs)
+        position, quaternion, _ = pose(x, *given)
         results.append(ca.vertcat(position, quaternion))
-    whole = ca.Function(name, [state, inputs], results, ["state", "inputs"], [*poses])
+    arguments = [state, *given]
+    of_motion = ("unknowns", "inputs_rate")
+    words = [word for word in stage.sizes if word not in of_motion]
+    whole = ca.Function(name, arguments, results, words, [*poses])
     plain = written(whole, name)
     blocks = []
     for slope in [*model.tip_jacobian.values(), *model.body_jacobian.values()]:
-        by_x, by_inputs = slope(x, inputs)
+        by_x, *by_given = slope(x, *given)
         by_position = by_x @ stage.places
         # No pose reads a velocity.
-        blocks += [ca.horzcat(by_position, ca.DM(*by_position.shape)), by_inputs]
-    slopes = written(jacobian_of(plain, [state, inputs], blocks), f"jac_{name}")
+        blocks += [ca.horzcat(by_position, ca.DM(*by_position.shape)), *by_given]
+    slopes = written(jacobian_of(plain, arguments, blocks), f"jac_{name}")
     return differentiated(plain, slopes, curvature)
 
 
 def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
-    """∂ residual / ∂ (state, unknowns, inputs, rates) from K, C and M at every instant."""
+    """∂ residual / ∂ (state, unknowns, inputs, p, rates) from K, C and M at every instant."""
     method = stage.method
     tangents = _tangents(stage, f"{plain.name()}_tangents")
     input_slopes = _input_slopes(stage, f"{plain.name()}_input_slopes")
     arguments = stage.symbols
-    state, unknowns, inputs, rate = arguments
+    state, unknowns, inputs, *p, rate = arguments
     moving = stage.instants(state, unknowns)
     rows = []
     for i in range(method.stages):
         now = stage.inputs_at(i, inputs, rate)
-        at = [moving.x[i], moving.v[i], moving.a[i], now, rate]
+        at = [moving.x[i], moving.v[i], moving.a[i], now, *p, rate]
         stiffness, damping, mass = tangents.call(at, False, True)
-        by_inputs, by_rate = input_slopes.call(at, False, True)
+        by_inputs, *by_parameters, by_rate = input_slopes.call(at, False, True)
         damping = damping / stage.duration
         mass = mass / stage.duration**2
         by_state = ca.horzcat(stiffness @ stage.places, (float(method.nodes[i]) * stiffness + damping) @ stage.places)
@@ -136,13 +140,13 @@ def _equations_jacobian(stage: MotionStage, plain: ca.Function) -> ca.Function:
                 block += mass
             by_unknowns.append(block)
         by_rate = by_rate + float(method.nodes[i]) * stage.duration * by_inputs
-        rows.append([by_state, ca.horzcat(*by_unknowns), by_inputs, by_rate])
+        rows.append([by_state, ca.horzcat(*by_unknowns), by_inputs, *by_parameters, by_rate])
     blocks = [ca.vertcat(*[row[k] for row in rows]) for k in range(len(arguments))]
     return jacobian_of(plain, arguments, blocks)
 
 
 def _tangents(stage: MotionStage, name: str) -> ca.Function:
-    """(x, v, a, inputs, inputs_rate) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a of inverse dynamics at an instant."""
+    """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a of inverse dynamics at an instant."""
     jacobian = stage.model.dynamics_jacobian
     arguments = jacobian.mx_in()
     steady = ca.DM(stage.model.inputs.size, 1)
@@ -152,7 +156,7 @@ def _tangents(stage: MotionStage, name: str) -> ca.Function:
 
 
 def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
-    """(x, v, a, inputs, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂inputs_rate of inverse dynamics at an instant."""
+    """(x, v, a, inputs, p, inputs_rate) ↦ ∂F/∂inputs, ∂F/∂p, ∂F/∂inputs_rate of inverse dynamics at an instant."""
     plain = stage.model.inverse_dynamics
     scalars = [ca.SX.sym(word, plain.sparsity_in(i)) for i, word in enumerate(plain.name_in()[:-1])]
     # Of scalars only what reads an input is differentiated, of matrices all.
@@ -163,11 +167,13 @@ def _input_slopes(stage: MotionStage, name: str) -> ca.Function:
 
 
 def _by_inputs(stage: MotionStage, arguments: Sequence[Matrix], name: str) -> ca.Function:
-    """The derivatives with inputs and their rates in given symbols."""
+    """The derivatives with inputs, parameters and the rates of inputs in given symbols."""
     plain = stage.model.inverse_dynamics
     residual = plain(*arguments, ca.DM(stage.model.inputs.size, 1))
-    slopes = [ca.jacobian(residual, argument) for argument in arguments[-2:]]
-    return ca.Function(name, [*arguments], ca.cse(slopes), plain.name_in()[:-1], ["by_inputs", "by_rate"])
+    words = plain.name_in()[:-1]
+    first = words.index("inputs")
+    slopes = [ca.jacobian(residual, argument) for argument in arguments[first:]]
+    return ca.Function(name, [*arguments], ca.cse(slopes), words, [f"by_{word}" for word in words[first:]])
 
 
 def _columns(stage: MotionStage, differential: float, algebraic: float, stiffness: Matrix) -> Matrix:

@@ -28,6 +28,8 @@ WITHOUT: Words = {
     "inner": "",
     "pose_adapters": "",
     "solved_tangent": "",
+    "rate_of_parameters": "",
+    "add_rate_of_parameters": "",
     "parameter_header": "",
     "parameter_config": "",
     "parameter_members": "",
@@ -74,6 +76,8 @@ def parameter_words(render: Render, basics: Words, model: Model, names: Names, *
         "solver_inputs": f"({names.macro}_INPUTS + {names.macro}_PARAMETERS)",
         "unloaded_tangent": "",
         "solved_tangent": render("solved_tangent.c.in", words),
+        "rate_of_parameters": render("rate_of_parameters.c.in", words),
+        "add_rate_of_parameters": render("add_rate_of_parameters.c.in", words),
         "pose_adapters": "".join(rendered),
         "pose_derivatives": _listed_lines(adapters),
         "parameter_header": render("parameters.h.in", words),
@@ -136,5 +140,5 @@ def _described(entries: list[dict[str, Any]], names: Names) -> Words:
 def _workspace_reals(basics: Words, dynamics: bool) -> int:
     """Numbers that the workspace has for parameters."""
     room = int(basics["input_room"])
-    statics = 2 * room + 7 * int(basics["poses"]) * room
+    statics = 2 * room + int(basics["unknowns"]) + 7 * int(basics["poses"]) * room
     return statics + (2 * room + 4 * int(basics["unknowns"]) * room if dynamics else 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -53,11 +54,19 @@ class ListedParameters(StackedLayout[ListedParameter]):
         Raises:
             SceneError: a name is unknown, or there are too few or too many numbers.
         """
-        if values is None or isinstance(values, Mapping):
+        if values is None:
+            return self._scene_values
+        if isinstance(values, Mapping):
             return self.pack(values)
         # Numbers that are not finite are the solver's to judge, as those of inputs are.
-        self.split(values)
-        return np.ascontiguousarray(values, dtype=np.float64).ravel()
+        vector = np.ascontiguousarray(values, dtype=np.float64).ravel()
+        if vector.size != self.size:
+            self.split(vector)
+        return vector
+
+    @cached_property
+    def _scene_values(self) -> FloatArray:
+        return self.pack()
 
     def passed(self, values: ParameterValues = None) -> list[Any]:
         """The argument of functions in C; none where the scene has no parameters.

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import casadi as ca
 
-from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS, FunctionSpec
-from cosserat_casadi.scene import Scene
 
 
 def given_size(model: Model) -> int:
@@ -30,8 +28,6 @@ def solver_function(model: Model, spec: FunctionSpec) -> ca.Function:
     function = spec.function_in_c(model)
     if not model.parameters.size:
         return function
-    if spec.name == "path_rate":
-        return _path_rate(model)
     return with_parameters_behind_inputs(function)
 
 
@@ -61,28 +57,21 @@ def input_jacobian(model: Model) -> ca.Function:
     return with_parameters_behind_inputs(both)
 
 
-def refuse_parameters(scene: Scene) -> None:
-    """Refuse to write what takes unknowns and inputs alone of a scene that names parameters.
+def parameter_rate(model: Model, name: str) -> ca.Function:
+    """(x, inputs, load_factor, parameters_rate) ↦ what moving parameters add to the rate of the residual at fixed x.
 
-    Raises:
-        ExportError: with the first of them.
+    A function of its own: to inputs alone the residual answers by far fewer instructions.
+
+    Args:
+        model: whose function it is; it has parameters.
+        name: what it is called.
     """
-    if scene.parameters:
-        problem = f"{scene.parameters[0]!r} is a parameter, and this takes unknowns and inputs alone"
-        remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
-        raise ExportError(Problem("parameters[0]", problem, remedy))
-
-
-def _path_rate(model: Model) -> ca.Function:
-    """(x, inputs, load_factor, inputs_rate, load_factor_rate) ↦ rate of the residual at fixed x."""
     residual = with_parameters_behind_inputs(model.path_residual)
     x, inputs, load_factor = residual.mx_in()
-    speed = ca.MX.sym("inputs_rate", inputs.shape[0])
-    load_speed = ca.MX.sym("load_factor_rate")
-    # One symbol for all that moves, so that one derivative in one direction is taken.
-    joined = ca.MX.sym("inputs_and_load_factor", inputs.shape[0] + 1)
-    moving = residual.call([x, joined[:-1], joined[-1]], True, False)[0]
-    rate = ca.jtimes(moving, joined, ca.vertcat(speed, load_speed))
-    at_point = ca.substitute(rate, joined, ca.vertcat(inputs, load_factor))
-    words = [*residual.name_in(), "inputs_rate", "load_factor_rate"]
-    return ca.Function("path_rate", [x, inputs, load_factor, speed, load_speed], [at_point], words, ["residual_rate"])
+    count = model.inputs.size
+    speed = ca.MX.sym("parameters_rate", model.parameters.size)
+    p = ca.MX.sym("p", model.parameters.size)
+    moving = residual.call([x, ca.vertcat(inputs[:count], p), load_factor], True, False)[0]
+    at_point = ca.substitute(ca.jtimes(moving, p, speed), p, inputs[count:])
+    words = [*residual.name_in(), "parameters_rate"]
+    return ca.Function(name, [x, inputs, load_factor, speed], [ca.densify(at_point)], words, ["residual_rate"])

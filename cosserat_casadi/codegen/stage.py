@@ -2,12 +2,16 @@
 
 An optimiser needs whole Jacobians. A library that knows only directional derivatives gives them a column at a time;
 here the Jacobian is one function in C, and so is the second derivative. CasADi finds them by their names.
+
+The second derivative of Σ λ_i g_i is symmetric and has many columns, which differ in one direction alone. Its code is
+that of one column, the derivative of the adjoint in a direction, in a loop over the columns; what a constant derivative
+leaves empty is not computed, and of two blocks that mirror each other one is.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
@@ -16,7 +20,6 @@ from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_comp
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names
-from cosserat_casadi.codegen.parameters import refuse_parameters
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
@@ -26,34 +29,44 @@ def compiled_stage(
     model: Model,
     name: str = "stage",
     *,
-    curvature: bool = False,
+    curvature: bool = True,
+    sections: Mapping[str, Sequence[float]] | None = None,
+    actuators: Sequence[str] = (),
     compiler: str | None = None,
     progress: Progress | None = None,
 ) -> ca.Function:
-    """(x, inputs) ↦ (residual, pose of every tip and body), compiled once, with compiled derivatives.
+    """(x, inputs) ↦ (residual, pose of every tip and body, …), compiled once, with compiled derivatives.
+
+    Of a scene with parameters (x, inputs, p): fix them with ``model.at(…)`` where they are none of the problem's.
 
     Args:
         model: the model.
         name: what the function is called, a C identifier.
-        curvature: whether second derivatives are exact. If not, those of residual and poses count as zero, so that any
-            of CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and
-            good where the deviations are small. Exact ones have several times as many instructions: minutes of gcc.
+        curvature: whether second derivatives are exact. If not, those of all outputs count as zero, so that any of
+            CasADi's solvers sees the Gauss–Newton Hessian of a cost made of squares: positive semidefinite, and good
+            where the deviations are small and no pose is a constraint. A path through poses that are constraints needs
+            exact ones: without them a solver may take it for infeasible.
+        sections: abscissae X in [0, 1] of further sections, rod by rod.
+        actuators: actuators whose effort and conjugate are wanted, for a tendon its tension and its length.
         compiler: C compiler; by default that of the environment variable CC, then cc, gcc, clang.
         progress: told what is compiled, how many files are, and of how many; not where nothing is left to do.
 
     Returns:
         outputs ``residual``, shape (size,), then for every rod and body ``tip_…`` or ``body_…``, shape (7,): position,
-        m, and quaternion w x y z.
+        m, and quaternion w x y z; for every rod of ``sections`` ``sections_…`` with such a column for each section;
+        for every one of ``actuators`` its effort and its conjugate, ``tension_…``, N, and ``length_…``, m.
 
     Raises:
-        ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails.
+        ExportError: the name is no C identifier, the model has no scalar form, there is no compiler, or it fails; or
+            there is no such rod, section or actuator.
     """
     library_names(name)
-    refuse_parameters(model.scene)
     check_scalar(model)
+    wanted = dict(sections or {})
+    _check_wanted(model, wanted, actuators)
     found = find_compiler(compiler)
     texts: dict[str, str] = {}
-    for function in stage_functions(model, name, curvature):
+    for function in stage_functions(model, name, curvature, wanted, actuators):
         texts |= sources([function], function.name(), "long long int")
     return ca.external(name, os.fspath(compiled_texts(name, texts, found, progress=progress)))
 
@@ -70,16 +83,52 @@ def check_scalar(model: Model) -> None:
         raise ExportError(*[Problem(f"rods.{rod}", problem, "leave accuracy.rotation out") for rod in literal])
 
 
-def stage_functions(model: Model, name: str, curvature: bool) -> list[ca.Function]:
+def _check_wanted(model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]) -> None:
+    """Refuse outputs that the model does not have.
+
+    Raises:
+        ExportError: there is no such rod, section or actuator.
+    """
+    problems = []
+    for rod, abscissae in sections.items():
+        if rod not in model.discrete.rods:
+            problems.append(Problem(f"sections.{rod}", "there is no such rod", _one_of(model.discrete.rods)))
+        if not len(abscissae) or not all(0.0 <= X <= 1.0 for X in abscissae):
+            problem = "abscissae go from 0 at the base to 1 at the tip, one at least"
+            problems.append(Problem(f"sections.{rod}", problem, "give numbers in [0, 1]"))
+    unknown = [actuator for actuator in actuators if actuator not in model.actuator]
+    remedy = _one_of(model.actuator)
+    problems += [Problem(f"actuators.{actuator}", "there is no such actuator", remedy) for actuator in unknown]
+    if problems:
+        raise ExportError(*problems)
+
+
+def _one_of(names: Mapping[str, object]) -> str:
+    """What to do about a name that is not there."""
+    if not names:
+        return "leave it out, the scene has none"
+    return f"take one of {', '.join(names)}"
+
+
+def stage_functions(
+    model: Model,
+    name: str,
+    curvature: bool,
+    sections: Mapping[str, Sequence[float]] | None = None,
+    actuators: Sequence[str] = (),
+) -> list[ca.Function]:
     """The function, its Jacobian, its adjoint and the adjoint's Jacobian, named as ``casadi.external`` looks for them.
 
     Args:
         model: the model.
         name: what the function is called.
         curvature: whether the last one is exact.
+        sections: abscissae of further sections, rod by rod.
+        actuators: actuators whose effort and conjugate are wanted.
     """
-    plain = written(_stage(model, name), name)
-    slopes = written(_slopes(model, plain), f"jac_{name}")
+    further = _further_outputs(model, sections or {}, actuators)
+    plain = written(_stage(model, name, further), name)
+    slopes = written(_slopes(model, plain, further), f"jac_{name}")
     return differentiated(plain, slopes, curvature)
 
 
@@ -91,9 +140,12 @@ def differentiated(plain: ca.Function, slopes: ca.Function, curvature: bool) -> 
         slopes: its Jacobian, as CasADi takes it.
         curvature: whether the Jacobian of the adjoint is exact.
     """
-    adjoint = plain.reverse(1)
-    second = adjoint.jacobian() if curvature else bare_second(plain, slopes, adjoint)
-    return [plain, slopes, written(adjoint, adjoint.name()), written(second, f"jac_{adjoint.name()}")]
+    reverse = plain.reverse(1)
+    adjoint = written(reverse, reverse.name())
+    if curvature:
+        return [plain, slopes, adjoint, exact_second(plain, slopes, adjoint)]
+    bare = bare_second(plain, slopes, adjoint)
+    return [plain, slopes, adjoint, written(bare, bare.name())]
 
 
 def written(function: ca.Function, name: str) -> ca.Function:
@@ -114,35 +166,137 @@ def poses_of(model: Model) -> dict[str, ca.Function]:
     return poses | {f"body_{body}": pose for body, pose in model.body.items()}
 
 
-def _stage(model: Model, name: str) -> ca.Function:
-    x, inputs = model.residual.mx_in()
+def _further_outputs(
+    model: Model, sections: Mapping[str, Sequence[float]], actuators: Sequence[str]
+) -> dict[str, Matrix]:
+    """Poses of sections, efforts and conjugates of actuators by name, in the symbols of the residual."""
+    arguments = model.residual.mx_in()
+    further: dict[str, Matrix] = {}
+    for rod, abscissae in sections.items():
+        columns = [ca.vertcat(*model.shape[rod](*arguments, X)) for X in abscissae]
+        further[f"sections_{rod}"] = ca.horzcat(*columns)
+    for actuator in actuators:
+        function = model.actuator[actuator]
+        effort, conjugate, _ = function(*arguments)
+        effort_name, conjugate_name, _ = function.name_out()
+        further[f"{effort_name}_{actuator}"] = effort
+        further[f"{conjugate_name}_{actuator}"] = conjugate
+    return further
+
+
+def _stage(model: Model, name: str, further: Mapping[str, Matrix]) -> ca.Function:
+    arguments = model.residual.mx_in()
     poses = poses_of(model)
-    results = [model.residual(x, inputs)]
+    results = [model.residual(*arguments)]
     for pose in poses.values():
-        position, quaternion, _ = pose(x, inputs)
+        position, quaternion, _ = pose(*arguments)
         results.append(ca.vertcat(position, quaternion))
-    return ca.Function(name, [x, inputs], results, ["x", "inputs"], ["residual", *poses])
+    results += further.values()
+    return ca.Function(name, arguments, results, model.residual.name_in(), ["residual", *poses, *further])
 
 
-def _slopes(model: Model, plain: ca.Function) -> ca.Function:
+def _slopes(model: Model, plain: ca.Function, further: Mapping[str, Matrix]) -> ca.Function:
     """∂ output / ∂ input, output by output, with the model's own Jacobians."""
-    x, inputs = model.residual.mx_in()
+    arguments = model.residual.mx_in()
     poses = [*model.tip_jacobian.values(), *model.body_jacobian.values()]
-    blocks = [model.jacobian(x, inputs)[0], model.input_jacobian(x, inputs)]
+    blocks = [model.jacobian(*arguments)[0], model.input_jacobian(*arguments)]
+    if model.parameters.size:
+        blocks.append(model.parameter_jacobian(*arguments))
     for pose in poses:
-        blocks += pose(x, inputs)
-    return jacobian_of(plain, [x, inputs], blocks)
+        blocks += pose(*arguments)
+    for output in further.values():
+        blocks += [ca.jacobian(output, argument) for argument in arguments]
+    return jacobian_of(plain, arguments, blocks)
 
 
 def bare_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
-    """Jacobian of the adjoint with its multipliers; with x and inputs it is left empty."""
+    """Jacobian of the adjoint with its multipliers; with the arguments of the function it is left empty."""
+    sizes = [plain.numel_in(i) for i in range(plain.n_in())]
+    hessian: list[list[Matrix]] = [[ca.MX(rows, columns) for columns in sizes] for rows in sizes]
+    return _second(plain, slopes, adjoint, adjoint.mx_in(), hessian)
+
+
+def exact_second(plain: ca.Function, slopes: ca.Function, adjoint: ca.Function) -> ca.Function:
+    """Jacobian of the adjoint: with the arguments of the function column by column, in a loop."""
     symbols = adjoint.mx_in()
+    arguments = range(plain.n_in())
+    sizes = [plain.numel_in(i) for i in arguments]
+    hessian: list[list[Matrix]] = [[ca.MX(rows, columns) for columns in sizes] for rows in sizes]
+    known = set[int]()
+    for j in arguments:
+        missing = [i for i in arguments if i not in known]
+        if not any(adjoint.jac_sparsity(i, j).nnz() for i in missing):
+            # What there is mirrors blocks that are known.
+            continue
+        blocks = _by_directions(adjoint, symbols, j)
+        for i in missing:
+            hessian[i][j] = blocks[i]
+            hessian[j][i] = blocks[i].T
+        known.add(j)
+    return _second(plain, slopes, adjoint, symbols, hessian)
+
+
+def _second(
+    plain: ca.Function,
+    slopes: ca.Function,
+    adjoint: ca.Function,
+    symbols: Sequence[Matrix],
+    hessian: Sequence[Sequence[Matrix]],
+) -> ca.Function:
+    """Jacobian of the adjoint.
+
+    Args:
+        plain: the function.
+        slopes: its Jacobian, of which that of the adjoint with its multipliers is made.
+        adjoint: the adjoint.
+        symbols: its arguments.
+        hessian: its derivatives with the arguments of the function, block by block.
+    """
+    count = plain.n_in()
     blocks = slopes.call(symbols[: slopes.n_in()])
-    rows = []
-    for i in range(plain.n_in()):
-        rows += [ca.MX(plain.size1_in(i), symbol.numel()) for symbol in symbols[: slopes.n_in()]]
-        rows += [block.T for block in blocks[i :: plain.n_in()]]
+    rows: list[Matrix] = []
+    for i in range(count):
+        rows += hessian[i]
+        # The adjoint does not read the outputs of the function, which are arguments of it all the same.
+        rows += [ca.MX(plain.numel_in(i), symbol.numel()) for symbol in symbols[count : slopes.n_in()]]
+        rows += [block.T for block in blocks[i::count]]
     return jacobian_of(adjoint, symbols, rows)
+
+
+def _by_directions(adjoint: ca.Function, symbols: Sequence[Matrix], j: int) -> list[Matrix]:
+    """∂ adjoint / ∂ argument j, output by output, in symbols of the arguments."""
+    along = _along(adjoint, j)
+    columns = _columns_with_entries(adjoint, j)
+    directions = ca.DM.eye(symbols[j].numel())[:, columns]
+    reused = [True] * len(symbols)
+    stacked = [False] * adjoint.n_out()
+    loop = along.map(len(columns), [*reused, False], stacked)
+    results = loop.call([*symbols, ca.densify(directions)])
+    if len(columns) == symbols[j].numel():
+        return list(results)
+    return [result @ directions.T for result in results]
+
+
+def _along(adjoint: ca.Function, j: int) -> ca.Function:
+    """(arguments of the adjoint, direction in argument j) ↦ derivative of the adjoint in that direction."""
+    forward = adjoint.forward(1)
+    symbols = adjoint.mx_in()
+    direction = ca.MX.sym("direction", symbols[j].numel())
+    # Outputs are arguments without an entry; other directions are zero and leave no instruction.
+    outputs = [ca.MX(*adjoint.size_out(i)) for i in range(adjoint.n_out())]
+    directions: list[Matrix] = [ca.MX(*symbol.shape) for symbol in symbols]
+    directions[j] = direction
+    results = forward.call([*symbols, *outputs, *directions])
+    name = f"{adjoint.name()}_along_{adjoint.name_in(j)}"
+    whole = ca.Function(name, [*symbols, direction], results, [*adjoint.name_in(), "direction"], adjoint.name_out())
+    return written(whole, name)
+
+
+def _columns_with_entries(adjoint: ca.Function, j: int) -> list[int]:
+    """Entries of an argument with which the adjoint changes at all."""
+    patterns = [adjoint.jac_sparsity(i, j) for i in range(adjoint.n_out())]
+    columns = {column for pattern in patterns for column in pattern.get_col()}
+    return sorted(columns)
 
 
 def jacobian_of(function: ca.Function, symbols: Sequence[Matrix], blocks: Sequence[Matrix]) -> ca.Function:

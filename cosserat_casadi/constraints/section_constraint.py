@@ -11,16 +11,16 @@ Variations of poses are [δθ; δr] and wrenches [moment; force], the angular pa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Scalar
+from cosserat_casadi.maths.numbers import Scalar, is_symbolic
 from cosserat_casadi.maths.pose import NumericPose, Pose
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product
+from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -80,6 +80,28 @@ class Poses(NamedTuple):
 
 
 @dataclass(frozen=True)
+class _Target:
+    """What a section is held to.
+
+    Attributes:
+        place: pose of the section in the other frame.
+        turn: quaternion that takes the directions of :class:`HeldDirections` to what is held; None where it is these.
+    """
+
+    place: Pose
+    turn: Matrix | None
+
+    @property
+    def axes(self) -> Matrix | None:
+        """The same as a matrix, 3×3."""
+        return None if self.turn is None else quaternion_to_matrix(self.turn)
+
+    def seen_from(self, poses: Poses) -> Pose:
+        """The pose that the section is held to, in the rod's base."""
+        return poses.base.seen(poses.frame.then(self.place))
+
+
+@dataclass(frozen=True)
 class SectionConstraint:
     """A section of a rod held to a place on another frame.
 
@@ -89,6 +111,8 @@ class SectionConstraint:
         at: abscissa of the section, a break of the rod's grid.
         held: the directions that are held.
         place: pose of the section in the other frame that closes the constraint; expressions where parameters set it.
+        turn: quaternion, 4×1, of the rotation that takes ``held``, in the axes of the place, to what is held; numbers
+            or expressions; None where that is ``held`` itself.
     """
 
     rod: RodProperties
@@ -96,6 +120,7 @@ class SectionConstraint:
     at: Scalar
     held: HeldDirections
     place: NumericPose | Pose
+    turn: Matrix | None = None
 
     @property
     def size(self) -> int:
@@ -109,19 +134,19 @@ class SectionConstraint:
 
     def residual(self, poses: Poses) -> Matrix:
         """What is left to close, size×1: displacements relative to the rod's length, then rotations, rad."""
-        residual: Matrix = self._residual_kernel(*poses.stacked, *self._free_place)[0]
+        residual: Matrix = self._residual_kernel(*poses.stacked, *self._free_target)[0]
         return residual
 
     def residual_variation(self, poses: Poses) -> Variations:
         """Derivative of the residual with the poses, size×6 each."""
-        _, *by_poses = self._residual_kernel(*poses.stacked, *self._free_place)
+        _, *by_poses = self._residual_kernel(*poses.stacked, *self._free_target)
         return Variations(*by_poses)
 
     def wrench_basis(self, poses: Poses) -> Matrix:
         """Wrench on the section for a unit of each multiplier, base axes of the rod, 6×size."""
-        return self._wrench_basis(poses, self._place)
+        return self._wrench_basis(poses, self._given_target)
 
-    def _wrench_basis(self, poses: Poses, place: Pose) -> Matrix:
+    def _wrench_basis(self, poses: Poses, target: _Target) -> Matrix:
         force = self.unit / self.rod.length * self.held.positions
         moment = self.unit * self.held.rotations
         displacements = force.shape[1]
@@ -132,7 +157,9 @@ class SectionConstraint:
         in_given_axes = ca.sparsify(ca.DM(basis))
         if not self.held.turn_with_place:
             return in_given_axes
-        rotation = self._target(poses, place).rotation
+        rotation = target.seen_from(poses).rotation
+        if target.axes is not None:
+            rotation = rotation @ target.axes
         return ca.diagcat(rotation, rotation) @ in_given_axes
 
     def wrench_variation(self, poses: Poses, multipliers: Matrix) -> Variations:
@@ -140,70 +167,77 @@ class SectionConstraint:
         if not self.held.turn_with_place:
             zero = ca.DM(6, 6)
             return Variations(zero, zero, zero)
-        _, *by_poses = self._wrench_kernel(*poses.stacked, *self._free_place, multipliers)
+        _, *by_poses = self._wrench_kernel(*poses.stacked, *self._free_target, multipliers)
         return Variations(*by_poses)
 
     def reaction(self, poses: Poses, multipliers: Matrix) -> Matrix:
         """Wrench on the other frame about its origin, world axes, 6×1."""
-        reaction: Matrix = self._reaction_kernel(*poses.stacked, *self._free_place, multipliers)[0]
+        reaction: Matrix = self._reaction_kernel(*poses.stacked, *self._free_target, multipliers)[0]
         return reaction
 
     def reaction_variation(self, poses: Poses, multipliers: Matrix) -> tuple[Matrix, Variations]:
         """Derivative of the reaction with the multipliers, 6×size, and with the poses, 6×6 each."""
-        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, *self._free_place, multipliers)
+        _, by_multipliers, *by_poses = self._reaction_kernel(*poses.stacked, *self._free_target, multipliers)
         return by_multipliers, Variations(*by_poses)
 
     @property
-    def _place(self) -> Pose:
-        """The place as expressions."""
-        return self.place if isinstance(self.place, Pose) else self.place.pose
+    def _given_target(self) -> _Target:
+        """What the section is held to, as expressions."""
+        place = self.place if isinstance(self.place, Pose) else self.place.pose
+        return _Target(place, self.turn)
 
     @property
-    def _free_place(self) -> list[Matrix]:
-        """The place as arguments of the kernels; none where it is known, which is then a constant of them."""
-        return [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
+    def _free_target(self) -> list[Matrix]:
+        """The same as arguments of the kernels; what is known is no argument but a constant of them."""
+        arguments = [self.place.position, self.place.quaternion] if isinstance(self.place, Pose) else []
+        if is_symbolic(self.turn):
+            arguments.append(self.turn)
+        return arguments
 
-    def _place_symbols(self) -> tuple[Pose, list[ca.SX]]:
-        """The place that the kernels are written in, and its symbols."""
-        if not isinstance(self.place, Pose):
-            return self.place.pose, []
-        symbols = [ca.SX.sym("place_position", 3), ca.SX.sym("place_quaternion", 4)]
-        return Pose(*symbols), symbols
+    def _target_symbols(self) -> tuple[_Target, list[ca.SX]]:
+        """The target that the kernels are written in, and its symbols."""
+        target = self._given_target
+        symbols = []
+        if isinstance(self.place, Pose):
+            symbols = [ca.SX.sym("place_position", 3), ca.SX.sym("place_quaternion", 4)]
+            target = replace(target, place=Pose(*symbols))
+        if is_symbolic(self.turn):
+            symbols.append(ca.SX.sym("held_quaternion", 4))
+            target = replace(target, turn=symbols[-1])
+        return target, symbols
 
-    @staticmethod
-    def _target(poses: Poses, place: Pose) -> Pose:
-        """The pose that the section is held to, in the rod's base."""
-        return poses.base.seen(poses.frame.then(place))
-
-    def _residual(self, poses: Poses, place: Pose) -> Matrix:
+    def _residual(self, poses: Poses, target: _Target) -> Matrix:
         """Pᵀ (r − r_t)/ℓ and 2 Dᵀ vec(Q ⊗ Q_t*), or vec(Q_t* ⊗ Q) in the axes of the target."""
         section = poses.section
-        target = self._target(poses, place)
-        back = quaternion_conjugate(target.quaternion)
+        held_to = target.seen_from(poses)
+        back = quaternion_conjugate(held_to.quaternion)
         if self.held.turn_with_place:
-            displacement = target.rotation.T @ (section.position - target.position)
-            turn = quaternion_product(back, section.quaternion)
+            displacement = held_to.rotation.T @ (section.position - held_to.position)
+            turn = quaternion_product(back, section.quaternion)[1:]
         else:
-            displacement = section.position - target.position
-            turn = quaternion_product(section.quaternion, back)
+            displacement = section.position - held_to.position
+            turn = quaternion_product(section.quaternion, back)[1:]
+        if target.axes is not None:
+            displacement = target.axes.T @ displacement
+            turn = target.axes.T @ turn
         along = ca.DM(self.held.positions).T @ displacement / self.rod.length
         # The vector part of a quaternion is half the rotation that is left, to first order.
-        about = 2 * ca.DM(self.held.rotations).T @ turn[1:]
+        about = 2 * ca.DM(self.held.rotations).T @ turn
         return ca.vertcat(along, about)
 
-    def _wrench(self, poses: Poses, place: Pose, multipliers: Matrix) -> Matrix:
-        return self._wrench_basis(poses, place) @ multipliers
+    def _wrench(self, poses: Poses, target: _Target, multipliers: Matrix) -> Matrix:
+        return self._wrench_basis(poses, target) @ multipliers
 
-    def _reaction(self, poses: Poses, place: Pose, multipliers: Matrix) -> Matrix:
+    def _reaction(self, poses: Poses, target: _Target, multipliers: Matrix) -> Matrix:
         """The opposite of the wrench on the section, at the place, or at the section where that may slide."""
-        wrench = self._wrench(poses, place, multipliers)
+        wrench = self._wrench(poses, target, multipliers)
         moment = poses.base.rotation @ wrench[:3]
         force = poses.base.rotation @ wrench[3:]
         if self.slides:
             section = poses.base.then(poses.section)
             arm = section.position - poses.frame.position
         else:
-            arm = poses.frame.rotation @ place.position
+            arm = poses.frame.rotation @ target.place.position
         moment_about_origin = ca.cross(arm, force) + moment
         return -ca.vertcat(moment_about_origin, force)
 
@@ -211,31 +245,31 @@ class SectionConstraint:
     def _residual_kernel(self) -> ca.Function:
         """Poses ↦ residual and its variations."""
         poses, motions = _symbols()
-        place, place_symbols = self._place_symbols()
-        moved = self._residual(_moved(poses, motions), place)
-        results = [self._residual(poses, place), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint", [*poses.stacked, *place_symbols], ca.cse(results))
+        target, target_symbols = self._target_symbols()
+        moved = self._residual(_moved(poses, motions), target)
+        results = [self._residual(poses, target), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint", [*poses.stacked, *target_symbols], ca.cse(results))
 
     @cached_property
     def _wrench_kernel(self) -> ca.Function:
         """Poses and multipliers ↦ wrench on the section and its variations with the poses."""
         poses, motions = _symbols()
-        place, place_symbols = self._place_symbols()
+        target, target_symbols = self._target_symbols()
         multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._wrench(_moved(poses, motions), place, multipliers)
-        results = [self._wrench(poses, place, multipliers), *_at_rest(moved, motions, motions)]
-        return ca.Function("constraint_wrench", [*poses.stacked, *place_symbols, multipliers], ca.cse(results))
+        moved = self._wrench(_moved(poses, motions), target, multipliers)
+        results = [self._wrench(poses, target, multipliers), *_at_rest(moved, motions, motions)]
+        return ca.Function("constraint_wrench", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
 
     @cached_property
     def _reaction_kernel(self) -> ca.Function:
         """Poses and multipliers ↦ reaction and its derivatives with the multipliers and the poses."""
         poses, motions = _symbols()
-        place, place_symbols = self._place_symbols()
+        target, target_symbols = self._target_symbols()
         multipliers = ca.SX.sym("multipliers", self.size)
-        moved = self._reaction(_moved(poses, motions), place, multipliers)
+        moved = self._reaction(_moved(poses, motions), target, multipliers)
         derivatives = _at_rest(moved, [multipliers, *motions], motions)
-        results = [self._reaction(poses, place, multipliers), *derivatives]
-        return ca.Function("constraint_reaction", [*poses.stacked, *place_symbols, multipliers], ca.cse(results))
+        results = [self._reaction(poses, target, multipliers), *derivatives]
+        return ca.Function("constraint_reaction", [*poses.stacked, *target_symbols, multipliers], ca.cse(results))
 
 
 def _symbols() -> tuple[Poses, list[ca.SX]]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.stage import MotionStage
@@ -74,9 +75,21 @@ class Condensing:
         equations: those of the stage, compiled or not.
         stages: number of stages N.
         steered: numbers of the inputs whose rates are to be chosen; the others move as given.
+
+    Raises:
+        ValueError: there is no stage, or no such input.
+        SceneError: the equations of the stage take parameters.
     """
 
     def __init__(self, stage: MotionStage, equations: ca.Function, stages: int, steered: Sequence[int]) -> None:
+        if stage.model.parameters.size:
+            problem = "the equations of the stage take parameters, and a horizon is condensed for given ones"
+            raise SceneError(Problem("parameters", problem, "make the stage of model.at(…)"))
+        inputs = stage.model.inputs.size
+        if stages < 1:
+            raise ValueError(f"stages must be 1 or more, got {stages}")
+        if len(set(steered)) < len(steered) or not all(0 <= number < inputs for number in steered):
+            raise ValueError(f"steered must be different numbers from 0 to {inputs - 1}, got {list(steered)}")
         self._stage = stage
         self._stages = stages
         self._steered = list(steered)
@@ -98,8 +111,10 @@ class Condensing:
             inputs_rate: in them, shape (N, inputs), units per second.
 
         Raises:
+            ValueError: an array has another shape.
             numpy.linalg.LinAlgError: the unknowns of a stage do not follow from its equations.
         """
+        self._check(guess, inputs, inputs_rate)
         unsolved, by_state, by_unknowns, by_inputs, by_rate = self._linearised(guess, inputs, inputs_rate)
         size = self._stage.state_size
         count = len(self._steered)
@@ -136,6 +151,28 @@ class Condensing:
             unknowns_by_rates=unknowns_by_rates,
             unknowns_shift=unknowns_shift,
         )
+
+    def _check(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> None:
+        """Refuse arrays of other shapes: entries would be read at wrong places.
+
+        Raises:
+            ValueError: with all of them.
+        """
+        stage = self._stage
+        moving = (self._stages, stage.model.inputs.size)
+        expected = {
+            "states": (guess.states, (self._stages + 1, stage.state_size)),
+            "unknowns": (guess.unknowns, (self._stages, stage.unknowns_size)),
+            "inputs": (inputs, moving),
+            "inputs_rate": (inputs_rate, moving),
+        }
+        wrong = [
+            f"{name} must have the shape {shape}, not {np.shape(given)}"
+            for name, (given, shape) in expected.items()
+            if np.shape(given) != shape
+        ]
+        if wrong:
+            raise ValueError("; ".join(wrong))
 
     def _linearised(self, guess: Horizon, inputs: FloatArray, inputs_rate: FloatArray) -> list[FloatArray]:
         """Residual of the equations of all stages and their derivatives, each of shape (N, unknowns_size, columns)."""

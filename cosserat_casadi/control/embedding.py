@@ -36,7 +36,9 @@ class Lifted:
     start: FloatArray
 
 
-def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None) -> Lifted:
+def lifted(
+    model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None, parameters: Matrix | None = None
+) -> Lifted:
     """A state of a model whose unknowns are variables of the problem.
 
     Args:
@@ -44,13 +46,18 @@ def lifted(model: Model, x: Matrix, inputs: Matrix, near: Solution | None = None
         x: variables for its unknowns, shape (model.size,): ``MX.sym`` or ``opti.variable``.
         inputs: stacked inputs, any expressions, shape (model.inputs.size,).
         near: an equilibrium to start from; the unloaded rods by default.
+        parameters: stacked parameters, any expressions, shape (model.parameters.size,): variables or parameters of the
+            problem; by default the scene's values.
     """
     start = model.unloaded() if near is None else near.x
-    model = model.at()
-    return Lifted(x, model.residual(x, inputs), start)
+    if parameters is None:
+        residual = model.at().residual(x, inputs)
+    else:
+        residual = model.residual(x, inputs, parameters)
+    return Lifted(x, residual, start)
 
 
-def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
+def embedded(model: Model, near: Solution, iterations: int = 50, *, parameters: bool = False) -> ca.Function:
     """The equilibrium as a function of the inputs, on the branch of a solution.
 
     Newton's method from the unknowns of that solution, whatever the inputs: exact first and second derivatives.
@@ -59,13 +66,16 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
         model: the model.
         near: the equilibrium that it starts from.
         iterations: most steps.
+        parameters: whether the parameters of the scene, if it names some, are an argument: by default they have the
+            scene's values.
 
     Returns:
-        inputs ↦ (x, excess): ``excess`` is the squared relative residual over its squared tolerance.
+        inputs, or (inputs, p), ↦ (x, excess): ``excess`` is the squared relative residual over its squared tolerance.
         Only where it is at most 1 is x an equilibrium, and only there have the derivatives a meaning; it is NaN where
         the residual is. A problem holds it by a constraint; ``lifted`` needs none.
     """
-    model = model.at()
+    if not parameters:
+        model = model.at()
     options = {
         # A decimal below what the excess certifies, so that Newton's last step does not decide.
         "abstol": CERTIFIED / 10,
@@ -74,16 +84,16 @@ def embedded(model: Model, near: Solution, iterations: int = 50) -> ca.Function:
         "jacobian_function": model.jacobian,
     }
     finder = ca.rootfinder("equilibrium", "newton", model.residual, options)
-    inputs = ca.MX.sym("inputs", model.inputs.size)
-    x = finder(ca.DM(near.x), inputs)
-    residual = model.residual(x, inputs)
+    given = model.residual.mx_in()[1:]
+    x = finder(ca.DM(near.x), *given)
+    residual = model.residual(x, *given)
     # Squares, since the norm has no derivative where the residual is zero.
     scale = CERTIFIED**2 * (1 + ca.sumsqr(x))
     excess = ca.sumsqr(residual) / scale
     return ca.Function(
         "embedded",
-        [inputs],
+        given,
         [x, excess],
-        ["inputs"],
+        model.residual.name_in()[1:],
         ["x", "excess"],
     )

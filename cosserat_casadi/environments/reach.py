@@ -61,7 +61,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
     """Bring the tip of a rod to a target by the inputs that the scene bounds.
 
     An action says where those inputs are to be at the end of a control period, from −1 at the lower bound to 1 at the
-    upper one; they move there linearly. An observation stacks position and velocity of the tip (m, m/s), the inputs in
+    upper one; they move there linearly. A base or a length whose speed jumps so exerts no inertia forces by the jump.
+    An observation stacks position and velocity of the tip (m, m/s), the inputs in
     the same shares as actions, and the target (m). The reward is minus the distance to the target over the length of
     the rod. An episode is truncated at its duration, and terminated where a step cannot be computed: ``info["status"]``
     is the sentence that says why, ``info["distance"]`` the distance in m.

@@ -167,8 +167,10 @@ def _is_alike_beside(solution: Solution, variation: FloatArray) -> bool:
     beside = newton(full_load.at(1.0), start, few_steps)
     if beside.outcome is not Outcome.CONVERGED:
         return False
-    # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation.
-    distance = length_of(beside.x - solution.x)
+    # Newton may fall back to where it came from, or on to elsewhere: neither tells of this variation. Multipliers turn
+    # along, and are large in a rod that is held tight: they do not count.
+    moved = beside.x - solution.x
+    distance = length_of(moved[allowed.free])
     if not ASIDE / 2 <= distance <= 2 * ASIDE:
         return False
     jacobian = model.path_jacobian(beside.x, inputs, 1.0).full()

@@ -22,6 +22,8 @@ from cosserat_casadi.model.inputs import InputLayout
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.scene.number_table import shortened
 
+Flags = npt.NDArray[np.bool_]
+
 Data = Mapping[str, Mapping[str, npt.ArrayLike]]
 """Columns by measurement, by its name or its file."""
 
@@ -62,17 +64,19 @@ class _Row:
 
     Attributes:
         measurement: its number.
+        where: the row in words.
         place: its table and its line there: what measurements of one file share.
         label: its cell in the column that joins rows to cases; None without one.
         set_inputs: values by index in the stacked inputs.
-        datum: what was measured.
+        datum: what was measured; None where it only says what the row is under.
     """
 
     measurement: int
+    where: str
     place: tuple[str, int]
     label: str | None
     set_inputs: dict[int, float]
-    datum: Datum
+    datum: Datum | None
 
 
 def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
@@ -139,7 +143,7 @@ class _Reader:
     problems: list[Problem] = field(default_factory=list)
 
     def rows(self) -> list[_Row]:
-        """The rows in which something was measured."""
+        """The rows that are read: also those in which nothing was measured say what they are under."""
         measurement, table = self.measurement, self.table
         columns = [column for column in measurement.columns if column]
         columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
@@ -159,24 +163,20 @@ class _Reader:
         ]
         values = self._values(chosen)
         measured = np.any(np.isfinite(values), axis=1)
-        kept = [row for row, is_measured in zip(chosen, measured, strict=True) if is_measured]
-        if not kept:
+        if not np.any(measured):
             remedy = "look at its columns, and at where"
             self.problems.append(Problem(table.source, f"{measurement.title}: nothing was measured in any row", remedy))
-        return self._rows(kept, values[measured], self._abscissae(kept), self._inputs(kept))
-
-    def _rows(
-        self, kept: Sequence[int], values: FloatArray, abscissae: FloatArray, inputs: dict[int, FloatArray]
-    ) -> list[_Row]:
-        table = self.table
+        inputs = self._inputs(chosen, measured)
+        abscissae = self._abscissae(chosen, measured)
         rows = []
-        for i, row in enumerate(kept):
-            set_inputs = {index: float(column[i]) for index, column in inputs.items()}
-            datum = Datum(table.where(row), float(abscissae[i]), values[i])
-            place = (table.source, table.lines[row])
-            case = self.measurement.case
+        for i, row in enumerate(chosen):
+            where = table.where(row)
+            set_inputs = {index: float(column[i]) for index, column in inputs.items() if np.isfinite(column[i])}
+            datum = Datum(where, float(abscissae[i]), values[i]) if measured[i] else None
+            case = measurement.case
             label = None if case is None else table.columns[case][row].strip()
-            rows.append(_Row(self.number, place, label, set_inputs, datum))
+            place = (table.source, table.lines[row])
+            rows.append(_Row(self.number, where, place, label, set_inputs, datum))
         return rows
 
     def _values(self, rows: Sequence[int]) -> FloatArray:
@@ -206,23 +206,23 @@ class _Reader:
             elif known.all() and norm == 0.0:
                 self.problems.append(Problem(self.table.where(row), "has a quaternion that is zero"))
 
-    def _abscissae(self, rows: Sequence[int]) -> FloatArray:
+    def _abscissae(self, rows: Sequence[int], measured: Flags) -> FloatArray:
         """Abscissa of the section of each row; NaN where the quantity has none."""
         at = getattr(self.measurement, "at", None)
         if not isinstance(at, str):
             return np.full(len(rows), np.nan if at is None else at)
         values, problems = self.table.numbers(at, rows)
         self.problems += problems
-        for row, value in zip(rows, values, strict=True):
-            if not 0.0 <= value <= 1.0:
+        for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if is_measured and not 0.0 <= value <= 1.0:
                 got = "an empty cell" if np.isnan(value) else f"{value:g}"
                 problem = f"{at} must be an abscissa from 0 to 1, got {got}"
                 remedy = "divide the distance along the rod by its length"
                 self.problems.append(Problem(self.table.where(row), problem, remedy))
         return values
 
-    def _inputs(self, rows: Sequence[int]) -> dict[int, FloatArray]:
-        """Values of the inputs that columns set, each of shape (rows,), by index in the stacked inputs."""
+    def _inputs(self, rows: Sequence[int], measured: Flags) -> dict[int, FloatArray]:
+        """Values of inputs that columns set, of shape (rows,), by index in the stacked inputs; NaN of empty cells."""
         indices = column_indices(self.layout)
         values = {}
         for name, entry in self.measurement.set_inputs.items():
@@ -237,8 +237,8 @@ class _Reader:
                 numbers, problems = self.table.numbers(entry.column, rows)
                 self.problems += problems
                 column = column + entry.scale * numbers
-                for row, number in zip(rows, numbers, strict=True):
-                    if np.isnan(number) and not problems:
+                for row, number, is_measured in zip(rows, numbers, measured, strict=True):
+                    if is_measured and np.isnan(number) and not problems:
                         problem = f"{entry.column} is empty, but sets {name}"
                         self.problems.append(Problem(self.table.where(row), problem, "give it, or leave the row out"))
             values[indices[name]] = column
@@ -259,27 +259,31 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
     joining = _Joining({index: name for name, index in column_indices(layout).items()})
     # What one measurement of a file says of the inputs of a line holds for all measurements of that file.
     by_place = joining.settled(rows, [row.place for row in rows])
-    keys: list[Hashable] = []
-    for row in rows:
-        stacked = layout.pack()
-        for index, (value, _) in by_place[row.place].items():
-            stacked[index] = value
-        if row.label is not None:
-            keys.append(("case", row.label))
-        elif per_row:
-            keys.append(("row", row.place))
-        else:
-            keys.append(("inputs", *stacked.tolist()))
-    by_case = joining.settled(rows, keys)
+    measured = [row for row in rows if row.datum is not None]
+    keys = [_key(row, by_place[row.place], layout, per_row) for row in measured]
+    by_case = joining.settled(measured, keys)
     if joining.problems:
         raise SceneError(*shortened(joining.problems, "measurements"))
     cases: dict[Hashable, Case] = {}
-    for row, key in zip(rows, keys, strict=True):
-        case = cases.setdefault(key, Case(row.datum.where, layout.pack()))
+    for row, key in zip(measured, keys, strict=True):
+        case = cases.setdefault(key, Case(row.where, layout.pack()))
         for index, (value, _) in {**by_case[key], **by_place[row.place]}.items():
             case.inputs[index] = value
-        case.data.setdefault(row.measurement, []).append(row.datum)
+        if row.datum is not None:
+            case.data.setdefault(row.measurement, []).append(row.datum)
     return list(cases.values())
+
+
+def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayout, per_row: bool) -> Hashable:
+    """What rows of one case have in common."""
+    if row.label is not None:
+        return "case", row.label
+    if per_row:
+        return "row", row.place
+    stacked = layout.pack()
+    for index, (value, _) in settled.items():
+        stacked[index] = value
+    return "inputs", *stacked.tolist()
 
 
 @dataclass
@@ -300,9 +304,9 @@ class _Joining:
         for row, key in zip(rows, keys, strict=True):
             settled = known.setdefault(key, {})
             for index, value in row.set_inputs.items():
-                first, where = settled.setdefault(index, (value, row.datum.where))
+                first, where = settled.setdefault(index, (value, row.where))
                 if first != value:
                     name = self.names[index]
                     problem = f"sets {name} to {value:g}, but {where} sets it to {first:g} in the same case"
-                    self.problems.append(Problem(row.datum.where, problem))
+                    self.problems.append(Problem(row.where, problem))
         return known

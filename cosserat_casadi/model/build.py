@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model import functions
 from cosserat_casadi.model.actuator_assembly import actuators_have_potential
+from cosserat_casadi.model.constraints import decisive_axes
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.inputs import InputLayout, input_layout
@@ -151,6 +153,22 @@ class Model(functions.ModelFunctions, MotionFunctions):
         return np.zeros(self.size)
 
 
+def check_axes(nominal: DiscreteScene, parameters: ParameterLayout) -> None:
+    """Refuse axes as parameters that decide which directions other joints hold.
+
+    Raises:
+        SceneError: with all of them.
+    """
+    problems = []
+    decisive = decisive_axes(nominal.unloaded)
+    for name, joint in parameters.turning_axes:
+        if joint in decisive:
+            problem = "is an axis that keeps planar rods in their plane, which decides what other joints hold"
+            problems.append(Problem(name, problem, "build a scene for each value"))
+    if problems:
+        raise SceneError(*problems)
+
+
 def build(
     scene: scenes.Scene,
     discretisation: Mapping[str, Discretisation] | None = None,
@@ -175,4 +193,5 @@ def build(
     parameters = parameter_layout(scene)
     if not parameters.size:
         return Model(nominal)
+    check_axes(nominal, parameters)
     return Model(with_numbers(nominal, parameters.written(scene, parameters.symbol), parameters))

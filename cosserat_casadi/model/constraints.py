@@ -9,14 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints import held_directions as held
 from cosserat_casadi.constraints.section_constraint import HeldDirections, SectionConstraint
-from cosserat_casadi.maths.numbers import as_vector
+from cosserat_casadi.maths.numbers import Numbers, as_matrix, as_vector, is_symbolic, known
 from cosserat_casadi.maths.pose import IDENTITY, NumericPose, Pose, written_pose
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.floating_frames import FLAT, FrameName, UnloadedScene, same_plane
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.rods import base_pose, unit_quaternion, written_base_pose
@@ -32,6 +33,10 @@ STILL = Compliance(power=1)
 
 ASSEMBLED = Compliance(power=3)
 """What closes an assembly is stiff early: springs that hold rods that do not fit are far stiffer than the rods."""
+
+
+SAME_AXIS = 1e-14
+"""Distance of two unit vectors that are one but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +90,8 @@ def written_constraints(
     after = _given_places(scene)
     # The section of a carrier moves along it; all others are tips.
     carriers = {f"rods[{i}].base": rod.base.at for i, rod in enumerate(scene.rods) if rod.base.rod is not None}
+    axes_before = _axes(nominal)
+    axes = _axes(scene)
     constraints = []
     for entry in placed:
         place = after[entry.where]
@@ -99,8 +106,42 @@ def written_constraints(
         else:
             place = NumericPose(place.position, sign * place.quaternion)
         at = carriers.get(entry.where, entry.constraint.at)
-        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, place=place)))
+        turn = None
+        if entry.where in axes_before:
+            turn = _turn_of_axis(start, axes_before[entry.where], place, axes[entry.where])
+        constraints.append(replace(entry, constraint=replace(entry.constraint, at=at, place=place, turn=turn)))
     return constraints
+
+
+def _axes(scene: scenes.Scene) -> dict[str, Numbers]:
+    """Axes of the hinges and slides of a scene in the axes of their bodies, by the paths of their tables."""
+    return {f"joints[{i}]": as_vector(joint.axis) for i, joint in enumerate(scene.joints) if hasattr(joint, "axis")}
+
+
+def _turn_of_axis(start: NumericPose, before: Numbers, place: NumericPose | Pose, after: Numbers) -> Matrix | None:
+    """Shortest rotation from the line of an axis to another, both seen from their places, as a quaternion.
+
+    None where it is none. Neither the length of an axis nor its sign matters.
+    """
+    old = ca.DM(start.rotation.T @ known(before))
+    unit_old = old / ca.norm_2(old)
+    new: Matrix = as_matrix(place.rotation).T @ as_matrix(after)
+    if is_symbolic(new) and not ca.symvar(new):
+        new = ca.evalf(new)
+    unit_new = new / ca.norm_2(new)
+    # Of the two directions of the line, the nearer one: no turn is more than a right angle.
+    nearer = ca.if_else(ca.dot(unit_old, unit_new) < 0, -unit_new, unit_new)
+    if not is_symbolic(nearer) and float(ca.norm_2(nearer - unit_old)) < SAME_AXIS:
+        return None
+    double = ca.vertcat(1 + ca.dot(unit_old, nearer), ca.cross(unit_old, nearer))
+    turn: Matrix = double / ca.norm_2(double)
+    return turn
+
+
+def decisive_axes(unloaded: UnloadedScene) -> set[int]:
+    """Joints whose axis or orientation decides which directions others hold: several on planar rods of one plane."""
+    joints = unloaded.scene.joints
+    return {i for i, joint in enumerate(joints) if len(list(_coplanar(unloaded, joint))) > 1}
 
 
 def _given_places(scene: scenes.Scene) -> dict[str, NumericPose | Pose]:

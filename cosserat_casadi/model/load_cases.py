@@ -1,19 +1,25 @@
-"""Sets of load cases: rows of a CSV file, or points spread evenly over ranges of the inputs.
+"""Sets of load cases: rows of a CSV file, or points spread evenly over ranges of inputs and parameters.
 
 A column is ``load.field.axis`` with axis x, y or z, ``load.field.axis.degree`` for a Legendre coefficient beyond the
-constant one, or ``actuator.field`` for a number. Inputs without a column keep the scene's values.
+constant one, ``actuator.field`` for a number, or a number of a parameter, spelled as in the scene's list of them. What
+has no column keeps the scene's values.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
+from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.inputs import InputLayout, input_layout
+from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
 from cosserat_casadi.scene.inputs import column_suffixes
 from cosserat_casadi.scene.number_table import finite_number, read_numbers
 
@@ -27,25 +33,78 @@ def column_indices(layout: InputLayout) -> dict[str, int]:
     return indices
 
 
-def read_load_cases(path: Path, layout: InputLayout) -> FloatArray:
-    """Load cases of a CSV file with a header, shape (count, size of the inputs), SI units.
+@dataclass(frozen=True)
+class CaseLayout:
+    """What a load case sets: the inputs of a scene, and the parameters behind them.
+
+    Attributes:
+        inputs: of the scene.
+        parameters: of the scene; often none.
+    """
+
+    inputs: InputLayout
+    parameters: ParameterLayout = NO_PARAMETERS
+
+    @cached_property
+    def columns(self) -> dict[str, int]:
+        """Index of each column in a case."""
+        indices = column_indices(self.inputs)
+        for entry, span in self.parameters:
+            for k, name in enumerate(entry.numbers.cell_names):
+                indices[name] = self.inputs.size + span.start + k
+        return indices
+
+    @cached_property
+    def default(self) -> FloatArray:
+        """The case of the scene's own values, shape (size,)."""
+        return np.concatenate([self.inputs.pack(), self.parameters.pack()])
+
+    def unpack(self, case: FloatArray) -> dict[str, FloatArray]:
+        """Inputs and parameters of a case by name."""
+        inputs, parameters = np.split(case, [self.inputs.size])
+        return {**self.inputs.unpack(inputs), **self.parameters.unpack(parameters)}
+
+    def pack(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
+        """The case of values by name; those not named keep the scene's.
+
+        Raises:
+            SceneError: a value is refused; what is neither is called no input.
+        """
+        parameters = {name: value for name, value in values.items() if name in self.parameters.names}
+        inputs = {name: value for name, value in values.items() if name not in parameters}
+        return np.concatenate([self.inputs.pack(inputs), self.parameters.pack(parameters)])
+
+    def ranges(self, cases: FloatArray) -> tuple[str, ...]:
+        """What cases, shape (count, size), range over: ``column=low:high`` for each column that they set."""
+        moved = np.any(cases != self.default, axis=0)
+        lowest, highest = cases.min(axis=0), cases.max(axis=0)
+        return tuple(f"{column}={lowest[k]:.6g}:{highest[k]:.6g}" for column, k in self.columns.items() if moved[k])
+
+
+def case_layout(scene: scenes.Scene) -> CaseLayout:
+    """The inputs and the parameters of a scene."""
+    return CaseLayout(input_layout(scene), parameter_layout(scene))
+
+
+def read_load_cases(path: Path, layout: CaseLayout) -> FloatArray:
+    """Load cases of a CSV file with a header, shape (count, size of a case), SI units.
 
     Raises:
         SceneError: with every fault: a column that is no input, a row of another length, what is not a finite number.
     """
     header, numbers, _, problems = read_numbers(path)
-    indices = column_indices(layout)
+    indices = layout.columns
     unknown = [column for column in header if column not in indices]
     problems = [_no_column(str(path), column, indices) for column in unknown] + problems
     if problems:
         raise SceneError(*problems)
-    cases = np.tile(layout.pack(), (len(numbers), 1))
+    cases = np.tile(layout.default, (len(numbers), 1))
     cases[:, [indices[column] for column in header]] = numbers
     return cases
 
 
-def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray:
-    """Load cases spread evenly over a box, shape (count, size of the inputs).
+def spread(ranges: Sequence[str], count: int, layout: CaseLayout) -> FloatArray:
+    """Load cases spread evenly over a box, shape (count, size of a case).
 
     The points are the multiples of an irrational direction, modulo one (the additive recurrence with the generalised
     golden ratio), so that any number of them covers the box; the corner of all upper ends comes first.
@@ -53,13 +112,13 @@ def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray
     Args:
         ranges: ``column=low:high``, such as ``push.force.x=-1:1``.
         count: number of points, at least 1.
-        layout: the inputs.
+        layout: the inputs and the parameters.
 
     Raises:
         SceneError: with every fault.
     """
-    bounds = _bounds(ranges, column_indices(layout))
-    cases = np.tile(layout.pack(), (count, 1))
+    bounds = _bounds(ranges, layout.columns)
+    cases = np.tile(layout.default, (count, 1))
     shares = _additive_recurrence(count, len(bounds))
     for (index, (low, high)), share in zip(bounds.items(), shares.T, strict=True):
         cases[:, index] = low + share * (high - low)
@@ -67,7 +126,7 @@ def spread(ranges: Sequence[str], count: int, layout: InputLayout) -> FloatArray
 
 
 def _bounds(ranges: Sequence[str], indices: dict[str, int]) -> dict[int, tuple[float, float]]:
-    """Lower and upper end by the index of the input."""
+    """Lower and upper end by the index of the column."""
     problems: list[Problem] = []
     bounds: dict[int, tuple[float, float]] = {}
     for text in ranges:
@@ -100,4 +159,4 @@ def _additive_recurrence(count: int, dimension: int) -> FloatArray:
 
 def _no_column(where: str, column: str, indices: dict[str, int]) -> Problem:
     names = ", ".join(indices) or "none"
-    return Problem(where, f"{column!r} is not an input of this scene", f"its inputs are {names}")
+    return Problem(where, f"{column!r} is not an input or a parameter of this scene", f"its columns are {names}")

@@ -103,6 +103,17 @@ class ParameterLayout(StackedLayout[Parameter]):
         """Unit of every entry of p."""
         return [entry.unit for entry in self.entries for _ in range(entry.size)]
 
+    @property
+    def turning_axes(self) -> list[tuple[str, int]]:
+        """Parameters that turn the axis of a joint, by name, with the joint's place in the scene's list."""
+        turning = []
+        for entry in self.entries:
+            holder = entry.numbers.holder
+            turns = entry.numbers.keys[-1] in ("axis", "quaternion") and hasattr(holder.record, "axis")
+            if holder.table == "joints" and turns:
+                turning.append((entry.name, holder.index))
+        return turning
+
     def written(self, scene: scenes.Scene, p: Matrix | FloatArray) -> scenes.Scene:
         """The scene whose numbers are entries of p: expressions, or numbers, which are not judged."""
         for entry, span in self:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.displacement import displacements
@@ -43,20 +44,27 @@ def outcome_of(history: History) -> MotionOutcome:
 
 
 def independence(history: History) -> float:
-    """How independent the constraints are where a motion ends: 0 where one follows from the others, at most 1.
-
-    The smallest singular value of their derivatives over the largest, each row of unit length and columns counted by
-    displacements; infinite where there are no constraints.
-    """
+    """How independent the constraints are where a motion ends, columns counted by displacements."""
     model = history.model
     rows = Closing(model).rows
-    if not len(rows):
-        return float("inf")
     jacobian, _ = model.jacobian(history.end.x, history.legs[-1].piece.at(history.end.time).value)
     by_displacement = jacobian.full() / displacements(model)
-    derivatives = by_displacement[np.ix_(rows, np.flatnonzero(model.discrete.unknowns.differential))]
+    return independence_of(by_displacement[np.ix_(rows, np.flatnonzero(model.discrete.unknowns.differential))])
+
+
+def independence_of(derivatives: FloatArray) -> float:
+    """How independent rows are: 0 where one follows from the others, at most 1, infinite where there are none.
+
+    The smallest singular value over the largest, each row of unit length.
+
+    Args:
+        derivatives: of constraints by coordinates, shape (m, n).
+    """
+    count, coordinates = derivatives.shape
+    if count == 0:
+        return float("inf")
     lengths = np.linalg.norm(derivatives, axis=1)
-    if not np.all(lengths > 0.0):
+    if count > coordinates or not np.all(lengths > 0.0):
         return 0.0
     sizes = np.linalg.svd(derivatives / lengths[:, None], compute_uv=False)
     return float(sizes[-1] / sizes[0])

@@ -190,8 +190,9 @@ def integrated(
     for number, piece in enumerate(pieces, start=1):
         plain = equations_of(model, piece)
         while at.time < piece.end:
-            # Accelerations and multipliers jump where an input or its rates do.
-            interval = min(DIFFERENTIATED * (piece.end - piece.start), piece.end - at.time)
+            # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
+            # go on beyond it: in what is left of it rounding would be all that is differentiated.
+            interval = DIFFERENTIATED * (piece.end - piece.start)
             restart = cables.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
@@ -213,6 +214,8 @@ def integrated(
             settings = replace(settings, first=integration.next_size)
         # A piece may be longer than the step that fits into it; the next begins with what the last one wanted.
         settings = replace(settings, first=min(legs[-1].integration.next_size, piece_length(pieces, number)))
+    # A cable may become slack or taut in the very end: there is nothing to go on with.
+    legs[-1] = replace(legs[-1], integration=replace(legs[-1].integration, outcome=StepOutcome.COMPLETED))
     return History(model, tuple(legs))
 
 

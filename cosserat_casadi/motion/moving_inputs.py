@@ -66,7 +66,7 @@ class Piece:
     _paths: tuple[tuple[slice, _Path], ...]
 
     def at(self, t: float) -> InputState:
-        """The inputs at a time from start to end; at these two, their limits from within."""
+        """The inputs at a time; at start and end their limits from within, beyond them as they would go on."""
         value = self._constant.copy()
         rate = np.zeros_like(value)
         acceleration = np.zeros_like(value)

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.motion.simulate import immovable
 from cosserat_casadi.numerics.collocation import Collocation, radau
 
@@ -43,7 +44,8 @@ class MotionStage:
 
     Its *state* are the differential unknowns and their changes per stage, (x, h v), without unit. Its *unknowns* are,
     for one instant after the other, a vector in the order of x: h² a of the differential entries, the values of
-    the algebraic ones. Inputs change linearly within the stage.
+    the algebraic ones. Inputs change linearly within the stage. Where the model has parameters they are an argument
+    p behind the inputs.
 
     Attributes:
         model: the model.
@@ -122,6 +124,7 @@ class MotionStage:
     def equations(self) -> ca.Function:
         """(state, unknowns, inputs, inputs_rate) ↦ residual of the equations of motion at all instants, without unit.
 
+        With parameters (state, unknowns, inputs, p, inputs_rate).
         ``inputs`` are those at the beginning of the stage, ``inputs_rate`` their rates in it, units per second.
         """
         return self.equations_by(self.model.inverse_dynamics, "equations")
@@ -133,27 +136,32 @@ class MotionStage:
             inverse_dynamics: with the arguments and the result of that of the model.
             name: of the function.
         """
-        state, unknowns, inputs, rate = self.symbols
+        arguments = self.symbols
+        state, unknowns, inputs, *p, rate = arguments
         moving = self.instants(state, unknowns)
         rows = []
         for i in range(self.method.stages):
             now = self.inputs_at(i, inputs, rate)
             still = ca.DM(self.model.inputs.size, 1)
-            rows.append(inverse_dynamics(moving.x[i], moving.v[i], moving.a[i], now, rate, still))
-        words = ["state", "unknowns", "inputs", "inputs_rate"]
-        return ca.Function(name, [state, unknowns, inputs, rate], [ca.vertcat(*rows)], words, ["residual"])
+            rows.append(inverse_dynamics(moving.x[i], moving.v[i], moving.a[i], now, *p, rate, still))
+        return ca.Function(name, arguments, [ca.vertcat(*rows)], list(self.sizes), ["residual"])
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Entries of the arguments of the equations by name."""
+        parameters = self.model.parameters.size
+        return {
+            "state": self.state_size,
+            "unknowns": self.unknowns_size,
+            "inputs": self.model.inputs.size,
+            **({PARAMETERS: parameters} if parameters else {}),
+            "inputs_rate": self.model.inputs.size,
+        }
 
     @property
     def symbols(self) -> list[ca.MX]:
         """New symbols for the arguments of the equations."""
-        count = self.model.inputs.size
-        sizes = {
-            "state": self.state_size,
-            "unknowns": self.unknowns_size,
-            "inputs": count,
-            "inputs_rate": count,
-        }
-        return [ca.MX.sym(word, size) for word, size in sizes.items()]
+        return [ca.MX.sym(word, size) for word, size in self.sizes.items()]
 
     def inputs_at(self, i: int, inputs: Matrix, rate: Matrix) -> Matrix:
         """Inputs at the i-th instant."""
@@ -206,14 +214,17 @@ def _places(chosen: npt.NDArray[np.bool_]) -> ca.DM:
     return ca.DM(pattern, 1.0)
 
 
-def motion_stage(model: Model, duration: float, method: Collocation | None = None) -> MotionStage:
+def motion_stage(
+    model: Model, duration: float, method: Collocation | None = None, *, parameters: bool = False
+) -> MotionStage:
     """One stage of an optimal-control problem in which a model moves.
 
     Args:
         model: of a scene whose rods have mass; build it with ``moving=True`` where bodies may turn freely. Parameters
-            have the values of the scene, or those of ``model.at(…)``.
+            have the values of the scene, or those of ``model.at(…)``, unless they are asked for.
         duration: of the stage, s.
         method: by default Radau IIA with two stages, ``radau(2)``.
+        parameters: whether the parameters of the scene, if it names some, are an argument of the equations.
 
     Raises:
         SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints.
@@ -227,4 +238,4 @@ def motion_stage(model: Model, duration: float, method: Collocation | None = Non
         problems.append(Problem("method", what, "take Radau IIA, radau(2)"))
     if problems:
         raise SceneError(*problems)
-    return MotionStage(model.at(), duration, chosen)
+    return MotionStage(model if parameters else model.at(), duration, chosen)

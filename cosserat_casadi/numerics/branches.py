@@ -11,12 +11,10 @@ import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Curve, plane_through
+from cosserat_casadi.numerics.directions import direction_in
 
 DISTANCES = (0.02, 0.05, 0.01, 0.1, 0.002)
 """Distances from the bifurcation at which the branch is looked for, one after the other."""
-
-TIE = 1e-6
-"""Relative difference below which two entries of the null space are equally large."""
 
 
 def switch(curve: Curve, bifurcation: ArcPoint, multiplicity: int, side: int = 1) -> ArcPoint | None:
@@ -64,10 +62,5 @@ def crossing_direction(derivative: FloatArray, tangent: FloatArray, multiplicity
     bordered = np.vstack([derivative, tangent])
     _, _, rows = np.linalg.svd(bordered)
     basis = rows[-multiplicity:].T
-    sizes = np.linalg.norm(basis[:-1], axis=1)
-    # The first of equals: which of two alike entries is larger by rounding must not decide.
-    among_largest = sizes >= (1 - TIE) * sizes.max()
-    largest = int(np.argmax(among_largest))
-    direction = basis @ basis[largest]
-    length = np.linalg.norm(direction)
-    return np.asarray(direction / length)
+    unknowns = len(tangent) - 1
+    return direction_in(basis, unknowns)

@@ -1,8 +1,10 @@
 """Descent of an energy to a minimum by its gradient and its Hessian: off saddles, along negative curvature.
 
 A trust region: the step minimises the quadratic model of the energy in a ball; at a saddle it leaves along the
-eigenvector of the lowest eigenvalue. The energy need not be written: its change over a step is the work of the
-gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd ed., Springer 2006, sections 4.1 and 4.3.
+eigenvector of the lowest eigenvalue. Where symmetry leaves no slope there, the way out is chosen, and by the largest
+coordinate rather than by rounding (directions.py): the same on every discretisation. The energy need not be written:
+its change over a step is the work of the gradient along it. J. Nocedal, S. J. Wright, *Numerical Optimization*, 2nd
+ed., Springer 2006, sections 4.1 and 4.3.
 See docs/theory.md, section 9.
 """
 
@@ -15,6 +17,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.directions import TIE, direction_in
 from cosserat_casadi.numerics.newton import length_of, relative_norm
 
 _GAUSS_NODES, _GAUSS_WEIGHTS = leggauss(4)
@@ -136,7 +139,7 @@ def descend(energy: Energy, start: FloatArray, side: float, settings: DescentSet
     model: _QuadraticModel | None = None
     for _ in range(settings.steps):
         if model is None:
-            model = _quadratic_model(energy, x)
+            model = _quadratic_model(energy, x, settings.tolerance)
         if model is None:
             return None
         flat = relative_norm(model.gradient, x) <= settings.tolerance
@@ -167,8 +170,14 @@ def _agreement(foreseen: float, actual: float) -> float:
     return -1.0
 
 
-def _quadratic_model(energy: Energy, x: FloatArray) -> _QuadraticModel | None:
-    """The quadratic model at a point; None where a number is not finite."""
+def _quadratic_model(energy: Energy, x: FloatArray, tolerance: float) -> _QuadraticModel | None:
+    """The quadratic model at a point; None where a number is not finite.
+
+    Args:
+        energy: what is lowered.
+        x: the point, shape (n,).
+        tolerance: bound on the relative norm of a slope that counts as none.
+    """
     gradient = energy.gradient(x)
     hessian = energy.hessian(x)
     if not np.all(np.isfinite(gradient)):
@@ -176,7 +185,34 @@ def _quadratic_model(energy: Energy, x: FloatArray) -> _QuadraticModel | None:
     if not np.all(np.isfinite(hessian)):
         return None
     curvatures, axes = np.linalg.eigh((hessian + hessian.T) / 2)
+    if curvatures.size and curvatures[0] < 0.0:
+        return _with_way_out(gradient, curvatures, axes, x, tolerance)
     return _QuadraticModel(gradient, curvatures, axes)
+
+
+def _with_way_out(
+    gradient: FloatArray, curvatures: FloatArray, axes: FloatArray, x: FloatArray, tolerance: float
+) -> _QuadraticModel:
+    """The quadratic model where a curvature is negative: its first axis does not hang on rounding.
+
+    A round rod buckles to any side: the axes of equal lowest curvatures are any basis of their space. The first becomes
+    the direction that :func:`direction_in` chooses. A slope in that space that is none but for rounding is left out, or
+    it would choose the side.
+    """
+    lowest = curvatures[0]
+    alike = curvatures <= lowest + TIE * abs(lowest)
+    space = axes[:, alike]
+    count = space.shape[1]
+    chosen = space.T @ direction_in(space)
+    # A basis of the space that begins with the direction; the factorisation may have turned it round.
+    basis, factor = np.linalg.qr(np.column_stack([chosen, np.eye(count)]))
+    turned = axes.copy()
+    turned[:, alike] = space @ basis
+    turned[:, 0] *= np.sign(factor[0, 0])
+    slopes = turned[:, alike].T @ gradient
+    if relative_norm(slopes, x) <= tolerance:
+        gradient = gradient - turned[:, alike] @ slopes
+    return _QuadraticModel(gradient, curvatures, turned)
 
 
 def ball_minimum(curvatures: FloatArray, slopes: FloatArray, radius: float, side: float) -> FloatArray:

@@ -16,7 +16,17 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.numbers import Numbers, as_matrix, is_symbolic, known, product, repeated
+from cosserat_casadi.maths.numbers import (
+    Numbers,
+    any_symbolic,
+    as_matrix,
+    is_symbolic,
+    known,
+    product,
+    repeated,
+    row_times,
+    rows_of,
+)
 from cosserat_casadi.maths.rotation import cross
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.kinematics import Shape
@@ -175,18 +185,32 @@ class Statics:
             # δr of the node is this row of S times the variations of the tangents.
             row = grid.integration_matrix[grid.node_at(wrench.at)]
             return self._resultant(wrench, force) @ ca.DM(row).T
-        if is_symbolic(rod.node_lengths):
-            per_node = self.line(wrench, force) @ ca.diag(rod.node_lengths)
-            return per_node @ ca.DM(grid.integration_matrix)
-        to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
         if wrench.follower or wrench.profiles is None:
-            return self.line(wrench, force) @ ca.DM(to_covector)
+            per_length = self.line(wrench, force)
+            if is_symbolic(rod.node_lengths):
+                return per_length @ ca.diag(rod.node_lengths) @ ca.DM(grid.integration_matrix)
+            return per_length @ ca.DM(known(rod.node_lengths)[:, None] * grid.integration_matrix)
         # Profiles are numbers: a dead force per length needs no product with S at run time.
         profiles = wrench.profiles
-        if not is_symbolic(profiles):
+        if not any_symbolic([profiles, rod.node_lengths]):
+            to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
             return force @ ca.DM(known(profiles) @ to_covector)
-        rows = [product(to_covector.T, profile.T).T for profile in ca.vertsplit(profiles)]
-        return force @ ca.vertcat(*rows)
+        return force @ ca.vertcat(*[self._profile_covector(profile) for profile in rows_of(profiles)])
+
+    def _profile_covector(self, profile: Numbers) -> Matrix:
+        """What a unit of a profile adds to n̂, 1×M, m: linear in the profile, and in the rates of moved elements."""
+        rod = self.shape.rod
+        grid = rod.grid
+        rates = grid.rates
+        if not is_symbolic(rates):
+            to_covector = known(rod.node_lengths)[:, None] * grid.integration_matrix
+            return product(to_covector.T, profile).T
+        if is_symbolic(profile):
+            return product(grid.integration_matrix.T, row_times(rod.node_lengths, profile)).T
+        per_reference = rod.reference_lengths * known(profile)
+        of_element = grid.element_of_node[:, None] == np.arange(grid.elements)
+        by_rate = grid.integration_matrix.T @ (per_reference[:, None] * of_element)
+        return product(by_rate, rates).T
 
     def _couple_covector(self, wrench: Wrench, moment: Matrix) -> Matrix:
         grid = self.shape.rod.grid

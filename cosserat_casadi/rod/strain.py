@@ -38,8 +38,6 @@ from cosserat_casadi.maths.numbers import (
     known,
     product,
     reciprocal,
-    repeated,
-    row_times,
     without_rounding,
 )
 from cosserat_casadi.maths.polynomials import legendre_table
@@ -47,6 +45,7 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.rod.folded_matrix import FoldedMatrix, folded
 from cosserat_casadi.rod.properties import Field, RodProperties
+from cosserat_casadi.rod.section_matrix import section_matrix
 
 Array = npt.NDArray[np.float64]
 
@@ -237,75 +236,14 @@ class DiscreteRod:
     @cached_property
     def stiffness(self) -> Numbers:
         """K_εε = ℓ ∫ Φᵀ H_a Φ dX of report (2.14) divided by EI/ℓ, shape (n, n), without unit."""
-        return self._section_matrix(self.properties.hooke)
+        return section_matrix(self, self.properties.hooke)
 
     @cached_property
     def viscosity(self) -> Numbers:
         """ℓ ∫ Φᵀ Υ Φ dX divided by EI/ℓ, Υ the coefficients of damping, shape (n, n), s; zero without damping."""
         if self.properties.damping is None:
             return np.zeros((self.size, self.size))
-        return self._section_matrix(self.properties.damping)
-
-    def _section_matrix(self, diagonal: Field) -> Numbers:
-        """ℓ ∫ Φᵀ D Φ dX divided by EI/ℓ for coefficients D of the six strains, shape (n, n)."""
-        points = [self._gauss_points(e) for e in range(self.grid.elements)]
-        coefficients = [self._per_element(diagonal, e, X) for e, (X, _) in enumerate(points)]
-        if any_symbolic(coefficients):
-            return self._symbolic_section_matrix(coefficients)
-        result = np.zeros((self.size, self.size))
-        for e, (X, weight) in enumerate(points):
-            weighted = known(coefficients[e]) * weight[:, None]
-            element = np.full(len(X), e)
-            # Strains do not couple: the tensor is diagonal, and so are its blocks.
-            for c, columns in self.columns.items():
-                phi = self.shape_functions(c, X, element)
-                result[columns, columns] += phi.T @ (weighted[:, [c]] * phi)
-        return without_rounding(result)
-
-    def _gauss_points(self, element: int) -> tuple[Array, Array]:
-        """Places of an element in the grid's coordinate, shape (k,), and the weights ℓ w / (EI/ℓ) of a sum over them.
-
-        Enough for the product of two polynomials with a section stiffness of degree four.
-        """
-        points, weights = legendre.leggauss(max(self.discretisation.modes) + 8)
-        start, end = self.grid.breaks[element : element + 2]
-        width = end - start
-        X = start + width * (points + 1) / 2
-        lengths = weights * width / 2 * self.length
-        return X, lengths / self.energy_unit
-
-    def _per_element(self, diagonal: Field, element: int, X: Array) -> Numbers:
-        """Coefficients of strains per coordinate at places of an element, shape (k, 6) or one row for all."""
-        elements = np.full(len(X), element)
-        coefficients = diagonal(self.grid.on_rod(X, elements))
-        rate = self.grid.rates_in(elements)
-        if rate is None:
-            return coefficients
-        # One row for all times the one rate of the element.
-        return each_times(coefficients, reciprocal(rate[: coefficients.shape[0]]))
-
-    def _symbolic_section_matrix(self, by_element: Sequence[Numbers]) -> Matrix:
-        """The same where the coefficients are expressions: its entries are linear in them."""
-        points = [self._gauss_points(e) for e in range(self.grid.elements)]
-        element = np.repeat(np.arange(self.grid.elements), [len(X) for X, _ in points])
-        X = np.concatenate([X for X, _ in points])
-        weights = np.concatenate([weight for _, weight in points])
-        alike = all(part.shape[0] == 1 for part in by_element) and self.ends is None
-        if alike:
-            # One row stands for all points of all elements.
-            coefficients = as_matrix(by_element[0])
-        else:
-            rows = [repeated(part, len(own)) for part, (own, _) in zip(by_element, points, strict=True)]
-            coefficients = ca.vertcat(*map(as_matrix, rows))
-        blocks = []
-        for c in self.columns:
-            phi = self.shape_functions(c, X, element)
-            # One column a point: the product of two modes there, for every pair of modes.
-            pairs = (phi[:, :, None] * phi[:, None, :] * weights[:, None, None]).reshape(len(X), -1).T
-            own = column(coefficients, c)
-            size = phi.shape[1]
-            blocks.append(ca.reshape(product(pairs, own), size, size))
-        return ca.diagcat(*blocks)
+        return section_matrix(self, self.properties.damping)
 
     @cached_property
     def stiffness_matrix(self) -> Matrix:
@@ -406,24 +344,44 @@ class DiscreteRod:
 
     def _moved_intrinsic_turn(self) -> Matrix:
         """The same where element ends are expressions: the unloaded curvature is sampled where its elements are."""
-        X, element, lengths, to_taylor = self._taylor_samples
-        intrinsic = self.properties.intrinsic_curvature(self.grid.on_rod(X, element))
-        rates = self.grid.rates_in(element)
-        assert rates is not None, "asked for where elements move"
-        rates_of_intervals: Numbers = rates[:: len(X) // len(lengths)]
         rows: list[Matrix] = []
-        for order, weights in enumerate(to_taylor):
-            summed = ca.sparsify(ca.DM(np.kron(np.diag(lengths), weights)))
+        turns = [self._turn_of_samples(len(own)) for own in self.properties.intrinsic[:3]]
+        for order in range(self.taylor_count):
             for axis in self.properties.turning_axes:
                 own = self.properties.intrinsic[axis]
                 if len(own) <= order or is_zero(own):
                     # A polynomial has no Taylor coefficient beyond its degree.
-                    rows.append(ca.DM(1, len(lengths)))
-                elif len(own) == 1:
-                    rows.append(as_matrix(row_times(lengths, rates_of_intervals)).T * own[0])
-                else:
-                    rows.append((summed @ as_matrix(each_times(column(intrinsic, axis), rates))).T)
+                    rows.append(ca.DM(1, len(self.grid.left_ends)))
+                    continue
+                by_sample = turns[axis][order]
+                rows.append((ca.sparsify(ca.DM(by_sample)) @ self._element_samples(axis)).T)
         return ca.vertcat(*rows)
+
+    def _element_samples(self, axis: int) -> Matrix:
+        """Unloaded curvature about an axis at as many Gauss points of each element as determine it, times its rate."""
+        count = len(self.properties.intrinsic[axis])
+        points, _ = legendre.leggauss(count)
+        breaks = np.asarray(self.grid.breaks)
+        places = breaks[:-1, None] + np.diff(breaks)[:, None] * (points + 1) / 2
+        element = np.repeat(np.arange(self.grid.elements), count)
+        curvature = self.properties.intrinsic_curvature(self.grid.on_rod(places.ravel(), element))
+        rates = self.grid.rates_in(element)
+        return as_matrix(each_times(column(curvature, axis), rates))
+
+    def _turn_of_samples(self, count: int) -> list[Array]:
+        """Taylor coefficients of all intervals by so many samples of each element, (intervals, E·count) for each l."""
+        points, _ = legendre.leggauss(count)
+        to_coefficients = np.linalg.inv(legendre.legvander(points, count - 1))
+
+        def local_polynomials(X: Array, element: Indices) -> Array:
+            breaks = np.asarray(self.grid.breaks)
+            local = 2 * (X - breaks[element]) / np.diff(breaks)[element] - 1
+            polynomials = np.zeros((len(X), self.grid.elements, count))
+            polynomials[np.arange(len(X)), element] = legendre.legvander(local, count - 1)
+            return polynomials.reshape(len(X), -1)
+
+        to_samples = np.kron(np.eye(self.grid.elements), to_coefficients)
+        return [without_rounding(turn @ to_samples) for turn in self._taylor(local_polynomials)]
 
     @cached_property
     def taylor_count(self) -> int:

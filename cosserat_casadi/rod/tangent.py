@@ -309,7 +309,8 @@ class Tangent:
         turned = -(hat_operator(per_length) @ self.rotation)
         lengths = self.rod.node_lengths
         if is_symbolic(lengths):
-            to_covector = ca.DM(grid.integration_matrix).T @ ca.diag(lengths)
+            to_covector = ca.DM(grid.integration_matrix).T
+            turned = ca.diag(ca.repmat(lengths, 3, 1)) @ turned
         else:
             to_covector = ca.DM(known(lengths)[:, None] * grid.integration_matrix).T
         components = [to_covector @ component for component in ca.vertsplit(turned, grid.size)]

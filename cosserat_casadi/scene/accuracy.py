@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, StrictBool
+from pydantic import AfterValidator, Field, StrictBool
 
-from cosserat_casadi.scene.records import Record
+from cosserat_casadi.scene.faults import Fault, Table, shown
+from cosserat_casadi.scene.number_table import finite_number
+from cosserat_casadi.scene.records import Record, refusal
 from cosserat_casadi.scene.values import BY_LENGTH, SEVERAL, SINGLE, NotEmpty, Number, Whole
 
 Modes = Annotated[Whole, Field(ge=1, le=200)]
@@ -14,6 +17,20 @@ ModesChoice = Annotated[
     Annotated[Modes, SINGLE] | Annotated[tuple[Modes, ...], NotEmpty(), SEVERAL],
     BY_LENGTH,
 ]
+
+
+def _ascending(value: str) -> str:
+    """Refuse what is not the name of a column and two numbers in their order."""
+    column, _, ends = value.rpartition("=")
+    low, _, high = ends.partition(":")
+    lower, upper = finite_number(low), finite_number(high)
+    if not column or lower is None or upper is None or lower > upper:
+        problem = f"must be a column and two numbers, the lower first, got {shown(value)}"
+        raise refusal([Fault((), problem, "such as 'push.force.x=-1:1'")])
+    return value
+
+
+Range = Annotated[str, AfterValidator(_ascending)]
 
 
 class Accuracy(Record):
@@ -42,6 +59,18 @@ shape = true
         description="how the rotation is integrated: products of exponentials of order 4, 6 or 8, or the literal "
         "'permuted' linear system",
     )
+
+    chosen_for: Annotated[tuple[Range, ...], NotEmpty()] | None = Field(
+        None,
+        description="what modes and nodes were chosen for, as `cosserat tune` writes it: 'column=low:high' of inputs "
+        "and parameters, in their units",
+    )
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """Ranges are those of modes and nodes."""
+        if "chosen_for" in given and "modes" not in given:
+            yield Fault(("chosen_for",), "stands without modes", "leave it out: it says what modes were chosen for")
 
     @property
     def fixed(self) -> bool:

@@ -193,14 +193,6 @@ class JointRecord(Entry):
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
-    def parameter_refusal(self, key: str) -> tuple[str, str] | None:
-        """An axis decides which directions are held."""
-        if key == "axis":
-            return "is an axis, which decides the directions that the joint holds", "build a scene for each value"
-        if key == "quaternion" and "axis" in type(self).model_fields:
-            return "turns the axis of the joint", "build a scene for each value"
-        return super().parameter_refusal(key)
-
 
 JOINTS: Family[JointRecord] = Family("joints")
 """Kinds of joints."""

@@ -95,6 +95,21 @@ class NamedNumbers:
         owner = getattr(self.holder.record, "name", None) or f"{self.holder.table}[{self.holder.index}]"
         return ".".join((owner, *self.keys))
 
+    @property
+    def cell_names(self) -> tuple[str, ...]:
+        """A name for each cell, which names that number alone."""
+        rows = dict.fromkeys(row for row, _ in self.cells)
+        columns = dict.fromkeys(column for _, column in self.cells)
+        words = _component_words(self.form, len(rows))
+        names = []
+        for row, column in self.cells:
+            component = f".{words[row]}" if len(rows) > 1 else ""
+            place = ""
+            if len(columns) > 1:
+                place = f".{ENDS[column]}" if self.form is Form.ENDS else f"[{column}]"
+            names.append(self.name + component + place)
+        return tuple(names)
+
     def written(self, record: Entry, values: Sequence[Any]) -> Entry:
         """The entry with other numbers, or expressions, one for each cell."""
         changed: Entry = self._changed(record, self.keys, values)
@@ -215,8 +230,7 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
     columns = max(lengths)
     chosen_rows: Iterable[int] = range(rows)
     if remaining and rows > 1:
-        words = SPAN if form is Form.VECTOR and rows == len(SPAN) else AXES.get(rows, AXES[3][:rows])
-        row = _part(remaining.pop(0), words, rows, "component")
+        row = _part(remaining.pop(0), _component_words(form, rows), rows, "component")
         chosen_rows = [row]
         columns = lengths[row]
     chosen_columns: Iterable[int] = range(columns)
@@ -231,6 +245,13 @@ def _chosen(form: Form, lengths: Sequence[int], parts: Sequence[str]) -> tuple[C
         problem = f"has no part {shown('.'.join(remaining))}"
         raise RefusedParameter(problem, "to make a coefficient a parameter, give it in the scene: it may be zero")
     return tuple((row, column) for column, row in itertools.product(chosen_columns, chosen_rows))
+
+
+def _component_words(form: Form, rows: int) -> Sequence[str]:
+    """Names of the components of a key."""
+    if form is Form.VECTOR and rows == len(SPAN):
+        return SPAN
+    return AXES.get(rows, AXES[3][:rows])
 
 
 def _part(word: str, words: Sequence[str], count: int, what: str) -> int:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import build, discretise, parse_scene, solve, solve_scene, tune
+from cosserat_casadi import SceneError, build, discretise, parse_scene, solve, solve_scene, tune
 from cosserat_casadi.accuracy.metrics import pose_distance
 from cosserat_casadi.scene.writing import scene_text
-from tests.scenes import push, scene
+from tests.scenes import push, rod, scene
 
 
 def test_tuned_discretisation_holds_at_every_case() -> None:
@@ -43,3 +44,40 @@ def test_a_case_without_equilibrium_is_not_met() -> None:
     assert not tuning.met
     assert tuning.worst == 1
     assert not tuning.solutions[1].converged
+
+
+def test_parameters_are_tuned_for_as_inputs_are() -> None:
+    """A rod that a parameter bends more wants more modes; the file says what they were chosen for."""
+    curved = {**rod("planar"), "intrinsic": {"curvature": [0, [0.5, 0.0], 0]}}
+    parameters = ["rod.intrinsic.curvature.y"]
+    wanted = scene(push(force=[0.2, 0.0, 0.0]), rods=[curved], parameters=parameters)
+    bent = {"push.force": [0.4, 0.0, 0.0], "rod.intrinsic.curvature.y": [2.0, 6.0]}
+    tuning = tune(wanted, [{}, bent], 1e-6)
+    assert tuning.met
+    assert tuning.scene.parameters == wanted.parameters
+    assert tuning.scene.accuracy.chosen_for == (
+        "push.force.x=0.2:0.4",
+        "rod.intrinsic.curvature.y[0]=0.5:2",
+        "rod.intrinsic.curvature.y[1]=0:6",
+    )
+    assert tuning.solutions[1].model.size > tune(wanted, [{}], 1e-6).solutions[0].model.size
+    again = parse_scene(scene_text(tuning.scene))
+    assert again == tuning.scene
+    # On the modes that it chose, the model with parameters is as exact as it says.
+    model = build(again)
+    found = solve(model, {"push.force": bent["push.force"]}, parameters={parameters[0]: bent[parameters[0]]})
+    fine = build(wanted, discretise(wanted, 14, 34, "magnus8"))
+    exact = solve(fine, {"push.force": bent["push.force"]}, parameters={parameters[0]: bent[parameters[0]]})
+    assert pose_distance(found, exact) <= 1e-6
+
+
+def test_ranges_of_a_scene_are_judged() -> None:
+    for ranges, sentence in (
+        (["push.force.x=1:-1"], "the lower first"),
+        (["push.force.x"], "must be a column and two numbers"),
+        ([], "must have at least one entry"),
+    ):
+        with pytest.raises(SceneError, match=sentence):
+            scene(push(), accuracy={"modes": 4, "chosen_for": ranges})
+    with pytest.raises(SceneError, match="stands without modes"):
+        scene(push(), accuracy={"chosen_for": ["push.force.x=-1:1"]})

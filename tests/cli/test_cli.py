@@ -107,9 +107,14 @@ def test_check_lists_parameters_and_solve_takes_their_values(wire: Path) -> None
     assert "6e+10 Pa" in row
     solved = cosserat("solve", "wire.toml", "--set", f"parameters={names}", cwd=wire)
     assert solved.stdout == cosserat("solve", "wire.toml", cwd=wire).stdout
-    refused = cosserat("export", "wire.toml", "--set", f"parameters={names}", "--output", "c", cwd=wire)
+    refused = cosserat("export", "wire.toml", "--set", f"parameters={names}", "--fmu", "wire.fmu", cwd=wire)
     assert refused.returncode == 2
-    assert "functions in C take" in refused.stderr
+    assert "an FMU has inputs alone" in " ".join(refused.stderr.split())
+    coarse = ("--set", f"parameters={names}", "--set", "accuracy={modes=2, nodes=4}")
+    written = cosserat("export", "wire.toml", *coarse, "--output", "c", cwd=wire)
+    assert written.returncode == 0, written.stderr
+    described = json.loads((wire / "c" / "manifest.json").read_text())
+    assert [entry["name"] for entry in described["parameters"]] == json.loads(names)
     wrong = cosserat("check", "wire.toml", "--set", 'parameters=["wire.material.youngs_modulu"]', cwd=wire)
     assert wrong.returncode == 2
     assert "did you mean 'youngs_modulus'?" in " ".join(wrong.stderr.split())

@@ -248,6 +248,11 @@ def test_what_cannot_be_is_refused(instance, described):
     initialised(instance)
     refused(instance, "setFloat64", [force], [float("nan")])
     refused(instance, "setFloat64", [output], [1.0])
+    # All or none: the first value of a call that is refused is not kept.
+    (before,) = instance.getFloat64([force])
+    refused(instance, "setFloat64", [force, output], [before + 1.0, 1.0])
+    refused(instance, "setFloat64", [force, force], [before + 1.0, float("inf")])
+    assert instance.getFloat64([force]) == [before]
     refused(instance, "getFloat64", [9999])
     refused(instance, "doStep", 0.0, -1.0)
     refused(instance, "doStep", 0.5, PERIOD)

@@ -27,7 +27,14 @@ TAPERED = {
     "section": {"shape": "circle", "radius": [0.02, 0.015]},
     "intrinsic": {"curvature": [0.2, [0.9, 0.3], 0.0]},
 }
-OFFSET = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [[0.02, -0.005], 0.0]}
+OFFSET = {
+    "name": "pull",
+    "kind": "tendon",
+    "rod": "rod",
+    "tension": 0.6,
+    "offset": [[0.02, -0.005], 0.0],
+    "span": [0, 0.7],
+}
 PIN = {"rod": "rod", "kind": "pinned", "position": [0.2, 0.15, 0.6]}
 
 RECIPES = {
@@ -42,6 +49,7 @@ RECIPES = {
                 "rod.section.radius.tip",
                 "rod.intrinsic.curvature.y",
                 "pull.offset.x[1]",
+                "pull.span.end",
             ],
         ),
         2,
@@ -177,7 +185,7 @@ def test_derivatives_with_parameters(made: Exported) -> None:
 
 
 def polished(compiled: Compiled, inputs: FloatArray, p: FloatArray, x: FloatArray) -> FloatArray:
-    """An equilibrium near x to rounding: within the tolerance of the solver a slope has no sixth digit."""
+    """An equilibrium near x to rounding: one within its tolerance has no sixth digit of a slope."""
     size = compiled.size
     jacobian, residual = np.zeros((size, size)), np.zeros(size)
     for _ in range(4):

@@ -13,11 +13,15 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import ExportError, Model, build, compiled_stage, discretise
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen import stage as stage_module
+from cosserat_casadi.codegen.kernels import sources
+from cosserat_casadi.codegen.stage import stage_functions
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
 from tests.codegen.test_load import cached, needs_compiler
 from tests.scenes import WEIGHT, push, scene
 
 pytestmark = needs_compiler
+
+FLEXOR = {"name": "flexor", "kind": "tendon", "rod": "rod", "offset": [0.02, 0.0], "tension": 2.0}
 
 
 @pytest.fixture(autouse=True)
@@ -78,11 +82,77 @@ def test_second_derivatives_vs_model(longest: int, monkeypatch: pytest.MonkeyPat
     x, inputs = ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size)
     plain = ca.Function("plain", [x, inputs], [model.residual(x, inputs), ca.vertcat(*model.tip["rod"](x, inputs)[:2])])
     weights = np.linspace(-1.0, 2.0, model.size)
-    exact = compiled_stage(model, "exact_stage", curvature=True)
+    exact = compiled_stage(model, "exact_stage")
     assert_allclose(hessian(exact, model, weights), hessian(plain, model, weights), rtol=1e-10, atol=1e-12)
     slopes = np.hstack([block.full() for block in model.tip_jacobian["rod"](*somewhere(model))])[:3]
-    bare = hessian(compiled_stage(model, "bare_stage"), model, weights)
+    bare = hessian(compiled_stage(model, "bare_stage", curvature=False), model, weights)
     assert_allclose(bare, slopes.T @ slopes, rtol=1e-10, atol=1e-12)
+
+
+def finger(**changes: object) -> Model:
+    """A rod with a tendon, whose sections and actuator are wanted."""
+    wanted = scene(actuators=[FLEXOR], strain="kirchhoff", inputs=["flexor.tension"], **changes)
+    return build(wanted, discretise(wanted, 2, 4))
+
+
+def test_sections_and_actuators_vs_model() -> None:
+    model = finger()
+    abscissae = [0.0, 0.4, 1.0]
+    stage = compiled_stage(model, "finger_outputs", sections={"rod": abscissae}, actuators=["flexor"])
+    assert stage.name_out() == ["residual", "tip_rod", "sections_rod", "tension_flexor", "length_flexor"]
+    x, inputs = somewhere(model)
+    _, tip, sections, tension, length = stage(x, inputs)
+    expected = [ca.vertcat(*model.shape["rod"](x, inputs, X)) for X in abscissae]
+    assert_allclose(sections.full(), ca.horzcat(*expected).full(), rtol=1e-12, atol=1e-13)
+    assert_allclose(sections.full()[:, -1], tip.full()[:, 0], rtol=1e-12, atol=1e-13)
+    effort, conjugate, slope = model.actuator["flexor"](x, inputs)
+    assert_allclose([float(tension), float(length)], [float(effort), float(conjugate)], rtol=1e-12, atol=1e-14)
+    outputs = [ca.DM(*stage.size_out(i)) for i in range(stage.n_out())]
+    slopes = stage.jacobian()(x, inputs, *outputs)
+    by_name = dict(zip(stage.jacobian().name_out(), slopes, strict=True))
+    assert_allclose(by_name["jac_length_flexor_x"].full(), slope.full(), rtol=1e-11, atol=1e-13)
+    assert_allclose(by_name["jac_tension_flexor_inputs"].full(), [[1.0]], rtol=0, atol=0)
+
+
+def test_second_derivatives_of_further_outputs_vs_model() -> None:
+    """The length of a tendon and the pose of a section bend with x, the work of a tension is bilinear."""
+    model = finger()
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    both = ca.vertcat(x, inputs)
+    at = somewhere(model)
+
+    def second(stage: ca.Function) -> np.ndarray:
+        residual, _, section, tension, length = stage(x, inputs)
+        lagrangian = ca.dot(np.linspace(1.0, 2.0, model.size), residual) + ca.sum1(section) + tension * length
+        return ca.Function("second", [x, inputs], [ca.hessian(lagrangian, both)[0]])(*at).full()
+
+    section = ca.vertcat(*model.shape["rod"](x, inputs, 0.4))
+    results = [model.residual(x, inputs), ca.vertcat(*model.tip["rod"](x, inputs)[:2]), section]
+    plain = ca.Function("plain", [x, inputs], [*results, *model.actuator["flexor"](x, inputs)[:2]])
+    stage = compiled_stage(model, "finger_curved", sections={"rod": [0.4]}, actuators=["flexor"])
+    assert_allclose(second(stage), second(plain), rtol=1e-9, atol=1e-12)
+
+
+def test_code_of_second_derivatives_does_not_grow_with_their_columns() -> None:
+    """One direction in a loop, and of the inputs, which the equations are linear in, none."""
+    model = finger()
+    *_, adjoint, second = stage_functions(model, "finger", True)
+    assert second.nnz_out("jac_adj_inputs_inputs") == 0
+    both = [second.nnz_out("jac_adj_x_inputs"), second.nnz_out("jac_adj_inputs_x")]
+    assert both == [model.size, model.size]
+    size = len(sources([second], "second", "long long int")["second.c"])
+    of_adjoint = len(sources([adjoint], "adjoint", "long long int")["adjoint.c"])
+    assert size < 6 * of_adjoint
+
+
+def test_outputs_that_a_model_does_not_have_are_refused() -> None:
+    with pytest.raises(ExportError) as refused:
+        compiled_stage(wire(), sections={"wire": [0.5], "rod": [1.5]}, actuators=["flexor"])
+    assert "sections.wire" in str(refused.value)
+    assert "take one of rod" in str(refused.value)
+    assert "sections.rod" in str(refused.value)
+    assert "actuators.flexor" in str(refused.value)
 
 
 def test_a_model_without_scalar_form_is_refused() -> None:

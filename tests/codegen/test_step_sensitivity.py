@@ -66,7 +66,8 @@ def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
     of_x[:, size : 2 * size] += h * moves
     of_v[:, size : 2 * size] += moves
     whole = np.vstack([of_x, of_v])
-    return StepSensitivity(whole[:, : 2 * size], whole[:, 2 * size : 2 * size + count], whole[:, 2 * size + count :])
+    by_start, by_inputs, by_rate = np.split(whole, [2 * size, 2 * size + count], axis=1)
+    return StepSensitivity(by_start, by_inputs, by_rate, np.zeros((2 * size, 0)))
 
 
 def slopes(function: Callable[..., object], at: tuple[FloatArray, ...], which: int) -> FloatArray:

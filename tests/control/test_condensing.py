@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi.control import Condensed, Condensing, Horizon
@@ -51,6 +52,24 @@ def test_a_state_that_is_not_finite_is_seen_in_the_residual() -> None:
     states[-1, 0] = np.nan
     guess = Horizon(states, np.tile(wanted.stage.still(wanted.near.x), (STAGES, 1)))
     assert np.isnan(condensing.condensed(guess, pulled(wanted, RATES)[:-1], RATES).residual)
+
+
+def test_arrays_of_other_shapes_are_refused_all_at_once() -> None:
+    wanted = task()
+    condensing = Condensing(wanted.stage, wanted.stage.equations, STAGES, [0])
+    guess = Horizon(np.tile(wanted.start, (STAGES, 1)), np.tile(wanted.stage.still(wanted.near.x), (STAGES, 1)))
+    with pytest.raises(ValueError, match=r"states must have the shape .*; inputs_rate must have"):
+        condensing.condensed(guess, pulled(wanted, RATES)[:-1], RATES[:-1])
+
+
+@pytest.mark.parametrize(
+    ("stages", "steered", "what"),
+    [(0, [0], "stages"), (3, [2], "steered"), (3, [-1], "steered"), (3, [1, 1], "steered")],
+)
+def test_no_stage_and_no_such_input_are_refused(stages: int, steered: list[int], what: str) -> None:
+    wanted = task()
+    with pytest.raises(ValueError, match=what):
+        Condensing(wanted.stage, wanted.stage.equations, stages, steered)
 
 
 def test_derivatives_vs_differences_of_simulations() -> None:

@@ -25,7 +25,7 @@ def pulled(run: Run, first: np.ndarray) -> np.ndarray:
 def test_the_robot_follows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
     known, robot = robots()
-    stage = compiled_stage(known.model, "robot_stage")
+    stage = compiled_stage(known.model, "robot_stage", curvature=False)
     runs = {name: simulate(known, robot, stage, name, steps=6) for name in SOLVERS}
     for run in runs.values():
         assert all(plan.succeeded and plan.residual <= BALANCED for plan in run.plans)

@@ -10,9 +10,21 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from cosserat_casadi import Outcome, Scene, SceneError, Solution, build, discretise, follow_path, solve, solve_scene
+from cosserat_casadi import (
+    Outcome,
+    Scene,
+    SceneError,
+    Solution,
+    build,
+    discretise,
+    follow_path,
+    scene_from_dict,
+    solve,
+    solve_scene,
+)
 from cosserat_casadi.equilibrium.relax import energy_at
 from cosserat_casadi.equilibrium.stability import stability_of
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.numerics.broyden import newton_step
 from cosserat_casadi.numerics.descent import DescentSettings, Energy, ball_minimum, descend
@@ -206,6 +218,36 @@ def test_descent_leaves_a_saddle_to_either_side(side: float) -> None:
     assert_allclose(energy.change(np.zeros(2), minimum), -0.25, rtol=1e-12, atol=0)
 
 
+def round_top(noise: FloatArray) -> Energy:
+    """(x² + y² − 1)²/4 + 2 z² − ½ x · noise x: from the top at zero down to a circle of minima."""
+    plane = np.diag([1.0, 1.0, 0.0])
+    stiff = np.diag([0.0, 0.0, 4.0]) - noise
+
+    def gradient(x: FloatArray) -> FloatArray:
+        across = plane @ x
+        return (across @ across - 1.0) * across + stiff @ x
+
+    def hessian(x: FloatArray) -> FloatArray:
+        across = plane @ x
+        return (across @ across - 1.0) * plane + 2 * np.outer(across, across) + stiff
+
+    return Energy(gradient, hessian)
+
+
+@pytest.mark.parametrize("turn", [0.4, 2.0, -1.3])
+def test_way_out_of_a_round_saddle_does_not_hang_on_rounding(turn: float) -> None:
+    """Noise turns the eigenvectors of the Hessian, and gives the gradient a direction, but not the descent."""
+    direction = np.array([np.cos(turn), np.sin(turn), 0.0])
+    noise = 1e-13 * np.outer(direction, direction)
+    minimum = descend(round_top(noise), 1e-12 * direction, 1.0, DescentSettings())
+    expected = descend(round_top(np.zeros((3, 3))), np.zeros(3), 1.0, DescentSettings())
+    assert minimum is not None
+    assert expected is not None
+    assert_allclose(minimum, expected, rtol=0, atol=1e-6)
+    assert_allclose(expected[:2] @ expected[:2], 1.0, rtol=0, atol=1e-6)
+    assert expected[0] > 0.99
+
+
 def test_descent_without_a_minimum_ends() -> None:
     assert descend(Energy(lambda x: -x, lambda x: -np.eye(2)), np.ones(2), 1.0, DescentSettings(steps=20)) is None
     nan = Energy(lambda x: np.full(2, np.nan), lambda x: np.eye(2))
@@ -226,3 +268,18 @@ def test_energy_with_springs_for_supports_has_this_gradient_and_hessian(kind: st
     for direction in np.eye(len(q)):
         slope = (energy.gradient(q + 1e-5 * direction) - energy.gradient(q - 1e-5 * direction)) / 2e-5
         assert_allclose(hessian @ direction, slope, rtol=0, atol=1e-6)
+
+
+def test_a_round_rod_that_a_pin_presses_together_is_neutral() -> None:
+    """It buckles to any side; the large force of the pin turns along and tells nothing of how far it was turned."""
+    stiffness = {"bending_x": 1.0, "bending_y": 1.0, "torsion": 1.4}
+    pressed = {
+        "schema": 1,
+        "rods": [{"name": "rod", "length": 1.0, "strain": "kirchhoff", "stiffness": stiffness}],
+        "supports": [{"rod": "rod", "kind": "pinned", "position": [0.0, 0.0, 0.105]}],
+    }
+    wanted = scene_from_dict(pressed)
+    solution = solve(build(wanted, discretise(wanted, 7, 16)), stable=True)
+    assert solution.converged
+    assert "neutral" in solution.message
+    assert solution.stable

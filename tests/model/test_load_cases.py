@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import SceneError
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_cases import column_indices, read_load_cases, spread
+from cosserat_casadi.model.load_cases import CaseLayout, column_indices, read_load_cases, spread
 from tests.scenes import WIND, push, scene
 
 
@@ -31,7 +31,7 @@ def test_columns_are_named_in_the_order_of_the_inputs(layout: InputLayout) -> No
 def test_rows_of_a_csv(layout: InputLayout, tmp_path: Path) -> None:
     path = tmp_path / "loads.csv"
     path.write_text("push.force.x, wind.force.y.1\n-1.5, 2\n\n0,1e-3\n")
-    cases = read_load_cases(path, layout)
+    cases = read_load_cases(path, CaseLayout(layout))
     places = column_indices(layout)
     assert cases.shape == (2, layout.size)
     assert_allclose(cases[:, places["push.force.x"]], [-1.5, 0.0], rtol=0, atol=0)
@@ -43,7 +43,7 @@ def test_every_fault_of_a_csv_is_named(layout: InputLayout, tmp_path: Path) -> N
     path = tmp_path / "loads.csv"
     path.write_text("push.force.x,push.force.x,pull.force.x\n1,2,3\n1,2\nnan,x,1\n")
     with pytest.raises(SceneError) as refused:
-        read_load_cases(path, layout)
+        read_load_cases(path, CaseLayout(layout))
     said = str(refused.value)
     for words in ("'pull.force.x' is not an input", "push.force.x twice", "line 3", "2 values", "'nan'", "'x'"):
         assert words in said
@@ -54,14 +54,14 @@ def test_a_csv_without_cases_is_refused(layout: InputLayout, tmp_path: Path, tex
     path = tmp_path / "loads.csv"
     path.write_text(text)
     with pytest.raises(SceneError, match="holds no row of numbers"):
-        read_load_cases(path, layout)
+        read_load_cases(path, CaseLayout(layout))
     with pytest.raises(SceneError, match="cannot be read"):
-        read_load_cases(tmp_path / "none.csv", layout)
+        read_load_cases(tmp_path / "none.csv", CaseLayout(layout))
 
 
 def test_points_cover_the_box_evenly(layout: InputLayout) -> None:
     """Every cell of a 4×4 grid over two ranges holds its share of 160 points, within a third."""
-    cases = spread(["push.force.x=-1:1", "push.force.z=2:6"], 160, layout)
+    cases = spread(["push.force.x=-1:1", "push.force.z=2:6"], 160, CaseLayout(layout))
     places = column_indices(layout)
     x, z = cases[:, places["push.force.x"]], cases[:, places["push.force.z"]]
     assert_allclose([x[0], z[0]], [1.0, 6.0], rtol=0, atol=0)
@@ -75,5 +75,5 @@ def test_points_cover_the_box_evenly(layout: InputLayout) -> None:
 
 def test_every_fault_of_ranges_is_named(layout: InputLayout) -> None:
     with pytest.raises(SceneError) as refused:
-        spread(["pull.force.x=0:1", "push.force.x=0", "push.force.y=0:inf"], 3, layout)
+        spread(["pull.force.x=0:1", "push.force.x=0", "push.force.y=0:inf"], 3, CaseLayout(layout))
     assert len(refused.value.problems) == 3

@@ -204,6 +204,14 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         {"schema": 1, **PLATFORM, "joints": HINGES},
         {"joints[0].position": [-0.12, 0.01, 0.02], "joints[1].position.x": 0.13},
     ),
+    "axes of hinges and slides": (
+        {"schema": 1, **PLATFORM, "joints": HINGES},
+        {
+            "joints[0].axis": [0.3, 1.2, -0.1],
+            "joints[0].quaternion": [0.96, 0.0, 0.28, 0.0],
+            "joints[1].axis": [-2.0, 0.5, 0.3],
+        },
+    ),
     "place of a branch": (
         {"schema": 1, **BRANCH},
         {"twig.base.position": [0.01, 0.02, 0], "twig.base.quaternion": [0.6, 0, 0.8, 0], "tip.position.y": 0.02},
@@ -507,6 +515,7 @@ EQUILIBRIA = (
     "lengths in an assembly",
     "places of joints",
     "places of hinges and slides",
+    "axes of hinges and slides",
     "place of a branch",
     "bodies",
     "span of a cable of given length",
@@ -582,13 +591,18 @@ def test_equations_of_moved_elements_are_those_of_a_scene_of_its_own(case: str, 
     rate = widths[np.concatenate(element)]
     x, v, a, inputs, still = point(model)
     p = model.parameters.pack(values)
-    if rotation == "permuted":
-        wanted = rebuilt.residual(x / rate, inputs).full()[:, 0] / rate
-        found = model.residual(x, inputs, p).full()[:, 0]
-    else:
-        wanted = rebuilt.inverse_dynamics(x / rate, v / rate, a / rate, inputs, still, still).full()[:, 0] / rate
-        found = model.inverse_dynamics(x, v, a, inputs, p, still, still).full()[:, 0]
-    assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
+    force, matrix = rate[:, None], np.outer(rate, rate)
+    pairs = [(model.residual(x, inputs, p), rebuilt.residual(x / rate, inputs), force)]
+    if rotation != "permuted":
+        moving = rebuilt.inverse_dynamics(x / rate, v / rate, a / rate, inputs, still, still)
+        pairs += [
+            (model.inverse_dynamics(x, v, a, inputs, p, still, still), moving, force),
+            (model.jacobian(x, inputs, p)[0], rebuilt.jacobian(x / rate, inputs)[0], matrix),
+            (model.mass_matrix(x, inputs, p), rebuilt.mass_matrix(x / rate, inputs), matrix),
+        ]
+    for found, expected, factor in pairs:
+        wanted = expected.full() / factor
+        assert_allclose(found.full(), wanted, rtol=1e-12, atol=1e-12 * np.abs(wanted).max())
 
 
 def test_the_unloaded_response_is_that_of_the_model_with_these_numbers() -> None:
@@ -662,6 +676,7 @@ def test_the_response_of_the_tip_to_a_place_against_scenes_of_their_own() -> Non
     assert_allclose(response, difference, rtol=1e-6, atol=1e-7 * np.abs(difference).max())
 
 
+@pytest.mark.slow
 def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
     """Errors of the tip against many modes, at a place that a parameter has moved far."""
     values = {"poke.at": 0.62, "prod.at": 0.9}
@@ -678,9 +693,29 @@ def test_a_moved_place_keeps_the_rate_of_convergence() -> None:
     assert np.all(np.diff(np.log10(errors)) < -1.0)
 
 
+def test_axes_that_keep_planar_rods_in_their_plane_are_refused() -> None:
+    planar = {"length": 0.8, "strain": "planar", "stiffness": {"bending_y": 1.0}, "linear_density": 0.1}
+    across = {"body": "plate", "kind": "revolute", "axis": [0, 1, 0]}
+    given = {
+        "schema": 1,
+        "rods": [{**planar, "name": "left"}, {**planar, "name": "right", "base": {"position": [0.2, 0, 0]}}],
+        "bodies": [{"name": "plate", "mass": 0.1}],
+        "joints": [
+            {**across, "rod": "left"},
+            {"body": "plate", "kind": "prismatic", "axis": [1, 0, 0], "rod": "right", "position": [0.2, 0, 0]},
+        ],
+        "loads": [WEIGHT],
+        "inputs": [],
+    }
+    names = ["joints[0].axis", "joints[1].position", "joints[1].quaternion"]
+    with pytest.raises(SceneError, match="keeps planar rods in their plane") as refused:
+        build(scene_from_dict({**given, "parameters": names}))
+    assert [problem.where for problem in refused.value.problems] == [names[0], names[2]]
+
+
 def test_an_fmu_is_refused_with_what_to_do(tmp_path: Path) -> None:
     model = model_of("density")
-    with pytest.raises(ExportError, match="this takes unknowns and inputs alone"):
+    with pytest.raises(ExportError, match="an FMU has inputs alone"):
         write_fmu(model, tmp_path / "wire.fmu", "wire")
     assert list(tmp_path.iterdir()) == []
 

@@ -145,6 +145,16 @@ def test_pieces_meet_at_the_knots_with_limits_from_within(motion: dict[str, Any]
         assert_array_equal(held, np.repeat(VALUES, 2, axis=0))
 
 
+def test_pieces_go_on_beyond_their_ends() -> None:
+    """As one polynomial: constraints are differentiated there where a motion starts anew next to an end."""
+    for piece in moving(CUBIC).pieces(0.8):
+        span = piece.end - piece.start
+        samples = [of_force(piece.at(t)) for t in np.linspace(piece.end - span, piece.end + 0.1 * span, 6)]
+        differences = np.diff(samples, n=4, axis=0)
+        scale = np.abs(samples).max(axis=(0, 2))[:, None]
+        assert np.all(np.abs(differences) <= 1e-12 * scale)
+
+
 def test_knots_on_a_line_cut_nothing() -> None:
     """Rounding of 0.1 k makes slopes differ in their last digits."""
     times = [0.1 * k for k in range(11)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -11,7 +12,13 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, Motion, MotionOutcome, build, simulate, solve
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.endings import independence_of
+from cosserat_casadi.motion.history import History, integrated
+from cosserat_casadi.motion.simulate import moving_inputs, started
 from cosserat_casadi.numerics.collocation import Collocation, radau
+from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepSettings
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+from cosserat_casadi.numerics.time_steps import integrate
 from tests import moving_scenes
 from tests.motion.stepping import moving_model, orders, stepped
 from tests.moving_scenes import constrained_rows
@@ -133,6 +140,55 @@ def test_orders_of_positions_velocities_and_multipliers(method: Collocation, ord
     measured = orders(errors)[-1]
     for rate, least in zip(measured, order, strict=True):
         assert rate > least - 0.5
+
+
+def stopped_first(monkeypatch: pytest.MonkeyPatch, before_end: float) -> History:
+    """A base that is shaken for 0.1 s, over a pinned tip; the motion is stopped once, as by a guard, and goes on."""
+    model = moving_model(swayed("driven and held"))
+    calls = list[float]()
+
+    def integrate_in_two(equations: MotionEquations, begin: Instant, end: float, *more: Any) -> Integration:
+        calls.append(begin.time)
+        if len(calls) > 1:
+            return integrate(equations, begin, end, *more)
+        first = integrate(equations, begin, end - before_end, *more)
+        return replace(first, outcome=StepOutcome.GUARDED)
+
+    monkeypatch.setattr("cosserat_casadi.motion.history.integrate", integrate_in_two)
+    assert model.scene.simulation is not None
+    x = started(model, model.scene.simulation, None).x
+    settings = StepSettings(np.full(model.size, 1e-10), size=5e-3, newton=1.0)
+    return integrated(model, moving_inputs(model).pieces(0.1), x, np.zeros(model.size), radau(3), settings)
+
+
+def test_a_restart_next_to_the_end_has_its_accelerations(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the path of the inputs, not by what rounding makes of the little that is left of it."""
+    history = stopped_first(monkeypatch, 1e-11)
+    first, second = history.legs
+    wanted = first.integration.end.a
+    assert_allclose(second.start.instant.a, wanted, rtol=0, atol=1e-3 * np.abs(wanted).max())
+
+
+def test_a_guard_that_vanishes_in_the_very_end_ends_nothing_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    history = stopped_first(monkeypatch, 0.0)
+    assert len(history.legs) == 1
+    assert history.completed
+
+
+@pytest.mark.parametrize(
+    ("derivatives", "expected"),
+    [
+        (np.eye(2, 3), 1.0),
+        (np.array([[2.0, 0.0, 0.0], [3.0, 3.0, 0.0]]), np.tan(np.pi / 8)),
+        (np.array([[1.0, 2.0], [2.0, 4.0]]), 0.0),
+        (np.array([[1.0], [0.5], [2.0]]), 0.0),
+        (np.array([[1.0, 0.0], [0.0, 0.0]]), 0.0),
+        (np.zeros((0, 4)), np.inf),
+    ],
+    ids=["orthogonal", "half a right angle", "parallel", "more than coordinates", "of nothing", "none"],
+)
+def test_independence_of_constraints(derivatives: FloatArray, expected: float) -> None:
+    assert_allclose(independence_of(derivatives), expected, rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.filterwarnings("ignore:invalid value encountered:RuntimeWarning")

@@ -50,6 +50,7 @@ NAMED = {
     "coil.helix.turns": ("1", [[1]]),
     "plate.mass": ("kg", [[0.1]]),
     "joints[0].position.z": ("m", [[0]]),
+    "joints[0].axis": ("1", [[1], [0], [0]]),
     "push.moment": ("N m", [[0], [0], [0]]),
     "push.at": ("1", [[0.5]]),
     "coil.span": ("1", [[0], [1]]),
@@ -103,8 +104,6 @@ REFUSED = {
     "coil.span.middle": ("has no component 'middle'", "components: start, end"),
     "side.base.quaternion": ("is given by a direction", "give the quaternion instead, and name that"),
     "side.base.tangent.x": ("is given by a direction", ""),
-    "joints[0].axis": ("is an axis, which decides the directions that the joint holds", ""),
-    "joints[0].quaternion": ("turns the axis of the joint", ""),
     "joints[4].position": ("is named 'joints[4]'", ""),
     "push.force": ("is an input already", "leave it out here, or list inputs without it"),
 }

@@ -17,8 +17,7 @@ from cosserat_casadi.cli.reports.model import print_tuning
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_cases import read_load_cases, spread
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -29,14 +28,14 @@ def tune(
     tolerance: Annotated[float | None, typer.Option(help="Wanted error of the tip poses; else the scene's.")] = None,
     over: Annotated[Path | None, typer.Option(help="Load cases: CSV with columns such as push.force.x.")] = None,
     ranges: Annotated[
-        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input.")
+        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="Range of an input or a parameter.")
     ] = None,
     samples: Annotated[int, typer.Option(min=1, max=100_000, help="Load cases spread over the ranges.")] = 32,
     settings: Settings = None,
 ) -> None:
     """Find the smallest discretisation for many load cases. Exit codes: 0 written, 2 refused, 3 tolerance not met."""
     tuned_scene = read_scene(scene, tuple(settings or ()))
-    layout = input_layout(tuned_scene)
+    layout = case_layout(tuned_scene)
     check_writable(output, "--output")
     cases = _load_cases(over, ranges or [], samples, layout)
     tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
@@ -48,8 +47,8 @@ def tune(
     Console().print(f"wrote {output}", highlight=False)
 
 
-def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: InputLayout) -> FloatArray:
-    """Load cases of a file, or spread over ranges, shape (count, size of the inputs).
+def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseLayout) -> FloatArray:
+    """Load cases of a file, or spread over ranges, shape (count, size of a case).
 
     Raises:
         SceneError: both or none are given, or one of them is refused.
@@ -61,7 +60,7 @@ def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: Inpu
     raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
 
 
-def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: InputLayout) -> Tuning:
+def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: CaseLayout) -> Tuning:
     values = [layout.unpack(case) for case in cases]
     with progress_bar() as bar:
         task = bar.add_task("Tuning", total=None)

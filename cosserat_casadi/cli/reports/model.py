@@ -14,7 +14,7 @@ from cosserat_casadi.cli.reports.format import discretisation_table, print_plain
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.inputs import InputLayout
+from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.price import price, price_of_load
 from cosserat_casadi.scene.varying import VaryingValue
 
@@ -34,6 +34,8 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
     if closing:
         print_plain(console, "Ties: " + "; ".join(closing))
     _print_price(console, model)
+    if scene.accuracy.chosen_for:
+        print_plain(console, "Modes and nodes were chosen for " + ", ".join(map(escape, scene.accuracy.chosen_for)))
     if scene.accuracy.modes is None:
         print_plain(
             console,
@@ -58,11 +60,14 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")
 
 
-def print_tuning(console: Console, tuning: Tuning, layout: InputLayout, cases: FloatArray) -> None:
+def print_tuning(console: Console, tuning: Tuning, layout: CaseLayout, cases: FloatArray) -> None:
     """Print the discretisation that was chosen, and the load case that is worst on it."""
     worst = tuning.solutions[tuning.worst]
     console.print(discretisation_table(worst.model))
     print_plain(console, _tuning_verdict(tuning, len(cases)))
+    ranges = tuning.scene.accuracy.chosen_for
+    if ranges:
+        print_plain(console, "It holds for " + ", ".join(map(escape, ranges)))
 
     values = []
     for name, value in layout.unpack(cases[tuning.worst]).items():

@@ -285,16 +285,16 @@ FMI3_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance handle, const fmi3ValueRefere
                                       const fmi3Float64 values[], size_t value_count) {
   instance *self = (instance *)handle;
   if (count != value_count) return refuse(self, "fmi3SetFloat64", "every variable is one number");
+  /* All or none are set. */
   for (size_t k = 0; k < count; k++) {
-    const fmi3ValueReference reference = references[k];
+    const int is_input = references[k] >= FIRST_INPUT && references[k] < FIRST_OUTPUT;
+    const int is_step = references[k] == STEP && self->held.mode < STEPPING;
     if (!isfinite(values[k])) return refuse(self, "fmi3SetFloat64", "a value must be finite");
-    if (reference >= FIRST_INPUT && reference < FIRST_OUTPUT) {
-      self->held.given[reference - FIRST_INPUT] = values[k];
-    } else if (reference == STEP && self->held.mode < STEPPING) {
-      self->held.step = values[k];
-    } else {
-      return refuse(self, "fmi3SetFloat64", "this variable cannot be set now");
-    }
+    if (!is_input && !is_step) return refuse(self, "fmi3SetFloat64", "this variable cannot be set now");
+  }
+  for (size_t k = 0; k < count; k++) {
+    if (references[k] == STEP) self->held.step = values[k];
+    else self->held.given[references[k] - FIRST_INPUT] = values[k];
   }
   return fmi3OK;
 }

@@ -1,0 +1,88 @@
+"""``cosserat identify``: files, exit codes, refusals."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cosserat_casadi import read_scene
+from cosserat_casadi.cli.exit_codes import NOT_FOUND, REFUSED
+from cosserat_casadi.cli.main import app, run
+from tests.conftest import ROOT
+
+FIXED = ["--set", "accuracy.modes=3", "--set", "accuracy.nodes=6"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """The example with its table."""
+    shutil.copy(ROOT / "examples" / "wire_from_shapes.toml", tmp_path)
+    shutil.copytree(ROOT / "examples" / "data", tmp_path / "data")
+    return tmp_path
+
+
+def identify(folder: Path, *options: str) -> int:
+    scene = str(folder / "wire_from_shapes.toml")
+    return run(lambda **keywords: app(["identify", scene, *FIXED, *options], **keywords))
+
+
+def written(file: Path) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(file.read_text())
+    return data
+
+
+def test_what_is_found_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found, figure, fitted = folder / "found.json", folder / "found.png", folder / "fitted.toml"
+    options = ("--output", str(found), "--plot", str(figure), "--write", str(fitted))
+    assert identify(folder, *options) == 0
+    data = written(found)
+    assert data["converged"]
+    assert data["cases"] == 9
+    modulus = data["unknowns"]["wire.material.youngs_modulus"]
+    assert modulus["interval_95"][0] < 52e9 < modulus["interval_95"][1]
+    assert len(data["unknowns"]["wire.intrinsic.curvature.x"]["value"]) == 2
+    assert len(data["correlation"]) == len(data["correlation_of"]) == 4
+    assert data["unseen"] == []
+    assert 0.8 < data["residual"]["held_out_rms"] < 1.2
+    assert figure.stat().st_size > 0
+    scene = read_scene(fitted)
+    assert scene.rods[0].material is not None
+    assert scene.rods[0].material.youngs_modulus == modulus["value"]
+    # The table is found from where the scene is written.
+    assert Path(scene.measurements[0].file).resolve() == (folder / "data" / "wire_shapes.csv").resolve()
+    assert "Found: 4 unknowns" in capsys.readouterr().out
+
+
+def test_what_the_data_leave_open_is_no_success(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = folder / "wire_from_shapes.toml"
+    text = scene.read_text().replace(
+        "[identification]", '[[unknowns]]\nparameter = "wire.section.radius"\n\n[identification]'
+    )
+    scene.write_text(text)
+    found, fitted = folder / "found.json", folder / "fitted.toml"
+    assert identify(folder, "--output", str(found), "--write", str(fitted)) == NOT_FOUND
+    data = written(found)
+    assert not data["converged"]
+    assert data["outcome"] == "not_determined"
+    assert data["unknowns"]["wire.section.radius"]["sigma"] is None
+    assert len(data["unseen"]) == 1
+    assert not fitted.exists()
+    assert "do not determine" in capsys.readouterr().out
+
+
+def test_all_that_is_wrong_is_told_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ("--hold-out", "1.5", "--starts", "0", "--output", str(folder / "none" / "found.json"))
+    assert identify(folder, *options) == REFUSED
+    told = capsys.readouterr().err
+    for where in ("--hold-out", "--starts", "--output"):
+        assert where in told
+
+
+def test_a_scene_without_measurements_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    scene = str(ROOT / "examples" / "nitinol_wire.toml")
+    assert run(lambda **keywords: app(["identify", scene], **keywords)) == REFUSED
+    assert "unknowns: missing" in capsys.readouterr().err

@@ -1,0 +1,42 @@
+"""Held rods: the same scene ends on the same equilibrium at every tolerance, and on modes that a user fixes.
+
+`benchmarks/held_rods.py` counts more of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from tests.fuzz.held import TOLERANCES, alike, all_alike, solved
+
+BUCKLED = 20
+"""Seed of a rod that is pushed together along its axis, and leaves it in any direction."""
+
+
+def test_a_buckled_rod_is_the_same_at_every_tolerance() -> None:
+    coarse = solved(BUCKLED, {"tolerance": 1e-3})
+    fine = solved(BUCKLED, {"tolerance": 1e-7})
+    assert fine.converged
+    assert fine.stable
+    assert alike(coarse, fine)
+    # The check can fail: the mirror image is another equilibrium.
+    assert not alike(replace(coarse, x=-coarse.x), fine)
+
+
+@pytest.mark.slow
+def test_fixed_modes_find_the_equilibrium_that_a_tolerance_finds() -> None:
+    fine = solved(BUCKLED, {"tolerance": 1e-7})
+    for modes in (9, 14):
+        fixed = solved(BUCKLED, {"modes": modes, "nodes": 2 * modes + 2})
+        assert fixed.converged
+        assert alike(fixed, fine)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, 60, 5))
+def test_held_rods_are_the_same_at_every_tolerance(first: int) -> None:
+    accuracies = [{"tolerance": tolerance} for tolerance in TOLERANCES]
+    different = [seed for seed in range(first, first + 5) if not all_alike(seed, accuracies)]
+    assert different == []

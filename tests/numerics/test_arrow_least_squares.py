@@ -1,0 +1,185 @@
+"""Least squares with shared and own unknowns: closed form, scipy, bounds, priors, robust losses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import scipy.optimize
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arrow_least_squares import ArrowFit, Fit, FitOutcome, FitSettings, Limits
+from cosserat_casadi.numerics.robust_loss import Loss
+
+TIMES = np.linspace(0.0, 2.0, 9)
+
+
+@dataclass
+class Point:
+    """Residuals at some unknowns.
+
+    Attributes:
+        shared: shape (n,).
+        own: shape (blocks, k).
+        residual: shape (m,).
+    """
+
+    shared: FloatArray
+    own: FloatArray
+    residual: FloatArray
+
+
+class Decays:
+    """Blocks of samples of own · exp(−rate t) + level; rate and level are shared."""
+
+    def __init__(self, amplitudes: FloatArray, noise: FloatArray) -> None:
+        self.offsets: npt.NDArray[np.int64] = len(TIMES) * np.arange(len(amplitudes) + 1)
+        self.measured = self._model(np.array([1.3, 0.4]), amplitudes[:, None]) + noise
+
+    def _model(self, shared: FloatArray, own: FloatArray) -> FloatArray:
+        rate, level = shared
+        return np.asarray(own * np.exp(-rate * TIMES) + level).ravel()
+
+    def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point | None:
+        # A rate that grows without end has no state, as a rod that cannot be followed.
+        if abs(shared[0]) > 20.0:
+            return None
+        return self.point(shared, own)
+
+    def point(self, shared: FloatArray, own: FloatArray) -> Point:
+        return Point(shared, own, self._model(shared, own) - self.measured)
+
+    def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+        decay = np.tile(np.exp(-state.shared[0] * TIMES), len(state.own))
+        amplitude = np.repeat(state.own[:, 0], len(TIMES))
+        by_rate = -np.tile(TIMES, len(state.own)) * amplitude * decay
+        return np.stack([by_rate, np.ones_like(by_rate)], axis=1), decay[:, None]
+
+
+def free(count: int) -> Limits:
+    return Limits(
+        lower=np.full(count, -np.inf),
+        upper=np.full(count, np.inf),
+        mean=np.zeros(count),
+        weight=np.zeros(count),
+        ratios=np.zeros(count, dtype=bool),
+    )
+
+
+@pytest.fixture
+def decays() -> Decays:
+    rng = np.random.default_rng(5)
+    amplitudes = rng.uniform(0.5, 3.0, 4)
+    return Decays(amplitudes, 0.05 * rng.standard_normal(4 * len(TIMES)))
+
+
+def run(decays: Decays, shared: Limits, own: Limits, loss: Loss | None = None) -> Fit[Point]:
+    start = shared.clipped(np.array([0.3, 0.0]))
+    first = own.clipped(np.ones((4, 1)))
+    fit = ArrowFit(decays, shared, own, loss or Loss())
+    return fit.run(start, first, decays.point(start, first))
+
+
+def stacked(decays: Decays) -> Callable[[FloatArray], FloatArray]:
+    """The residuals as scipy takes them."""
+    return lambda unknowns: decays.point(unknowns[:2], unknowns[2:, None]).residual
+
+
+def test_elimination_finds_what_all_unknowns_together_find(decays: Decays) -> None:
+    found = run(decays, free(2), free(1))
+    assert found.outcome is FitOutcome.CONVERGED
+    expected = scipy.optimize.least_squares(stacked(decays), np.ones(6), xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    assert_allclose(np.concatenate([found.shared, found.own[:, 0]]), expected.x, rtol=1e-6, atol=0)
+    assert_allclose(found.cost, expected.cost, rtol=1e-12, atol=0)
+
+
+def test_bounds_are_kept_as_by_scipy(decays: Decays) -> None:
+    shared = free(2)
+    shared.lower[1], shared.upper[1] = 0.8, 2.0
+    own = free(1)
+    own.upper[0] = 1.5
+    found = run(decays, shared, own)
+    assert found.outcome is FitOutcome.CONVERGED
+    lower = [-np.inf, 0.8, *[-np.inf] * 4]
+    upper = [np.inf, 2.0, *[1.5] * 4]
+    start = np.array([0.3, 0.9, 1, 1, 1, 1])
+    expected = scipy.optimize.least_squares(stacked(decays), start, bounds=(lower, upper), xtol=1e-14, ftol=1e-14)
+    assert_allclose(found.cost, expected.cost, rtol=1e-8, atol=0)
+    assert_allclose(found.shared, expected.x[:2], rtol=1e-4, atol=0)
+    assert found.shared[1] == 0.8
+    assert found.own.max() == 1.5
+
+
+def test_priors_are_rows_of_data(decays: Decays) -> None:
+    shared = free(2)
+    shared.mean[0], shared.weight[0] = 1.0, 40.0
+    own = free(1)
+    own.mean[0], own.weight[0] = 2.0, 3.0
+    found = run(decays, shared, own)
+
+    def with_priors(unknowns: FloatArray) -> FloatArray:
+        rows = [stacked(decays)(unknowns), 40.0 * (unknowns[:1] - 1.0), 3.0 * (unknowns[2:] - 2.0)]
+        return np.concatenate(rows)
+
+    expected = scipy.optimize.least_squares(with_priors, np.ones(6), xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    assert_allclose(np.concatenate([found.shared, found.own[:, 0]]), expected.x, rtol=1e-6, atol=0)
+    assert_allclose(found.cost, expected.cost, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("kind", ["huber", "cauchy"])
+def test_robust_losses_are_those_of_scipy(decays: Decays, kind: str) -> None:
+    decays.measured[[2, 17]] += 1.0
+    found = run(decays, free(2), free(1), Loss(kind, 0.1))
+    expected = scipy.optimize.least_squares(
+        stacked(decays), np.array([1.3, 0.4, 1, 1, 1, 1]), loss=kind, f_scale=0.1, xtol=1e-14, ftol=1e-14, gtol=1e-14
+    )
+    assert_allclose(found.cost, expected.cost, rtol=1e-9, atol=0)
+    assert_allclose(found.shared, expected.x[:2], rtol=1e-4, atol=0)
+
+
+@pytest.mark.parametrize("kind", ["squares", "huber", "cauchy"])
+def test_weights_are_the_slope_of_the_cost(kind: str) -> None:
+    loss = Loss(kind, 1.5)
+    for residual in (0.0, 0.3, 1.4, 1.6, 20.0):
+        ahead, behind = (loss.cost(np.array([residual + step])) for step in (1e-6, -1e-6))
+        slope = (ahead - behind) / 2e-6
+        assert_allclose(residual * loss.weights(np.array([residual]))[0], slope, rtol=1e-6, atol=1e-9)
+
+
+def test_a_linear_problem_takes_its_closed_form() -> None:
+    """Unknowns of sizes 1e10 and 1e-4 are no obstacle, and nothing is shared with blocks."""
+    rng = np.random.default_rng(1)
+    sizes = np.array([1e10, 1e-4, 1.0])
+    matrix = rng.standard_normal((30, 3)) / sizes
+    right = rng.standard_normal(30)
+
+    class Linear:
+        offsets = np.array([0, 30])
+
+        def at(self, shared: FloatArray, own: FloatArray, near: Point) -> Point:
+            return Point(shared, own, matrix @ shared - right)
+
+        def jacobians(self, state: Point) -> tuple[FloatArray, FloatArray]:
+            return matrix, np.zeros((30, 0))
+
+    start, own = np.zeros(3), np.zeros((1, 0))
+    fit = ArrowFit(Linear(), free(3), free(0), Loss(), FitSettings()).run(start, own, Point(start, own, -right))
+    assert fit.outcome is FitOutcome.CONVERGED
+    expected = np.linalg.solve((matrix * sizes).T @ (matrix * sizes), (matrix * sizes).T @ right) * sizes
+    assert_allclose(fit.shared, expected, rtol=1e-6, atol=0)
+
+
+def test_iterations_that_run_out_are_told(decays: Decays) -> None:
+    start, own = np.array([0.3, 0.0]), np.ones((4, 1))
+    few = ArrowFit(decays, free(2), free(1), Loss(), FitSettings(iterations=2))
+    assert few.run(start, own, decays.point(start, own)).outcome is FitOutcome.MAX_ITERATIONS
+
+
+def test_what_is_positive_changes_by_half_in_a_step() -> None:
+    limits = Limits(np.zeros(1), np.full(1, np.inf), np.zeros(1), np.zeros(1), np.ones(1, dtype=bool))
+    assert_allclose(limits.stepped(np.array([6.0]), np.array([-100.0])), [4.0], rtol=1e-15, atol=0)
+    assert_allclose(limits.stepped(np.array([6.0]), np.array([100.0])), [9.0], rtol=1e-15, atol=0)
