@@ -151,10 +151,7 @@ def estimate_scene(
     if not scene.accuracy.fixed:
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
-        chosen = tune(completed, [draft.inputs.unpack(row) for row in _reach(layout, inputs)])
-        completed = chosen.scene
-        if not completed.measurements:
-            completed = completed.model_copy(update={"measurements": scene.measurements, "unknowns": scene.unknowns})
+        completed = tune(completed, [draft.inputs.unpack(row) for row in _reach(layout, inputs)]).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
 
@@ -263,7 +260,8 @@ def _remarks(result: Estimate, weights: FloatArray, known: Knowledge) -> Iterato
     at_bound = (result.values <= known.lower) | (result.values >= known.upper)
     for k in np.flatnonzero(at_bound.any(axis=0)):
         yield f"{result.labels[k]} is at a bound in {int(at_bound[:, k].sum())} rows: its deviation means little there."
-    rms = np.sqrt(2.0 * np.nansum(result.cost[result.found]) / max(1, np.count_nonzero(weights[result.found])))
+    measured = max(1, int(np.count_nonzero(weights[result.found])))
+    rms = float(np.sqrt(2.0 * np.sum(result.cost[result.found]) / measured))
     if rms > POOR:
         yield (
             f"The residuals are {rms:.3g} standard deviations (rms): the model does not explain the data to the "

@@ -160,7 +160,7 @@ def _described(direction: FloatArray, labels: Sequence[str]) -> str:
     largest = int(np.argmax(np.abs(direction)))
     signed = direction * np.sign(direction[largest])
     order = np.argsort(-np.abs(signed), kind="stable")
-    parts = [(float(signed[i]), labels[i]) for i in order if abs(signed[i]) >= SHOWN_PART]
+    parts: list[tuple[float, str]] = [(float(signed[i]), labels[i]) for i in order if abs(signed[i]) >= SHOWN_PART]
     if len(parts) == 1:
         return parts[0][1]
     words = []

@@ -67,9 +67,9 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
 
 def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> MeasuredCases:
     """The cases as arrays, in the order in which :func:`differences` takes them."""
-    at = []
-    measured = []
-    weights = []
+    at: list[FloatArray] = []
+    measured: list[FloatArray] = []
+    weights: list[FloatArray] = []
     for number, count in sections.items():
         own = _of_measurement(model, number, cases, count)
         for table, part in zip((at, measured, weights), own, strict=True):
