@@ -86,7 +86,7 @@ def estimate(
     indices = [int(index) for entry in layout.own for index in entry.indices]
     sections = sections_of(model, cases)
     table = stacked(model, cases, sections)
-    known = _knowledge(layout)
+    known = knowledge_of(layout)
     # The search begins at what is expected, or else at the scene's values.
     expected = np.where(known.weight > 0.0, known.mean, table.inputs[:, indices])
     table.inputs[:, indices] = expected
@@ -184,7 +184,8 @@ def _ignore(doing: str, done: int, total: int) -> None:
     """Progress that nobody asked for."""
 
 
-def _knowledge(layout: UnknownLayout) -> Knowledge:
+def knowledge_of(layout: UnknownLayout) -> Knowledge:
+    """What a scene says of its unknowns beforehand: bounds, priors, typical sizes."""
     limits = layout.own_limits
     typical = np.concatenate([entry.scales for entry in layout.own])
     # What is known beforehand says best what is much and what is little.

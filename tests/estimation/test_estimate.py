@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import least_squares
@@ -20,6 +22,7 @@ from tests.scenes import push, rod, scene
 SIGMA = 1e-3
 PRIOR = np.array([1.0, 1.0, 0.2])
 AT = (0.5, 1.0)
+Values = Mapping[str, np.ndarray]
 TIP = {"input": "push.force", "per_row": True}
 
 
@@ -43,16 +46,21 @@ def felt(prior: bool = True, sections: tuple[float, ...] = AT, strain: str = "pl
     return scene_from_dict(tables)
 
 
-def measured(model: Model, forces: np.ndarray, seed: int) -> dict[str, dict[str, np.ndarray]]:
-    """Positions of the markers under forces, with noise."""
+def measured(model: Model, felt_loads: Sequence[Values], seed: int) -> dict[str, dict[str, np.ndarray]]:
+    """Positions of the markers under loads, with noise."""
     rng = np.random.default_rng(seed)
     columns: dict[str, list[float]] = {f"{axis}{k}": [] for k in range(len(AT)) for axis in "xyz"}
-    for force in forces:
-        positions = solve(model, {"push.force": force}).pose(AT, "rod").position
+    for loads in felt_loads:
+        positions = solve(model, loads).pose(AT, "rod").position
         for k in range(len(AT)):
             for axis, value in zip("xyz", positions[k] + rng.normal(0.0, SIGMA, 3), strict=True):
                 columns[f"{axis}{k}"].append(value)
     return {"shapes": {name: np.array(values) for name, values in columns.items()}}
+
+
+def pushes(forces: npt.ArrayLike) -> list[Values]:
+    """Forces at the tip as inputs."""
+    return [{"push.force": force} for force in np.asarray(forces)]
 
 
 def nees(found: Estimate, forces: np.ndarray) -> np.ndarray:
@@ -65,7 +73,7 @@ def assert_consistent(count: int, strain: str) -> None:
     """The mean of the squared errors is within the 95 % band of its distribution."""
     model = build(felt(strain=strain).with_unknowns())
     forces = np.random.default_rng(4).normal(size=(count, 3)) * PRIOR
-    found = estimate(model, measured(model, forces, 5))
+    found = estimate(model, measured(model, pushes(forces), 5))
     assert found.found.all()
     low, high = chi2.ppf([0.025, 0.975], 3 * count) / count
     assert low <= nees(found, forces).mean() <= high
@@ -84,7 +92,7 @@ def test_a_row_vs_a_search_without_derivatives() -> None:
     """The same maximum by scipy's least squares with differences on the solver in Python, and the same covariance."""
     model = build(felt().with_unknowns())
     force = np.array([[0.8, 0.0, -0.3]])
-    data = measured(model, force, 1)
+    data = measured(model, pushes(force), 1)
     found = estimate(model, data)
     numbers = np.array([data["shapes"][f"{axis}{k}"][0] for k in range(len(AT)) for axis in "xyz"])
 
@@ -106,7 +114,7 @@ def test_a_row_vs_a_search_without_derivatives() -> None:
 
 def test_what_nothing_determines_is_told() -> None:
     model = build(felt(prior=False).with_unknowns())
-    found = estimate(model, measured(model, np.array([[0.5, 0.0, 0.0], [0.2, 0.0, 0.1]]), 2))
+    found = estimate(model, measured(model, pushes([[0.5, 0.0, 0.0], [0.2, 0.0, 0.1]]), 2))
     assert found.outcomes == ("not_determined", "not_determined")
     assert np.isnan(found.values).all()
     assert list(found.unseen) == ["push.force.y"]
@@ -115,9 +123,29 @@ def test_what_nothing_determines_is_told() -> None:
     assert estimate_table(found).splitlines()[1].endswith(",not_determined,,,,,,")
 
 
+def test_a_load_along_the_rod_is_felt_from_its_shape() -> None:
+    """Two Legendre coefficients of a made-up load, within deviations that are narrower than those of the prior."""
+    sigma = 2.0
+    names = ("wind.force.x", "wind.force.x.1")
+    wind = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "force": [[0.0, 0.0], 0.0, 0.0]}
+    prior = {"mean": 0.0, "sigma": sigma}
+    unknowns = [{"input": name, "per_row": True, "prior": prior} for name in names]
+    model = build(felt(loads=[wind], unknowns=unknowns).with_unknowns())
+    truth = np.random.default_rng(8).normal(size=(12, 2)) * sigma
+    force = np.zeros((12, *np.shape(model.inputs.unpack(model.pack())["wind.force"])))
+    force[:, 0, :] = truth
+    found = estimate(model, measured(model, [{"wind.force": value} for value in force], 9))
+    assert found.labels == names
+    assert found.unseen == {}
+    # Two markers tell the mean of a load far better than how it is spread.
+    assert (found.sigma < np.array([0.4, 0.8]) * sigma).all()
+    low, high = chi2.ppf([0.005, 0.995], truth.size) / len(truth)
+    assert low <= nees(found, truth).mean() <= high
+
+
 def test_cells_that_are_empty_are_not_measured() -> None:
     model = build(felt().with_unknowns())
-    data = measured(model, np.array([[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), 3)
+    data = measured(model, pushes([[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), 3)
     for axis in "xyz":
         data["shapes"][f"{axis}0"][1] = np.nan
     found = estimate(model, data)

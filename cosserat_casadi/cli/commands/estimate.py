@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import sweep_display
 from cosserat_casadi.cli.reports.format import plural, print_plain, print_written, title_line
 from cosserat_casadi.errors import Problem, SceneError
@@ -26,6 +26,9 @@ WRITERS = {".json": estimate_text, ".csv": estimate_table}
 def estimate(
     scene: SceneFile,
     output: Annotated[Path, typer.Option(help="Write what was felt in each row here: .json or .csv.")],
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw the unknowns over the rows, with intervals, here: .png, .pdf or .svg.")
+    ] = None,
     cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
     settings: Settings = None,
 ) -> None:
@@ -35,7 +38,7 @@ def estimate(
     """
     problems: list[Problem] = []
     with collect_problems(problems):
-        check_outputs(output, None)
+        check_outputs(output, plot)
     suffix = output.suffix.lower()
     if suffix not in WRITERS:
         problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
@@ -47,8 +50,13 @@ def estimate(
     with sweep_display() as show_count:
         found = estimate_scene(checked_scene, cores=cores, progress=show_count)
     write_atomically(output, WRITERS[suffix](found).encode())
+    if plot is not None:
+        # Imported here, because matplotlib is an extra and takes long to load.
+        from cosserat_casadi.plots.estimate_plot import save_estimate_plot
+
+        save_estimate_plot(found, plot)
     _print(Console(), found, checked_scene.title)
-    print_written(Console(), [output], soft_wrap=True)
+    print_written(Console(), given_files(output, plot), soft_wrap=True)
     for warning in found.warnings:
         print_plain(Console(stderr=True), f"[bold yellow]{escape(warning)}[/]", soft_wrap=True)
     if not found.holds:
