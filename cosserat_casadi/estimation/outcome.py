@@ -88,6 +88,11 @@ class Estimate:
         return dict(Counter(self.outcomes))
 
     @property
+    def message(self) -> str:
+        """How many cases were found, in words."""
+        return f"{int(np.count_nonzero(self.found))} of {len(self.cases)} rows found."
+
+    @property
     def holds(self) -> bool:
         """Whether some case was found, and every one that was looked at is within the scene's tolerance."""
         tolerance = self.model.scene.accuracy.tolerance

@@ -28,6 +28,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
     data: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
+            "message": found.message,
             "unknowns": list(found.labels),
             "units": list(found.units),
             "outcomes": found.counts,
