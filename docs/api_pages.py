@@ -18,6 +18,7 @@ from typing import Any
 import cosserat_casadi
 import cosserat_casadi.control
 import cosserat_casadi.environments
+import cosserat_casadi.estimation
 from cosserat_casadi.model.function_table import FunctionSpec, NamedFunction, Owner
 
 FOLDER = Path(__file__).parent / "api"
@@ -36,6 +37,7 @@ class Concept:
         names: public names of the package, in the order in which they are shown.
         control_names: public names of ``cosserat_casadi.control`` that the package itself does not have.
         environment_names: public classes of ``cosserat_casadi.environments``.
+        estimation_names: public names of ``cosserat_casadi.estimation``.
     """
 
     file: str
@@ -44,6 +46,7 @@ class Concept:
     names: tuple[str, ...]
     control_names: tuple[str, ...] = ()
     environment_names: tuple[str, ...] = ()
+    estimation_names: tuple[str, ...] = ()
 
 
 CONCEPTS = (
@@ -131,6 +134,13 @@ CONCEPTS = (
         ("identify_scene", "identify", "Identification"),
     ),
     Concept(
+        "estimation",
+        "Estimation",
+        "What a robot feels in every row of a table; see [estimate](../estimate.md).",
+        (),
+        estimation_names=("estimate_scene", "estimate", "Estimate"),
+    ),
+    Concept(
         "export",
         "Export and load",
         "A model as C99, and an exported folder back as CasADi functions; see [C](../c-interface.md). "
@@ -212,7 +222,7 @@ def _contents() -> str:
 
 def _names(concept: Concept) -> tuple[str, ...]:
     """All names of a page."""
-    return (*concept.names, *concept.control_names, *concept.environment_names)
+    return (*concept.names, *concept.control_names, *concept.environment_names, *concept.estimation_names)
 
 
 def _page(concept: Concept) -> str:
@@ -223,6 +233,8 @@ def _page(concept: Concept) -> str:
         parts += _entry(cosserat_casadi.control, name)
     for name in concept.environment_names:
         parts += _entry(cosserat_casadi.environments, name)
+    for name in concept.estimation_names:
+        parts += _entry(cosserat_casadi.estimation, name)
     return "\n\n".join(parts) + "\n"
 
 

@@ -36,11 +36,14 @@ SCENES = (
     "rod_on_table",
     "rod_over_bar",
     "wire_in_vessel",
+    "felt_loads",
 )
 
 WITH_TARGETS = ("finger_to_point",)
 
 WITH_MEASUREMENTS = ("wire_from_shapes",)
+
+WITH_FELT_LOADS = ("felt_loads",)
 
 MOTIONS = (
     "fishing_rod_cast",
@@ -66,6 +69,8 @@ def arguments_of(name: str, folder: Path) -> list[str]:
         command = "inverse"
     if name in WITH_MEASUREMENTS:
         command = "identify"
+    if name in WITH_FELT_LOADS:
+        command = "estimate"
     if name in MOTIONS:
         command = "simulate"
     scene = Path(__file__).with_name(f"{name}.toml")

@@ -18,6 +18,7 @@ from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.cli.commands.bench import bench
 from cosserat_casadi.cli.commands.check import check
 from cosserat_casadi.cli.commands.docs import docs
+from cosserat_casadi.cli.commands.estimate import estimate
 from cosserat_casadi.cli.commands.examples import examples
 from cosserat_casadi.cli.commands.export import export
 from cosserat_casadi.cli.commands.identify import identify
@@ -64,6 +65,7 @@ for command in (
     modes,
     inverse,
     identify,
+    estimate,
     sweep,
     check,
     export,

@@ -128,9 +128,9 @@ class Ending:
             directions = "; ".join(described(direction) for direction in known.unseen)
             remedy = "Leave unknowns out, give priors, or measure more."
             return "not_determined", f"Not found: the data do not determine {directions}. {remedy}"
-        numbers = len(fit.state.residual)
-        found = "1 unknown" if len(fit.shared) == 1 else f"{len(fit.shared)} unknowns"
-        return "converged", f"Found: {found} from {numbers} numbers."
+        unknowns = counted(len(fit.shared), "unknown")
+        numbers = counted(len(fit.state.residual), "number")
+        return "converged", f"Found: {unknowns} from {numbers}."
 
     def _remarks(self, found: Identification) -> list[str]:
         """What a user must know of what was found."""
@@ -168,3 +168,8 @@ def described(direction: Direction) -> str:
         sign = "−" if part < 0 else "+"
         terms.append(f"{sign} {abs(part):.2g} {name}" if len(direction.parts) > 1 else name)
     return " ".join(terms).removeprefix("+ ")
+
+
+def counted(count: int, noun: str) -> str:
+    """A count and what is counted."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -1,0 +1,84 @@
+"""``cosserat estimate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.exit_codes import NOT_FOUND
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
+from cosserat_casadi.cli.progress import sweep_display
+from cosserat_casadi.cli.reports.format import plural, print_plain, print_written, title_line
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.estimation import Estimate, estimate_scene
+from cosserat_casadi.files import write_atomically
+from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
+from cosserat_casadi.scene import Scene, read_scene
+
+WRITERS = {".json": estimate_text, ".csv": estimate_table}
+
+
+def estimate(
+    scene: SceneFile,
+    output: Annotated[Path, typer.Option(help="Write what was felt in each row here: .json or .csv.")],
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw the unknowns over the rows, with intervals, here: .png, .pdf or .svg.")
+    ] = None,
+    cores: Annotated[int | None, typer.Option(min=1, help="Cores of this machine to use; all by default.")] = None,
+    settings: Settings = None,
+) -> None:
+    """Find in every measured row what the robot feels: unknown inputs, with their standard deviations.
+
+    Exit codes: 0 each row has its outcome, 2 refused, 3 no row was found, or the tolerance is missed on rows checked.
+    """
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        check_outputs(output, plot)
+    suffix = output.suffix.lower()
+    if suffix not in WRITERS:
+        problems.append(Problem("--output", f"{output} is neither JSON nor CSV", "use .json or .csv"))
+    checked_scene: Scene | None = None
+    with collect_problems(problems):
+        checked_scene = read_scene(scene, tuple(settings or ()))
+    if problems or checked_scene is None:
+        raise SceneError(*problems)
+    with sweep_display() as show_count:
+        found = estimate_scene(checked_scene, cores=cores, progress=show_count)
+    write_atomically(output, WRITERS[suffix](found).encode())
+    if plot is not None:
+        # Imported here, because matplotlib is an extra and takes long to load.
+        from cosserat_casadi.plots.estimate_plot import save_estimate_plot
+
+        save_estimate_plot(found, plot)
+    _print(Console(), found, checked_scene.title)
+    print_written(Console(), given_files(output, plot), soft_wrap=True)
+    for warning in found.warnings:
+        print_plain(Console(stderr=True), f"[bold yellow]{escape(warning)}[/]", soft_wrap=True)
+    if not found.holds:
+        raise typer.Exit(NOT_FOUND)
+
+
+def _print(console: Console, found: Estimate, title: str | None) -> None:
+    """How many rows were found, and how well each unknown is known in the middle one."""
+    print_plain(console, title_line(title))
+    counted = ", ".join(f"{word}: {plural(count, 'row')}" for word, count in found.counts.items())
+    print_plain(console, f"{counted}.", soft_wrap=True)
+    table = Table()
+    for heading in ("unknown", "unit"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("least", "largest", "deviation"):
+        table.add_column(heading, justify="right")
+    rows = found.found
+    if not rows.any():
+        return
+    values = found.values[rows]
+    deviations = found.sigma[rows]
+    for k, label in enumerate(found.labels):
+        numbers = (values[:, k].min(), values[:, k].max(), sorted(deviations[:, k])[len(deviations) // 2])
+        table.add_row(escape(label), found.units[k], *(f"{number:.4g}" for number in numbers))
+    console.print(table)

@@ -1,0 +1,171 @@
+"""A model as C that answers rows of measurements with the inputs that explain them: what an estimate computes with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.kernels import kernel, kernel_sources, kernels
+from cosserat_casadi.codegen.library import library_sources, render
+from cosserat_casadi.codegen.memory import largest_room
+from cosserat_casadi.codegen.names import model_names
+from cosserat_casadi.codegen.plain import pointer
+from cosserat_casadi.codegen.rows import loaded, to_compile
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+NAME = "estimate"
+"""What every symbol of these libraries begins with."""
+
+ENDINGS = ("found", "no_equilibrium", "singular", "not_found")
+"""How the search for a row can end, in the order of the numbers in C."""
+
+JUDGED = ("outcome", "iterations", "cost")
+"""First columns of every row of results."""
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """What is known of the unknowns beforehand, each of shape (unknowns,).
+
+    Attributes:
+        lower: least values.
+        upper: largest values.
+        mean: expected values; any where nothing is expected.
+        weight: one over the standard deviation of these; 0 where nothing is expected.
+        size: typical sizes.
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+    mean: FloatArray
+    weight: FloatArray
+    size: FloatArray
+
+
+@dataclass(frozen=True)
+class MeasuredCases:
+    """Rows of cases.
+
+    Attributes:
+        inputs: stacked inputs, the unknown ones with the values to begin with, shape (cases, inputs).
+        at: abscissae, shape (cases, sections).
+        measured: measured numbers, shape (cases, numbers).
+        weights: one over the standard deviation of each difference, 0 where it was not measured, (cases, rows).
+    """
+
+    inputs: FloatArray
+    at: FloatArray
+    measured: FloatArray
+    weights: FloatArray
+
+    def part(self, rows: slice) -> MeasuredCases:
+        """Some of the cases."""
+        return MeasuredCases(self.inputs[rows], self.at[rows], self.measured[rows], self.weights[rows])
+
+
+@dataclass(frozen=True)
+class Estimates:
+    """What was found of rows of cases; NaN where nothing was.
+
+    Attributes:
+        outcome: how each search ended, as its place in ENDINGS, shape (cases,).
+        iterations: steps, shape (cases,).
+        cost: half the sum of squares, in squared standard deviations, the prior's among them, shape (cases,).
+        unknowns: shape (cases, k).
+        information: of data and prior, the inverse of the covariance, shape (cases, k, k).
+        x: the equilibria, shape (cases, size).
+    """
+
+    outcome: npt.NDArray[np.int64]
+    iterations: npt.NDArray[np.int64]
+    cost: FloatArray
+    unknowns: FloatArray
+    information: FloatArray
+    x: FloatArray
+
+
+@dataclass(frozen=True)
+class EstimatorLibrary:
+    """C sources as text, so that any machine can compile them, once.
+
+    Attributes:
+        files: content by file name, as pairs.
+        unknowns: numbers that are found in each case.
+        size: unknowns of the model.
+    """
+
+    files: tuple[tuple[str, str], ...]
+    unknowns: int
+    size: int
+
+    def estimate(self, cases: MeasuredCases, known: Knowledge) -> Estimates:
+        """What explains the cases best; other threads run meanwhile.
+
+        Raises:
+            ExportError: there is no C compiler, or it fails.
+            MemoryError: there is none for the workspace.
+        """
+        k = self.unknowns
+        count = len(cases.inputs)
+        results = np.empty((count, len(JUDGED) + k + k * k + self.size))
+        tables = [cases.inputs, cases.at, cases.measured, cases.weights]
+        vectors = [known.lower, known.upper, known.mean, known.weight, known.size]
+        given = [np.ascontiguousarray(array, dtype=np.float64) for array in (*tables, *vectors)]
+        function = loaded(NAME, self.files)[f"{NAME}_estimate"]
+        if function(count, *map(pointer, given), pointer(results)):
+            raise MemoryError("there is no memory for the solver's workspace")
+        first = len(JUDGED)
+        return Estimates(
+            outcome=results[:, 0].astype(np.int64),
+            iterations=results[:, 1].astype(np.int64),
+            cost=results[:, 2],
+            unknowns=results[:, first : first + k],
+            information=results[:, first + k : first + k + k * k].reshape(count, k, k),
+            x=results[:, first + k + k * k :],
+        )
+
+
+def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int]) -> EstimatorLibrary:
+    """Sources of the solver of a model with a function that estimates inputs.
+
+    Args:
+        model: without parameters.
+        measured: (x, inputs, at, measured) ↦ the differences between model and measurement, and their derivatives with
+            x and with the inputs that are found.
+        indices: of these inputs among the stacked ones.
+
+    Raises:
+        ExportError: two things of the scene would have one name in C.
+    """
+    names = model_names(NAME, model)
+    parts = assembled(model, names)
+    generated = kernel_sources(kernels(model, names, parts), names)
+    arguments = measured.mx_in()
+    value = ca.Function("value", arguments, measured.call(arguments)[:1])
+    own = [kernel(model, value, f"{NAME}_k_difference"), kernel(model, measured, f"{NAME}_k_measured")]
+    of_measurements = kernel_sources(own, names, f"{NAME}_measured")
+    words = {
+        "name": names.name,
+        "MACRO": names.macro,
+        "unknowns": len(indices),
+        "indices": numbers(list(indices)),
+        "rows": measured.size1_out(0),
+        "sections": measured.nnz_in(2),
+        "measured": measured.nnz_in(3),
+        "reals": largest_room(of_measurements, "W") + 1,
+        "integers": largest_room(of_measurements, "IW") + 1,
+    }
+    files = {
+        **library_sources(model, names, parts, generated, None),
+        **generated,
+        **of_measurements,
+        f"{NAME}_estimate.c": render("estimate.c.in", words),
+    }
+    return EstimatorLibrary(to_compile(files), len(indices), model.size)

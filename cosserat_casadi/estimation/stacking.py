@@ -1,0 +1,102 @@
+"""Measured cases as arrays, and the differences of all measurements as one function."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.estimator import MeasuredCases
+from cosserat_casadi.identification.cases import Case
+from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+UNIT_QUATERNION = 3
+"""Entry of a measured pose that is one where no orientation was measured: a quaternion must have a length."""
+
+
+def sections_of(model: Model, cases: Sequence[Case]) -> dict[int, int]:
+    """Most rows of each measurement in one case, by the number of the measurement; none where it has no row."""
+    counts = {}
+    for number in range(len(model.scene.measurements)):
+        most = max((len(case.data.get(number, [])) for case in cases), default=0)
+        if most:
+            counts[number] = most
+    return counts
+
+
+def differences(model: Model, sections: dict[int, int], indices: Sequence[int], abscissae: FloatArray) -> ca.Function:
+    """The differences of all measurements as one function.
+
+    Args:
+        model: without parameters.
+        sections: rows of each measurement in one case, by its number.
+        indices: of the inputs that are found.
+        abscissae: of all cases, shape (cases, sections); those that are the same in all are constants of the function.
+
+    Returns:
+        (x, inputs, at, measured) ↦ differences, and their derivatives with x and with these inputs.
+    """
+    x = ca.MX.sym("x", model.size)
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    records = {number: model.scene.measurements[number] for number in sections}
+    at = ca.MX.sym("at", sum(sections.values()))
+    measured = ca.MX.sym("measured", sum(len(records[number].entries) * count for number, count in sections.items()))
+    no_parameters = ca.DM(0, 1)
+    results: list[list[ca.MX]] = [[], [], []]
+    first_section = 0
+    first_number = 0
+    for number, count in sections.items():
+        record = records[number]
+        own = range(first_section, first_section + count)
+        own_at = ca.horzcat(*(abscissae[0, k] if np.ptp(abscissae[:, k]) == 0.0 else at[k] for k in own))
+        size = len(record.entries) * count
+        own_measured = ca.reshape(measured[first_number : first_number + size], len(record.entries), count)
+        first_section += count
+        first_number += size
+        of_record = difference(model, record, count)
+        value, by_x, by_inputs, _ = of_record.call([x, inputs, no_parameters, own_at, own_measured])
+        for stack, result in zip(results, (value, by_x, by_inputs[:, list(indices)]), strict=True):
+            stack.append(result)
+    stacked = [ca.densify(ca.vertcat(*stack)) for stack in results]
+    names = ["x", "inputs", "at", "measured"]
+    return ca.Function("measured", [x, inputs, at, measured], stacked, names, ["difference", "by_x", "by_unknown"])
+
+
+def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> MeasuredCases:
+    """The cases as arrays, in the order in which :func:`differences` takes them."""
+    at: list[FloatArray] = []
+    measured: list[FloatArray] = []
+    weights: list[FloatArray] = []
+    for number, count in sections.items():
+        own = _of_measurement(model, number, cases, count)
+        for table, part in zip((at, measured, weights), own, strict=True):
+            table.append(part)
+    inputs = np.array([case.inputs for case in cases])
+    return MeasuredCases(inputs, np.hstack(at), np.hstack(measured), np.hstack(weights))
+
+
+def _of_measurement(
+    model: Model, number: int, cases: Sequence[Case], sections: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Abscissae, numbers and weights of one measurement, a row for each case."""
+    record = model.scene.measurements[number]
+    entries = len(record.entries)
+    rows = len(record.differences)
+    at = np.zeros((len(cases), sections))
+    measured = np.zeros((len(cases), sections, entries))
+    weights = np.zeros((len(cases), sections, rows))
+    if record.quantity == "pose":
+        measured[:, :, UNIT_QUATERNION] = 1.0
+    inverse_sigma = 1.0 / np.broadcast_to(np.asarray(record.sigma, dtype=float), rows)
+    for i, case in enumerate(cases):
+        for k, datum in enumerate(case.data.get(number, [])):
+            at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
+            given = np.isfinite(datum.values)
+            measured[i, k, given] = datum.values[given]
+            # A measured pose has one number more than it has differences: all four of a quaternion, or none.
+            weights[i, k] = np.where(given[:rows], inverse_sigma, 0.0)
+    count = len(cases)
+    return at, measured.reshape(count, -1), weights.reshape(count, -1)

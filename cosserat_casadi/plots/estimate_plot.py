@@ -1,0 +1,60 @@
+"""The figure of an estimate: each unknown over the rows, with the intervals that hold 95 % of the posterior.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.estimation import Estimate
+from cosserat_casadi.plots.colours import CATEGORIES
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+
+MOST_PANELS = 12
+"""Unknowns that have a panel: the first."""
+
+COLUMNS = 3
+"""Panels in a row."""
+
+
+def save_estimate_plot(found: Estimate, file: str | Path) -> None:
+    """Draw an estimate into a file, whole or not at all; the same one gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_estimate(found), file)
+
+
+def plot_estimate(found: Estimate) -> Any:
+    """The matplotlib.figure.Figure of an estimate; rows that were not found are gaps.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    shown = min(MOST_PANELS, len(found.labels))
+    columns = min(COLUMNS, shown)
+    lines = ceil(shown / columns)
+    figure = figure_class()(figsize=(4.4 * columns, 1.0 + 2.6 * lines), layout="constrained")
+    panels = figure.subplots(lines, columns, sharex=True, squeeze=False).ravel()
+    rows = np.arange(1, len(found.cases) + 1)
+    for k, panel in enumerate(panels[:shown]):
+        half = (found.intervals[:, k, 1] - found.intervals[:, k, 0]) / 2
+        panel.axhline(0.0, color="0.8", linewidth=0.8)
+        panel.errorbar(rows, found.values[:, k], half, fmt=".", color=CATEGORIES[0], elinewidth=1.0, capsize=2.0)
+        unit = found.units[k]
+        panel.set_ylabel(found.labels[k] if unit == "1" else f"{found.labels[k]} ({unit})", fontsize=8)
+        panel.grid(alpha=0.3)
+    for panel in panels[shown:]:
+        panel.set_visible(False)
+    for panel in panels[max(0, shown - columns) : shown]:
+        panel.set_xlabel("case")
+        panel.tick_params(labelbottom=True)
+    add_title(figure, found.model.scene.title)
+    return figure

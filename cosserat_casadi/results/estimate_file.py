@@ -1,0 +1,59 @@
+"""What was felt in every row, as JSON or CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.estimation import Estimate
+from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
+
+
+def estimate_result(found: Estimate) -> dict[str, Any]:
+    """An estimate as plain data; a number that is not known becomes null."""
+    rows = [
+        {
+            "row": case,
+            "outcome": outcome,
+            "value": found.values[i],
+            "sigma": found.sigma[i],
+            "covariance": found.covariance[i],
+            "cost": found.cost[i],
+        }
+        for i, (case, outcome) in enumerate(zip(found.cases, found.outcomes, strict=True))
+    ]
+    data: dict[str, Any] = plain(
+        {
+            "schema": SCHEMA,
+            "message": found.message,
+            "unknowns": list(found.labels),
+            "units": list(found.units),
+            "outcomes": found.counts,
+            "unseen": [{"direction": direction, "rows": count} for direction, count in found.unseen.items()],
+            "checked": [{"row": found.cases[row], "error_estimate": error} for row, error in found.checked],
+            "warnings": list(found.warnings),
+            "discretisation": discretisation_entries(found.model),
+            "rows": rows,
+        }
+    )
+    return data
+
+
+def estimate_text(found: Estimate) -> str:
+    """The file as JSON."""
+    return json_text(estimate_result(found))
+
+
+def estimate_table(found: Estimate) -> str:
+    """The rows as CSV: where they are, how they ended, unknowns with deviations; empty where not found."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    pairs = [name for label in found.labels for name in (label, f"{label}.sigma")]
+    writer.writerow(["row", "outcome", *pairs])
+    numbers = np.stack([found.values, found.sigma], axis=2).reshape(len(found.cases), -1)
+    for case, outcome, row in zip(found.cases, found.outcomes, numbers.tolist(), strict=True):
+        writer.writerow([case, outcome, *("" if np.isnan(number) else repr(number) for number in row)])
+    return lines.getvalue()

@@ -1,0 +1,168 @@
+"""Estimates beside the truths that made the measurements, and beside a search of another kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import least_squares
+from scipy.stats import chi2
+
+from cosserat_casadi import Model, SceneError, build, scene_from_dict, solve
+from cosserat_casadi.estimation import Estimate, estimate
+from cosserat_casadi.results.estimate_file import estimate_result, estimate_table
+from cosserat_casadi.scene import Scene
+from cosserat_casadi.scene.writing import scene_tables
+from tests.scenes import push, rod, scene
+
+SIGMA = 1e-3
+PRIOR = np.array([1.0, 1.0, 0.2])
+AT = (0.5, 1.0)
+Values = Mapping[str, np.ndarray]
+TIP = {"input": "push.force", "per_row": True}
+
+
+def felt(prior: bool = True, sections: tuple[float, ...] = AT, strain: str = "planar", **changes: Any) -> Scene:
+    """A rod with markers; its tip is pushed by an unknown force."""
+    measured = [
+        {
+            "quantity": "position",
+            "name": f"marker {k}",
+            "file": "shapes",
+            "rod": "rod",
+            "at": at,
+            "columns": [f"{axis}{k}" for axis in "xyz"],
+            "sigma": SIGMA,
+        }
+        for k, at in enumerate(sections)
+    ]
+    unknown = {**TIP, "prior": {"mean": 0.0, "sigma": PRIOR.tolist()}} if prior else TIP
+    base = scene(push(force=[0.0, 0.0, 0.0]), rods=[rod(strain)], accuracy={"modes": 3, "nodes": 8, "tolerance": 1e-3})
+    tables = {**scene_tables(base), "inputs": [], "measurements": measured, "unknowns": [unknown], **changes}
+    return scene_from_dict(tables)
+
+
+def measured(model: Model, felt_loads: Sequence[Values], seed: int) -> dict[str, dict[str, np.ndarray]]:
+    """Positions of the markers under loads, with noise."""
+    rng = np.random.default_rng(seed)
+    columns: dict[str, list[float]] = {f"{axis}{k}": [] for k in range(len(AT)) for axis in "xyz"}
+    for loads in felt_loads:
+        positions = solve(model, loads).pose(AT, "rod").position
+        for k in range(len(AT)):
+            for axis, value in zip("xyz", positions[k] + rng.normal(0.0, SIGMA, 3), strict=True):
+                columns[f"{axis}{k}"].append(value)
+    return {"shapes": {name: np.array(values) for name, values in columns.items()}}
+
+
+def pushes(forces: npt.ArrayLike) -> list[Values]:
+    """Forces at the tip as inputs."""
+    return [{"push.force": force} for force in np.asarray(forces)]
+
+
+def nees(found: Estimate, forces: np.ndarray) -> np.ndarray:
+    """Squared errors in the metric of their covariances."""
+    errors = found.values - forces
+    return np.einsum("ci,cij,cj->c", errors, np.linalg.inv(found.covariance), errors)
+
+
+def assert_consistent(count: int, strain: str) -> None:
+    """The mean of the squared errors is within the 95 % band of its distribution."""
+    model = build(felt(strain=strain).with_unknowns())
+    forces = np.random.default_rng(4).normal(size=(count, 3)) * PRIOR
+    found = estimate(model, measured(model, pushes(forces), 5))
+    assert found.found.all()
+    low, high = chi2.ppf([0.025, 0.975], 3 * count) / count
+    assert low <= nees(found, forces).mean() <= high
+
+
+def test_estimates_are_consistent() -> None:
+    assert_consistent(40, "planar")
+
+
+@pytest.mark.slow
+def test_estimates_are_consistent_over_many_cases() -> None:
+    assert_consistent(1000, "kirchhoff")
+
+
+def test_a_row_vs_a_search_without_derivatives() -> None:
+    """The same maximum by scipy's least squares with differences on the solver in Python, and the same covariance."""
+    model = build(felt().with_unknowns())
+    force = np.array([[0.8, 0.0, -0.3]])
+    data = measured(model, pushes(force), 1)
+    found = estimate(model, data)
+    numbers = np.array([data["shapes"][f"{axis}{k}"][0] for k in range(len(AT)) for axis in "xyz"])
+
+    def misfit(u: np.ndarray) -> np.ndarray:
+        positions = solve(model, {"push.force": u}).pose(AT, "rod").position.ravel()
+        return np.concatenate([(positions - numbers) / SIGMA, u / PRIOR])
+
+    other = least_squares(misfit, force[0], xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    assert_allclose(found.values[0], other.x, rtol=0, atol=1e-4 * found.sigma[0].max())
+    assert_allclose(found.cost[0], other.cost, rtol=1e-6, atol=0)
+    assert_allclose(found.covariance[0], np.linalg.inv(other.jac.T @ other.jac), rtol=1e-3, atol=1e-7)
+    # A planar rod does not feel what pushes it out of its plane.
+    assert "push.force.y" in found.unseen
+    for label in found.unseen:
+        k = found.labels.index(label)
+        assert found.sigma[0, k] > 0.99 * PRIOR[k]
+    assert_allclose(found.sigma[0, 1], PRIOR[1], rtol=1e-6, atol=0)
+
+
+def test_what_nothing_determines_is_told() -> None:
+    model = build(felt(prior=False).with_unknowns())
+    found = estimate(model, measured(model, pushes([[0.5, 0.0, 0.0], [0.2, 0.0, 0.1]]), 2))
+    assert found.outcomes == ("not_determined", "not_determined")
+    assert np.isnan(found.values).all()
+    assert list(found.unseen) == ["push.force.y"]
+    assert any("2 of 2 rows not found" in warning for warning in found.warnings)
+    assert estimate_result(found)["message"] == "0 of 2 rows found."
+    assert estimate_result(found)["rows"][0]["value"] == [None, None, None]
+    assert estimate_table(found).splitlines()[1].endswith(",not_determined,,,,,,")
+
+
+def test_a_load_along_the_rod_is_felt_from_its_shape() -> None:
+    """Two Legendre coefficients of a made-up load, within deviations that are narrower than those of the prior."""
+    sigma = 2.0
+    names = ("wind.force.x", "wind.force.x.1")
+    wind = {"name": "wind", "kind": "distributed_wrench", "rod": "rod", "force": [[0.0, 0.0], 0.0, 0.0]}
+    prior = {"mean": 0.0, "sigma": sigma}
+    unknowns = [{"input": name, "per_row": True, "prior": prior} for name in names]
+    model = build(felt(loads=[wind], unknowns=unknowns).with_unknowns())
+    truth = np.random.default_rng(8).normal(size=(12, 2)) * sigma
+    force = np.zeros((12, *np.shape(model.inputs.unpack(model.pack())["wind.force"])))
+    force[:, 0, :] = truth
+    found = estimate(model, measured(model, [{"wind.force": value} for value in force], 9))
+    assert found.labels == names
+    assert found.unseen == {}
+    # Two markers tell the mean of a load far better than how it is spread.
+    assert (found.sigma < np.array([0.4, 0.8]) * sigma).all()
+    low, high = chi2.ppf([0.005, 0.995], truth.size) / len(truth)
+    assert low <= nees(found, truth).mean() <= high
+
+
+def test_cells_that_are_empty_are_not_measured() -> None:
+    model = build(felt().with_unknowns())
+    data = measured(model, pushes([[0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), 3)
+    for axis in "xyz":
+        data["shapes"][f"{axis}0"][1] = np.nan
+    found = estimate(model, data)
+    assert found.numbers.tolist() == [6, 3]
+    assert found.sigma[1, 2] > found.sigma[0, 2]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"unknowns": [{"input": "push.force"}]}, "the same in all rows"),
+        ({"unknowns": []}, "name what is to be felt"),
+        ({"measurements": []}, "say what was measured"),
+    ],
+)
+def test_scenes_that_ask_for_something_else_are_refused(changes: dict[str, Any], message: str) -> None:
+    model = build(felt(**changes).with_unknowns())
+    with pytest.raises(SceneError, match=message):
+        estimate(model, {})
