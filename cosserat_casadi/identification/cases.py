@@ -166,6 +166,7 @@ class _Reader:
         if not np.any(measured):
             remedy = "look at its columns, and at where"
             self.problems.append(Problem(table.source, f"{measurement.title}: nothing was measured in any row", remedy))
+        self._check_labels(chosen)
         inputs = self._inputs(chosen, measured)
         abscissae = self._abscissae(chosen, measured)
         rows = []
@@ -178,6 +179,16 @@ class _Reader:
             place = (table.source, table.lines[row])
             rows.append(_Row(self.number, where, place, label, set_inputs, datum))
         return rows
+
+    def _check_labels(self, rows: Sequence[int]) -> None:
+        """Every row says which case it belongs to: rows with empty cells there have nothing in common."""
+        column = self.measurement.case
+        if column is None:
+            return
+        for row in rows:
+            if not self.table.columns[column][row].strip():
+                problem = f"{column} is empty, but says which case the row belongs to"
+                self.problems.append(Problem(self.table.where(row), problem, "name the case"))
 
     def _values(self, rows: Sequence[int]) -> FloatArray:
         """Cells of the quantity in SI units, shape (rows, entries); NaN where not measured."""

@@ -256,9 +256,13 @@ def unknown_layout(model: Model) -> UnknownLayout:
             problems.append(Problem(where, f"the model has no {record.name}", remedy))
     for entry in entries:
         try:
-            entry.limits()
+            _, upper, _, _ = entry.limits()
         except SceneError as error:
             problems += error.problems
+            continue
+        if entry.positive and np.any(upper <= 0):
+            problem = f"upper must be > 0, as {entry.record.name} is, got {upper.min():g}"
+            problems.append(Problem(f"unknowns: {entry.record.name}", problem))
     if problems:
         raise SceneError(*problems)
     shared = tuple(entry for entry in entries if not entry.record.per_row)

@@ -154,6 +154,8 @@ class MeasurementRecord(Entry):
             got = len(numbers_of(given.get(key)))
             if got > 1 and got != wanted:
                 yield Fault((key,), f"must be 1 number or {wanted}, got {got}")
+        if 0 in numbers_of(given.get("scale")):
+            yield Fault(("scale",), "must not be 0", "'' in columns is for what was not measured")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -429,13 +431,13 @@ per_row = true
             if not isinstance(inputs, Mapping):
                 continue
             for measured in inputs:
-                if isinstance(measured, str) and _overlap(name, measured):
+                if isinstance(measured, str) and overlap(name, measured):
                     problem = f"measurements[{i}] sets {shown(measured)}"
                     yield Fault(path, problem, "what is unknown has no column: leave it out there, or here")
                     return
 
 
-def _overlap(one: str, other: str) -> bool:
+def overlap(one: str, other: str) -> bool:
     """Whether one name is the other, or names a part of it."""
     return one == other or one.startswith(f"{other}.") or other.startswith(f"{one}.")
 

@@ -17,7 +17,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.loads import LOADS
-from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown
+from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown, overlap
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import OBSTACLES
@@ -81,7 +81,7 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
-    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles"):
+    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles", "measurements"):
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
@@ -229,6 +229,13 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
         elif "parameter" in table and name not in names:
             names.append(name)
             paths.append(("unknowns", i, "parameter"))
+        elif "input" in table:
+            # Of parameters the rules of `parameters` tell.
+            for other in first:
+                if other != name and overlap(name, other):
+                    problem = f"{shown(name)} and unknowns[{first[other]}] share numbers"
+                    yield Fault(("unknowns", i, "input"), problem, "name each number once")
+                    break
     if not names:
         return
     by_list: dict[str, list[tuple[Holder, Any]]] = {key: [] for key in PARAMETER_LISTS}

@@ -167,6 +167,39 @@ def test_a_parameter_that_no_datum_sees_is_named(shapes: MadeUp) -> None:
     assert found.statistics.determined.tolist() == [True] * 4 + [False]
 
 
+def test_what_a_bound_holds_has_no_interval(shapes: MadeUp) -> None:
+    unknowns = [{**WIRE["unknowns"][0], "upper": 50e9}, *WIRE["unknowns"][1:]]
+    found = identify(built(unknowns=unknowns), shapes.data)
+    assert found.at_bounds == (NAMES[0],)
+    assert np.isnan(found.sigma).tolist() == [True, False, False, False]
+    assert found.statistics.determined.tolist() == [False, True, True, True]
+
+
+def test_bounds_leave_room_for_what_is_positive() -> None:
+    unknowns = [{"parameter": NAMES[0], "lower": -5.0, "upper": -1.0}]
+    with pytest.raises(SceneError, match="upper must be > 0"):
+        unknown_layout(built(unknowns=unknowns))
+
+
+def test_a_turn_that_is_unseen_at_the_start_is_found(shapes: MadeUp) -> None:
+    # A straight round wire can turn about its axis: until its curvature is found no datum sees that.
+    found = identify(built(unknowns=[*WIRE["unknowns"], {"input": "wire.base.quaternion"}]), shapes.data)
+    assert found.converged, found.message
+    assert np.abs(found.shared[4:] / found.sigma[4:]).max() < 3.0
+
+
+def test_a_prior_keeps_its_deviation_where_noise_follows_from_residuals(shapes: MadeUp) -> None:
+    rod = {**WIRE["rods"][0], "material": {"youngs_modulus": 60e9, "poisson_ratio": 0.3}}
+    unknowns = [
+        {"parameter": "wire.material.youngs_modulus", "lower": 1e9, "upper": 1e12},
+        {"parameter": "wire.section.radius", "prior": {"mean": 5e-4, "sigma": 5e-6}},
+    ]
+    # No curvature is sought, so that residuals are far above what sigma states.
+    found = identify(built(rods=[rod], unknowns=unknowns, identification={"noise": "residual"}), shapes.data)
+    assert found.statistics.noise > 3.0
+    assert_allclose(found.sigma[1], 5e-6, rtol=1e-4, atol=0)
+
+
 def test_held_out_cases_are_predicted(wire_model: Model, shapes: MadeUp) -> None:
     found = identify(wire_model, shapes.data, hold_out=0.2)
     assert len(found.cases) == 8

@@ -41,13 +41,14 @@ def cases_of(
     return read_cases(scene, model.inputs, data)
 
 
-TABLE = {
+TABLE: dict[str, list[Any]] = {
     "load": [0.1, 0.1, 0.2, 0.3],
     "X": [0.5, 1.0, 1.0, 1.0],
     "x": [1.0, 2.0, 3.0, np.nan],
     "z": [4.0, np.nan, 5.0, np.nan],
     "F": [np.nan, 7.0, np.nan, 8.0],
     "phase": ["rest", "rest", "moved", "moved"],
+    "shape": ["a", "", "b", "b"],
 }
 
 
@@ -86,12 +87,13 @@ def test_rows_are_chosen_and_cells_scaled() -> None:
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "column": ({"columns": ["x", "y", "z"]}, "a.csv: has no column 'y' (columns: load, X, x, z, F, phase)"),
+    "column": ({"columns": ["x", "y", "z"]}, "a.csv: has no column 'y' (columns: load, X, x, z, F, phase, shape)"),
     "text": ({"columns": ["phase", "", ""]}, "a.csv, line 1: phase must be a finite number, or empty"),
     "abscissa": ({"at": "load_X"}, "a.csv: has no column 'load_X'"),
     "far": ({"at": "x"}, "a.csv, line 2: x must be an abscissa from 0 to 1, got 2"),
     "nothing": ({"where": {"phase": "sleep"}}, "nothing was measured in any row"),
     "part": ({"inputs": {"push.force": "load"}}, "push.force has several numbers (one of push.force.x"),
+    "label": ({"case": "shape"}, "a.csv, line 2: shape is empty, but says which case"),
     "empty": ({"inputs": {"push.force.x": "F"}}, "a.csv, line 1: F is empty, but sets push.force.x"),
 }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -148,6 +148,32 @@ def test_weights_are_the_slope_of_the_cost(kind: str) -> None:
         ahead, behind = (loss.cost(np.array([residual + step])) for step in (1e-6, -1e-6))
         slope = (ahead - behind) / 2e-6
         assert_allclose(residual * loss.weights(np.array([residual]))[0], slope, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["squares", "huber", "cauchy"])
+def test_noise_under_a_loss_is_the_spread_of_means(kind: str) -> None:
+    # A mean of normal numbers: its information is the sum of the weights.
+    loss = Loss(kind, 2.0)
+    samples = np.random.default_rng(8).standard_normal((8000, 60))
+    means = samples.mean(axis=1)
+    for _ in range(30):
+        weights = loss.weights(samples - means[:, None])
+        means = np.sum(weights * samples, axis=1) / np.sum(weights, axis=1)
+    told = []
+    for row, mean in zip(samples, means, strict=True):
+        noise = loss.noise_squares(row - mean) / (len(row) - 1)
+        told.append(noise / np.sum(loss.weights(row - mean)))
+    assert_allclose(np.mean(told), np.mean(means**2), rtol=0.06)
+
+
+def test_what_a_bound_holds_takes_no_row_of_others(decays: Decays) -> None:
+    shared, own = np.array([1.3, 0.4]), np.ones((4, 1))
+    at_bound = replace(free(1), lower=np.ones(1))
+    arrow = ArrowFit(decays, free(2), at_bound).linear(shared, own, decays.point(shared, own))
+    arrow = replace(arrow, own_held=np.ones((4, 1), dtype=bool))
+    left, _ = arrow.eliminated(np.zeros(1))
+    information = left[:, :2].T @ left[:, :2]
+    assert_allclose(information, arrow.by_shared.T @ arrow.by_shared, rtol=1e-12)
 
 
 def test_a_linear_problem_takes_its_closed_form() -> None:

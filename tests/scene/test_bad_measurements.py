@@ -130,6 +130,21 @@ REFUSED = {
         "unknowns[0].input",
         "measurements[0] sets 'push.force.z'",
     ),
+    "scale": (
+        ROD + MEASURED + "scale = [1e-3, 0.0, 1e-3]\n",
+        "measurements[0].scale",
+        "must not be 0",
+    ),
+    "name": (
+        ROD + 2 * MEASURED.replace("sigma", 'name = "shapes"\nsigma'),
+        "measurements[1].name",
+        "'shapes' is already the name of measurements[0]",
+    ),
+    "part": (
+        ROD + '[[unknowns]]\ninput = "push.moment.x"\n[[unknowns]]\ninput = "push.moment"\n',
+        "unknowns[1].input",
+        "'push.moment' and unknowns[0] share numbers",
+    ),
     "an_input": (
         ROD + '[[unknowns]]\nparameter = "push.force"\n',
         "unknowns[0].parameter",
