@@ -19,7 +19,7 @@ from rows import append, read
 from cosserat_casadi import build, solve_scene
 from cosserat_casadi.accuracy.cost import STRAIGHT, foreseen_time, spread_on
 from cosserat_casadi.bench.program import Program, Times
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.discretisation import Discretisation

@@ -32,7 +32,7 @@ from cosserat_casadi.accuracy.pose_change import change_size
 from cosserat_casadi.accuracy.preview import Preview
 from cosserat_casadi.bench.program import Program, Times
 from cosserat_casadi.bench.shooting import ShootingError, shoot
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.model.inputs import load_values
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.pose_errors import pose_error

@@ -6,7 +6,7 @@ from contextlib import ExitStack, closing
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.bench.program import Program, Times
-from cosserat_casadi.codegen.compiled import Progress
+from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import without_load
 

@@ -19,7 +19,7 @@ from cosserat_casadi.bench.record import CSV, JSON, fingerprint, output_problems
 from cosserat_casadi.bench.session import Session, richer_candidates
 from cosserat_casadi.bench.shooting import check_scipy
 from cosserat_casadi.bench.table import print_bench, print_strains
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.plots.figure import figure_class

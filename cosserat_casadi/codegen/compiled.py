@@ -5,11 +5,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import shutil
-import subprocess
-import tempfile
-from collections.abc import Callable, Collection, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -19,117 +15,29 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.cache import SCRATCH, VARIABLE, cache_folder, content_hash, keep_within, mark_used
 from cosserat_casadi.codegen.compiled_motion import CompiledMotion
+from cosserat_casadi.codegen.compiled_results import (
+    VERDICTS,
+    CompiledSolution,
+    CompiledStability,
+    Info,
+    Sensitivity,
+    StabilityInfo,
+    solution_of,
+)
+from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.library import VERBATIM
 from cosserat_casadi.codegen.manifest import MANIFEST
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
 from cosserat_casadi.codegen.stability import stability_files
-from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, Owner
-from cosserat_casadi.numerics.outcome import Outcome
-
-REMEDY = "install gcc or clang, or name one in the environment variable CC"
-
-FLAGS = ("-O2", "-std=c99", "-fPIC")
-
-Progress = Callable[[str, int, int], None]
-"""Takes what is being done, how much of it is done, and how much there is."""
 
 OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
 """Functions of which a scene may have none: one without bodies."""
-
-
-class _Info(ctypes.Structure):
-    _fields_ = (
-        ("status", ctypes.c_int),
-        ("iterations", ctypes.c_int),
-        ("jacobians", ctypes.c_int),
-        ("residual_norm", ctypes.c_double),
-        ("load_factor", ctypes.c_double),
-    )
-
-
-class _StabilityInfo(ctypes.Structure):
-    _fields_ = (
-        ("smallest_eigenvalue", ctypes.c_double),
-        ("negative", ctypes.c_int),
-        ("zero", ctypes.c_int),
-        ("verdict", ctypes.c_int),
-    )
-
-
-VERDICTS = ("stable", "neutral", "critical", "unstable")
-"""Verdicts on stability in C, in the order of their numbers."""
-
-
-@dataclass(frozen=True)
-class CompiledStability:
-    """What the library says of an equilibrium.
-
-    Attributes:
-        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ of the scene's
-            own numbers, whatever the parameters are.
-        negative: number of eigenvalues below zero.
-        zero: number of those that are zero to rounding.
-        verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
-            where they lead to none; ``unstable``.
-    """
-
-    smallest_eigenvalue: float
-    negative: int
-    zero: int
-    verdict: str
-
-    @property
-    def stable(self) -> bool:
-        """Whether a real rod stays there."""
-        return self.verdict in ("stable", "neutral")
-
-
-@dataclass(frozen=True)
-class CompiledSolution:
-    """What the solver in C found.
-
-    Attributes:
-        x: unknowns; the last equilibrium on the way where it did not converge.
-        outcome: how it ended.
-        iterations: Newton steps tried.
-        jacobians: Jacobians factorised.
-        residual_norm: relative norm of the residual.
-        load_factor: share of the load that x carries.
-    """
-
-    x: FloatArray
-    outcome: Outcome
-    iterations: int
-    jacobians: int
-    residual_norm: float
-    load_factor: float
-
-    @property
-    def converged(self) -> bool:
-        """Whether x is an equilibrium at the full load."""
-        return self.outcome is Outcome.CONVERGED
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """Derivatives of an equilibrium with some numbers, a column for each.
-
-    Attributes:
-        x: of the unknowns, shape (size, columns).
-        tips: of position and quaternion of the tip of each rod, shape (7, columns).
-        bodies: of each rigid body, likewise.
-    """
-
-    x: FloatArray
-    tips: dict[str, FloatArray]
-    bodies: dict[str, FloatArray]
 
 
 @dataclass(frozen=True)
@@ -226,10 +134,10 @@ class Compiled(CompiledMotion):
         """
         given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
         x = vector(np.zeros(self.size) if start is None else start, self.size, "start").copy()
-        info = _Info()
+        info = Info()
         p = self.parameters.passed(parameters)
         self._function("solve")(pointer(given), *p, pointer(x), self._workspace(), ctypes.byref(info))
-        return _solution(x, info)
+        return solution_of(x, info)
 
     def follow(
         self,
@@ -256,12 +164,12 @@ class Compiled(CompiledMotion):
         old = vector(before, len(self.defaults), "before")
         given = vector(inputs, len(self.defaults), "inputs")
         x = vector(start, self.size, "start").copy()
-        info = _Info()
+        info = Info()
         old_p = self.parameters.passed(parameters_before)
         p = self.parameters.passed(parameters)
         work = self._workspace()
         self._function("follow")(pointer(old), *old_p, pointer(given), *p, pointer(x), work, ctypes.byref(info))
-        return _solution(x, info)
+        return solution_of(x, info)
 
     def solve_batch(self, inputs: npt.ArrayLike, *, parameters: ParameterValues = None) -> list[CompiledSolution]:
         """Equilibria of many load cases.
@@ -284,10 +192,10 @@ class Compiled(CompiledMotion):
         given = np.ascontiguousarray(np.broadcast_to(given, (count, given.shape[1])))
         p = np.ascontiguousarray(np.broadcast_to(p, (count, p.shape[1])))
         x = np.zeros((count, self.size))
-        infos = (_Info * count)()
+        infos = (Info * count)()
         passed = [pointer(p)] if self.parameters.size else []
         self._function("solve_batch")(count, pointer(given), *passed, pointer(x), self._workspace(), 1, infos)
-        return [_solution(row, info) for row, info in zip(x, infos, strict=True)]
+        return [solution_of(row, info) for row, info in zip(x, infos, strict=True)]
 
     def sensitivity(
         self, inputs: npt.ArrayLike, x: npt.ArrayLike, *, parameters: ParameterValues = None
@@ -333,7 +241,7 @@ class Compiled(CompiledMotion):
         given = vector(inputs, len(self.defaults), "inputs")
         unknowns = vector(x, self.size, "x")
         room = (ctypes.c_char * self._function("stability_workspace_size")())()
-        info = _StabilityInfo()
+        info = StabilityInfo()
         p = self.parameters.passed(parameters)
         judge = self._function("stability")
         status = judge(pointer(given), *p, pointer(unknowns), self._workspace(), room, ctypes.byref(info))
@@ -455,103 +363,6 @@ def load(
     return Compiled(library, described, names)
 
 
-def shared_object(
-    name: str, sources: Sequence[Path], headers: Sequence[Path], compiler: str, progress: Progress | None = None
-) -> Path:
-    """Compile sources of one folder into the cache, unless that has been done; processes may do so at once.
-
-    Args:
-        name: what the name of the object begins with.
-        sources: files to compile.
-        headers: files beside them that they include.
-        compiler: path of a C compiler.
-        progress: told what is compiled, how many files are, and of how many.
-
-    Raises:
-        ExportError: a file is missing, the compiler fails, or the cache cannot be written to.
-    """
-    digest = content_hash(compiler, FLAGS, [_read(path) for path in (*sources, *headers)])
-    target = cache_folder() / f"{name}-{digest}.so"
-    if target.exists():
-        mark_used(target)
-        return target
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        _compile(compiler, sources, target, progress)
-        keep_within(target.parent)
-    except OSError as error:
-        remedy = f"name a folder for it in the environment variable {VARIABLE}"
-        raise ExportError(Problem(str(target.parent), f"cannot be written to: {error.strerror}", remedy)) from None
-    return target
-
-
-def compiled_texts(
-    name: str,
-    texts: Mapping[str, str],
-    compiler: str,
-    included: Collection[str] = frozenset(),
-    progress: Progress | None = None,
-) -> Path:
-    """As :func:`shared_object`, of sources and headers that are texts by file name.
-
-    Args:
-        name: what the name of the object begins with.
-        texts: content by file name.
-        compiler: path of a C compiler.
-        included: files that others include: they are not compiled by themselves.
-        progress: as there.
-    """
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder) / file for file in texts]
-        for path in paths:
-            path.write_text(texts[path.name], encoding="utf-8")
-        sources = [path for path in paths if path.suffix == ".c" and path.name not in included]
-        headers = [path for path in paths if path not in sources]
-        return shared_object(name, sources, headers, compiler, progress)
-
-
-def _compile(compiler: str, sources: Sequence[Path], target: Path, progress: Progress | None = None) -> None:
-    with tempfile.TemporaryDirectory(prefix=SCRATCH, dir=target.parent) as scratch:
-        made = Path(scratch) / target.name
-        objects = [Path(scratch) / f"{source.stem}.o" for source in sources]
-        commands = [[compiler, *FLAGS, "-c", str(s), "-o", str(o)] for s, o in zip(sources, objects, strict=True)]
-        doing = f"Compiling {target.name.rpartition('-')[0]}"
-        if progress is not None:
-            progress(doing, 0, len(sources))
-        with ThreadPoolExecutor() as pool:
-            running = [pool.submit(_run, command, sources[0].parent) for command in commands]
-            for done, compiled in enumerate(as_completed(running), 1):
-                compiled.result()
-                if progress is not None:
-                    progress(doing, done, len(sources))
-        _run([compiler, *FLAGS, "-shared", *map(str, objects), "-o", str(made), "-lm"], sources[0].parent)
-        made.replace(target)
-
-
-def _run(command: list[str], folder: Path) -> None:
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
-    except OSError as error:
-        raise ExportError(Problem("compiler", f"{command[0]} cannot be run: {error.strerror}", REMEDY)) from None
-    if done.returncode:
-        raise ExportError(Problem(str(folder), f"{command[0]} could not compile it: {done.stderr.strip()[-800:]}"))
-
-
-def find_compiler(wanted: str | None = None) -> str:
-    """Path of a C compiler: the one wanted, else that of CC, else the first there is.
-
-    Raises:
-        ExportError: there is none.
-    """
-    asked = wanted or os.environ.get("CC")
-    for candidate in [asked] if asked else ["cc", "gcc", "clang"]:
-        path = shutil.which(candidate)
-        if path:
-            return path
-    problem = f"{asked} is not a program" if asked else "there is no C compiler on the path"
-    raise ExportError(Problem("compiler", problem, REMEDY))
-
-
 def _manifest(folder: Path) -> dict[str, Any]:
     remedy = "write one with cosserat export"
     try:
@@ -577,16 +388,3 @@ def _is_manifest(described: Any) -> bool:
     except (ExportError, KeyError, TypeError, ValueError):
         return False
     return rods and files and functions and all(value.ndim == 1 for value in numbers)
-
-
-def _read(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError:
-        raise ExportError(Problem(str(path), "is missing", "export the folder anew")) from None
-
-
-def _solution(x: FloatArray, info: _Info) -> CompiledSolution:
-    return CompiledSolution(
-        x, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
-    )

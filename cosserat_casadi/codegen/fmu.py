@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.fmu_description import build_description, model_description, variables
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources

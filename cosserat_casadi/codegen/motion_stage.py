@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.stage import bare_second, differentiated, exact_second, jacobian_of, poses_of, written

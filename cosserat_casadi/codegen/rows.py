@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from cosserat_casadi.codegen.assembled import assembled
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.lanes import Shown, in_lanes
 from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, render

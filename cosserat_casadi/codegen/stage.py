@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
-from cosserat_casadi.codegen.compiled import Progress, compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import Progress, compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.names import library_names

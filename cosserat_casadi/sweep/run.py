@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.rows import NAME, STABILITY, RowLibrary, row_library, row_results
 from cosserat_casadi.errors import Problem, SceneError

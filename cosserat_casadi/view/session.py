@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.codegen.compiled import Compiled, CompiledSolution, Progress, load
+from cosserat_casadi.codegen.compiled import Compiled, load
+from cosserat_casadi.codegen.compiled_results import CompiledSolution
+from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.control.inverse import LiftedProblem, lifted_problem, search, with_verdict
 from cosserat_casadi.equilibrium.solution import Solution

@@ -24,7 +24,7 @@ from cosserat_casadi.bench.program import Times
 from cosserat_casadi.bench.record import CSV, JSON
 from cosserat_casadi.bench.reference import NoReferenceError
 from cosserat_casadi.bench.table import print_effects, print_motion_times
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.model.price import price, price_of_motion
 from tests.moving_scenes import model_of
 from tests.scenes import push, rod, scene

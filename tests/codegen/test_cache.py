@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi import build, discretise, export, load
-from cosserat_casadi.codegen import cache, compiled
+from cosserat_casadi.codegen import cache, compiler
 from cosserat_casadi.codegen.cache import ABANDONED, IN_USE, SCRATCH, cache_folder, content_hash, keep_within
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from tests.scenes import push, scene
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
@@ -24,7 +24,7 @@ needs_shell = pytest.mark.skipif(sys.platform == "win32", reason="a shell script
 @pytest.fixture
 def strip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("COSSERAT_CASADI_CACHE", str(tmp_path / "kept"))
-    monkeypatch.setattr(compiled, "FLAGS", tuple("-O0" if flag == "-O2" else flag for flag in compiled.FLAGS))
+    monkeypatch.setattr(compiler, "FLAGS", tuple("-O0" if flag == "-O2" else flag for flag in compiler.FLAGS))
     given = scene(push(), strain="planar")
     return export(build(given, discretise(given, 2, 3)), tmp_path / "strip")
 

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from cosserat_casadi import Scene, build
-from cosserat_casadi.codegen import compiled, lanes, rows
+from cosserat_casadi.codegen import compiler, lanes, rows
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.maths.typing import FloatArray
@@ -28,7 +28,7 @@ TENDON = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offse
 def _quick_compiler() -> Any:
     """Optimising takes the compiler far longer than running slowly takes the tests."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "FLAGS", ("-O0", "-std=c99", "-fPIC"))
+        patch.setattr(compiler, "FLAGS", ("-O0", "-std=c99", "-fPIC"))
         yield
 
 
@@ -95,7 +95,7 @@ def test_tendons_and_loops_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_compiler_without_vectors_solves_row_after_row(planar: RowLibrary, monkeypatch: pytest.MonkeyPatch) -> None:
     inputs = pushes(7, 1.0)
     expected = planar.solve(inputs)
-    monkeypatch.setattr(compiled, "FLAGS", (*compiled.FLAGS, "-DLANES=0"))
+    monkeypatch.setattr(compiler, "FLAGS", (*compiler.FLAGS, "-DLANES=0"))
     rows._library.cache_clear()
     assert_array_equal(planar.solve(inputs), expected)
     rows._library.cache_clear()

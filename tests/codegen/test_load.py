@@ -15,9 +15,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, load, solve
-from cosserat_casadi.codegen import compiled
+from cosserat_casadi.codegen import compiler
 from cosserat_casadi.codegen.cache import cache_folder
-from cosserat_casadi.codegen.compiled import FLAGS
+from cosserat_casadi.codegen.compiler import FLAGS
 from cosserat_casadi.codegen.manifest import MANIFEST
 from tests.scenes import WEIGHT, push, scene
 
@@ -48,7 +48,7 @@ QUICK = tuple("-O0" if flag == "-O2" else flag for flag in FLAGS)
 
 def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Compiled libraries go to a folder of this test, and are compiled in little time."""
-    monkeypatch.setattr(compiled, "FLAGS", QUICK)
+    monkeypatch.setattr(compiler, "FLAGS", QUICK)
     monkeypatch.delenv("COSSERAT_CASADI_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
@@ -192,7 +192,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         made.append(target.name)
         target.write_bytes(b"")
 
-    monkeypatch.setattr(compiled, "_compile", pretend)
+    monkeypatch.setattr(compiler, "_compile", pretend)
     return made
 
 
@@ -245,7 +245,7 @@ def test_the_compiler_may_be_named(strip: Path, monkeypatch: pytest.MonkeyPatch)
 def test_other_flags_give_another_object(strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pretended(monkeypatch)
     quick = load(strip).library
-    monkeypatch.setattr(compiled, "FLAGS", FLAGS)
+    monkeypatch.setattr(compiler, "FLAGS", FLAGS)
     assert load(strip).library != quick
 
 

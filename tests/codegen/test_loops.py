@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, build, discretise, scene_from_dict
-from cosserat_casadi.codegen.compiled import compiled_texts, find_compiler
+from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import sources
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.routines import TOGETHER

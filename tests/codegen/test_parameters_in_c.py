@@ -267,7 +267,7 @@ def test_a_library_for_rows_takes_parameters(export_recipe: Callable[[str, Recip
         own = exported.compiled.solve(inputs[0], parameters=row)
         tip = exported.compiled.tip["rod"](own.x, inputs[0], row)[0].full()[:, 0]
         assert_allclose(result[3:6], tip, rtol=0, atol=1e-9)
-    with pytest.raises(ValueError, match=r"parameters must have shape \(3, 5\), got \(2, 5\)"):
+    with pytest.raises(ValueError, match=r"parameters must have shape \(3, 6\), got \(2, 6\)"):
         library.solve(inputs, rows[:2])
 
 

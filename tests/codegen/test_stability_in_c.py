@@ -13,7 +13,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Compiled, ExportError, Model, Scene, build, discretise, export, follow_path, load, solve
-from cosserat_casadi.codegen.compiled import CompiledStability
+from cosserat_casadi.codegen.compiled_results import CompiledStability
 from cosserat_casadi.codegen.stability import stability_files
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from tests.codegen.libraries import ARMS, C99, HAND, HELD, LOAD, TENDON, WRISTS, attempt

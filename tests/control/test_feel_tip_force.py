@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.codegen.compiled import find_compiler, load
+from cosserat_casadi.codegen.compiled import load
+from cosserat_casadi.codegen.compiler import find_compiler
 from examples.feel_tip_force import (
     Plant,
     draw,

@@ -13,7 +13,7 @@ from cosserat_casadi.bench.table import print_effects, print_motion_times
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import price, price_of_motion
 from cosserat_casadi.motion.simulate import check_simulation

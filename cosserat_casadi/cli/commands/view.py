@@ -14,7 +14,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.signals import StoppedError
-from cosserat_casadi.codegen.compiled import find_compiler
+from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.scene import read_scene
 
 

@@ -1,0 +1,109 @@
+"""What a compiled library answers with: solutions, their derivatives, their stability."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+
+from cosserat_casadi.codegen.status import OUTCOMES
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
+
+
+class Info(ctypes.Structure):
+    """The struct in C that says how a solve ended."""
+
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("iterations", ctypes.c_int),
+        ("jacobians", ctypes.c_int),
+        ("residual_norm", ctypes.c_double),
+        ("load_factor", ctypes.c_double),
+    )
+
+
+class StabilityInfo(ctypes.Structure):
+    """The struct in C that says what eigenvalues mean."""
+
+    _fields_ = (
+        ("smallest_eigenvalue", ctypes.c_double),
+        ("negative", ctypes.c_int),
+        ("zero", ctypes.c_int),
+        ("verdict", ctypes.c_int),
+    )
+
+
+VERDICTS = ("stable", "neutral", "critical", "unstable")
+"""Verdicts on stability in C, in the order of their numbers."""
+
+
+@dataclass(frozen=True)
+class CompiledStability:
+    """What the library says of an equilibrium.
+
+    Attributes:
+        smallest_eigenvalue: of the second variation over the admissible variations, in units of EI/ℓ of the scene's
+            own numbers, whatever the parameters are.
+        negative: number of eigenvalues below zero.
+        zero: number of those that are zero to rounding.
+        verdict: ``stable``; ``neutral``, where some variations lead through equilibria alike at no cost; ``critical``,
+            where they lead to none; ``unstable``.
+    """
+
+    smallest_eigenvalue: float
+    negative: int
+    zero: int
+    verdict: str
+
+    @property
+    def stable(self) -> bool:
+        """Whether a real rod stays there."""
+        return self.verdict in ("stable", "neutral")
+
+
+@dataclass(frozen=True)
+class CompiledSolution:
+    """What the solver in C found.
+
+    Attributes:
+        x: unknowns; the last equilibrium on the way where it did not converge.
+        outcome: how it ended.
+        iterations: Newton steps tried.
+        jacobians: Jacobians factorised.
+        residual_norm: relative norm of the residual.
+        load_factor: share of the load that x carries.
+    """
+
+    x: FloatArray
+    outcome: Outcome
+    iterations: int
+    jacobians: int
+    residual_norm: float
+    load_factor: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether x is an equilibrium at the full load."""
+        return self.outcome is Outcome.CONVERGED
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives of an equilibrium with some numbers, a column for each.
+
+    Attributes:
+        x: of the unknowns, shape (size, columns).
+        tips: of position and quaternion of the tip of each rod, shape (7, columns).
+        bodies: of each rigid body, likewise.
+    """
+
+    x: FloatArray
+    tips: dict[str, FloatArray]
+    bodies: dict[str, FloatArray]
+
+
+def solution_of(x: FloatArray, info: Info) -> CompiledSolution:
+    """A solution from its unknowns and the struct beside them."""
+    return CompiledSolution(
+        x, OUTCOMES[info.status], info.iterations, info.jacobians, info.residual_norm, info.load_factor
+    )
