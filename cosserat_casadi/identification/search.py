@@ -44,6 +44,9 @@ NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins
 NEAREST = 0.05
 """Share of the way to a start at which it is given up, and the search begins where the first one does."""
 
+RECHOSEN = 2
+"""Times that a discretisation is chosen again at what was found."""
+
 SAMPLES = 4
 """Cases that a discretisation is chosen on."""
 
@@ -106,7 +109,8 @@ def identify_scene(
 ) -> Identification:
     """Find the unknowns of a scene from what was measured, on modes and nodes that meet its tolerance.
 
-    They are chosen at the scene's own numbers, on the cases that lie farthest apart.
+    They are chosen on the cases that lie farthest apart: at the scene's own numbers, and again at those found, which
+    may bend the rods otherwise. Where that asks for other modes or nodes, the search is made on them.
 
     Args:
         scene: with measurements and unknowns.
@@ -129,15 +133,25 @@ def identify_scene(
     cases = read_cases(completed, draft.inputs, data)
     if report is not None:
         report("choosing the discretisation")
-    model = build(_with_discretisation(completed, draft, cases))
-    return identify(model, data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    chosen = _with_discretisation(completed, draft, np.array([case.inputs for case in cases]))
+    found = identify(build(chosen), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    for _ in range(RECHOSEN):
+        if scene.accuracy.fixed or not found.converged:
+            break
+        if report is not None:
+            report("judging the discretisation")
+        judged = _with_discretisation(found.fitted_scene(completed), draft, found.inputs)
+        if judged.accuracy == chosen.accuracy:
+            break
+        chosen = completed.model_copy(update={"accuracy": judged.accuracy})
+        found = identify(build(chosen), data, hold_out=hold_out, starts=starts, report=report, progress=progress)
+    return found
 
 
-def _with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]) -> scenes.Scene:
-    """The scene on modes and nodes that serve the cases that lie farthest apart."""
+def _with_discretisation(scene: scenes.Scene, draft: Model, inputs: FloatArray) -> scenes.Scene:
+    """The scene on modes and nodes that serve those rows of inputs, (cases, size), that lie farthest apart."""
     if scene.accuracy.fixed:
         return scene
-    inputs = np.array([case.inputs for case in cases])
     baked = unfixed(scene.baked(), scene.accuracy.tolerance)
     chosen = [(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
     alone = [solve_scene(one, values) for one, values in chosen]

@@ -438,8 +438,14 @@ per_row = true
 
 
 def overlap(one: str, other: str) -> bool:
-    """Whether one name is the other, or names a part of it."""
-    return one == other or one.startswith(f"{other}.") or other.startswith(f"{one}.")
+    """Whether one name is the other, or names a part of it.
+
+    ``load.force.x.1`` is no part of ``load.force.x``, which names the constant beside that coefficient.
+    """
+    shorter, longer = sorted((one, other), key=len)
+    if longer == shorter:
+        return True
+    return longer.startswith(f"{shorter}.") and not longer.removeprefix(f"{shorter}.").isdigit()
 
 
 class Identification(Record):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cosserat_casadi import SceneError, parse_scene
+from cosserat_casadi.scene.measurements import overlap
 from cosserat_casadi.scene.writing import scene_text
 
 ROD = """\
@@ -177,3 +178,11 @@ def test_faults_are_told_where_they_are(text: str, where: str, problem: str) -> 
         parse_scene(text)
     told = [fault for fault in refusal.value.problems if where in fault.where and problem in fault.problem]
     assert told, str(refusal.value)
+
+
+def test_coefficients_of_one_load_are_different_numbers() -> None:
+    assert overlap("push.force", "push.force.x")
+    assert overlap("push.force.x", "push.force.x")
+    assert not overlap("push.force.x", "push.force.x.1")
+    assert not overlap("push.force.x", "push.force.y")
+    assert not overlap("push.force", "push.force_two")
