@@ -156,7 +156,7 @@ static real dot_of_stages(const real *a, const real *b) { return dot(a, b) + dot
 
 /* Broyden's updates, applied from the corrections taken so far: C. T. Kelley, Iterative Methods for Linear and Nonlinear
    Equations, SIAM 1995, section 7.3. */
-static void apply_updates(int count, real *corrections, const workspace *work) {
+static void apply_step_updates(int count, real *corrections, const workspace *work) {
   for (int k = 0; k + 1 < count; k++) {
     const real share = dot_of_stages(work->duals[k], corrections);
     for (int i = 0; i < STAGED; i++) corrections[i] += share * work->taken[k + 1][i];
@@ -230,7 +230,7 @@ static solver_motion_status solve_stages(const step_start *start, const stage_fa
     info->residual = residuals_of_stages(start, unknowns, work->stage_residuals, work);
     if (!isfinite(info->residual)) return SOLVER_MOTION_NOT_FINITE;
     corrections_of(factors, work->stage_residuals, corrections, work);
-    apply_updates(count, corrections, work);
+    apply_step_updates(count, corrections, work);
     velocity_changes(corrections, changes);
     const real length = weighted_length(changes, STAGED);
     if (!isfinite(length) || !all_finite(corrections, STAGED)) return SOLVER_MOTION_NOT_FINITE;
