@@ -22,11 +22,3 @@ def examples() -> list[Path]:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-generated", action="store_true", help="write the folders in generated/ anew")
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Keep the tests of a file on one worker, so that what they share is made once; marks may join files."""
-    for item in items:
-        if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(item.path.relative_to(ROOT).as_posix()))

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Outcome, solve
+from cosserat_casadi import solve
+from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import Exported
 
@@ -199,5 +200,5 @@ def test_every_status_has_its_own_sentence(library: Library) -> None:
     text.restype = ctypes.c_char_p
     sentences = [text(status).decode() for status in range(8)]
     assert len(set(sentences)) == 8
-    assert sentences == [outcome.value for outcome in Outcome]
+    assert sentences == [outcome.value for outcome in OUTCOMES]
     assert text(8) == text(-1) == b"No such status."

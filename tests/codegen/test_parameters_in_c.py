@@ -281,13 +281,13 @@ def test_parameters_that_are_not_finite_give_a_status(made: Exported) -> None:
 
 def test_what_is_no_value_of_the_parameters_is_refused(export_recipe: Callable[[str, Recipe], Exported]) -> None:
     compiled = made_of(export_recipe, "pwire").compiled
-    with pytest.raises(SceneError, match="parameters: must be 5 numbers, got 2"):
+    with pytest.raises(SceneError, match="parameters: must be 6 numbers, got 2"):
         compiled.solve(parameters=[1.0, 2.0])
     with pytest.raises(SceneError, match="is not a parameter of this model"):
         compiled.solve(parameters={"rod.length": 1.0})
     with pytest.raises(SceneError, match="must have 2 numbers, got 1"):
         compiled.solve(parameters={"rod.intrinsic.curvature.y": 1.0})
-    with pytest.raises(ValueError, match=r"parameters must have shape \(count, 5\), got \(1, 4\)"):
+    with pytest.raises(ValueError, match=r"parameters must have shape \(count, 6\), got \(1, 4\)"):
         compiled.solve_batch(compiled.defaults, parameters=np.ones(4))
 
 
@@ -296,7 +296,7 @@ def test_the_manifest_says_what_the_parameters_are(export_recipe: Callable[[str,
     layout = exported.model.parameters
     listed = exported.compiled.parameters
     assert listed.names == layout.names
-    assert [entry.unit for entry in listed.entries] == ["Pa", "m", "1/m", "m"]
+    assert [entry.unit for entry in listed.entries] == ["Pa", "m", "1/m", "m", "1"]
     assert_allclose(listed.pack(), layout.pack(), rtol=0, atol=0)
     header = (exported.folder / "pwire.h").read_text()
     assert (

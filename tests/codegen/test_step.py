@@ -26,9 +26,6 @@ from tests.codegen.motions import (
     start_of,
 )
 
-pytestmark = pytest.mark.xdist_group("steps")
-"""On one worker, so that what they share is made once."""
-
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]

@@ -23,9 +23,6 @@ from tests.codegen.motions import EXACT
 from tests.conftest import case_files
 from tests.motion.stepping import moving_model, orders, stepped
 
-pytestmark = pytest.mark.xdist_group("steps")
-"""On one worker, so that what they share is made once."""
-
 CASES = {path.stem: path for path in case_files("dynamics")}
 needs_cases = pytest.mark.skipif(not CASES, reason="the reference cases are not beside this checkout")
 

@@ -17,9 +17,6 @@ from tests.codegen.test_memory import stated
 from tests.codegen.test_safety import SANITIZED
 from tests.codegen.test_sources import LINT
 
-pytestmark = pytest.mark.xdist_group("steps")
-"""On one worker, so that what they share is made once."""
-
 
 def fuzz(made: Exported, count: int) -> None:
     printed = json.loads(run(made.program("step_fuzz.c", *SANITIZED), str(count), timeout=3000))

@@ -16,9 +16,6 @@ from cosserat_casadi.numerics.step import Step, stages_of
 from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
-pytestmark = pytest.mark.xdist_group("steps")
-"""On one worker, so that what they share is made once."""
-
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
 
 FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]
