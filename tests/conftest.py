@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,6 +21,21 @@ def case_files(folder: str) -> list[Path]:
 @pytest.fixture(scope="session")
 def examples() -> list[Path]:
     return sorted((ROOT / "examples").glob("*.toml"))
+
+
+@pytest.fixture(scope="session")
+def quick_compiler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Libraries lie in a folder of these tests; what they compute matters, not how fast."""
+    folder = tmp_path_factory.mktemp("compiler")
+    script = folder / "cc"
+    script.write_text(f'#!/bin/sh\nexec {shutil.which("gcc")} "$@" -O0\n')
+    script.chmod(0o755)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CC", str(script))
+        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
+        patch.setenv("OPENBLAS_NUM_THREADS", "1")
+        patch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
+        yield
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

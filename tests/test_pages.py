@@ -23,6 +23,8 @@ ELSEWHERE = {
 }
 """Pages that a test of their own runs."""
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 ONE_PROGRAM = ("extending.md",)
 """Pages whose blocks of Python go on from each other, and register kinds that no other test may meet."""
 

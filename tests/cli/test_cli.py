@@ -275,13 +275,13 @@ def test_files_are_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 
 # What nothing holds has no equilibrium.
 HELD = [path for path in sorted((ROOT / "examples").glob("*.toml")) if "free = true" not in path.read_text()]
-# The search for contacts takes seconds, and has tests of its own.
-TOUCHING = [path for path in HELD if "[[obstacles]]" in path.read_text()]
+# The search for contacts takes seconds, and so does the largest platform; both have tests of their own.
+LONG = [path for path in HELD if "[[obstacles]]" in path.read_text() or path.stem == "six_rod_platform"]
 
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(path, marks=pytest.mark.slow) if path in TOUCHING else path for path in HELD],
+    [pytest.param(path, marks=pytest.mark.slow) if path in LONG else path for path in HELD],
     ids=lambda path: path.stem,
 )
 def test_examples_solve(path: Path, tmp_path: Path) -> None:
