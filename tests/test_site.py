@@ -100,6 +100,7 @@ UNRENDERED = re.compile(r"\\[a-z(\[]+|\$|^\s*(?:\* |\|.*\|$)|\]\(|\*\*|```|<math
 """TeX or Markdown that is read as it was written."""
 
 
+@pytest.mark.slow
 def test_browser_shows_every_page(site: Path, visit: Visit) -> None:
     # The page of errors is for a server; what an export wrote is no page of ours.
     pages = [page for page in sorted(site.rglob("*.html")) if page.name not in ("404.html", "planar_strip_live.html")]

@@ -71,6 +71,12 @@ COMMANDS = {
 }
 """One call of each command, with every file that it can write."""
 
+LONG = ("bench", "inverse", "simulate", "modes")
+"""Commands that take seconds."""
+
+WRITING = [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in COMMANDS if name != "check"]
+"""Commands that write files."""
+
 UNREADY = {**os.environ, "LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 """An environment whose terminal knows ASCII alone: Python's own ways round it are closed."""
 
@@ -121,7 +127,7 @@ def new_files(folder: Path) -> list[str]:
     return sorted({path.name for path in folder.rglob("*")} - {"wire.toml", "rows.csv"})
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", ["check", *WRITING])
 def test_terminals_that_know_ascii_alone(folder: Path, command: str) -> None:
     code, shown, said = ended(start(COMMANDS[command], folder, UNREADY))
     # The target lies beside the curve that the tip can move on.
@@ -144,7 +150,7 @@ def fill_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (SMALLEST_FILE, SMALLEST_FILE))
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "check"])
+@pytest.mark.parametrize("command", WRITING)
 def test_full_disk(folder: Path, command: str) -> None:
     code, _, said = ended(start(COMMANDS[command], folder, limit=fill_disk))
     assert code == NOT_WRITTEN, said
@@ -175,7 +181,7 @@ def test_a_reader_that_has_seen_enough(folder: Path) -> None:
     assert "Exception ignored" not in said
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "check"])
+@pytest.mark.parametrize("command", WRITING)
 def test_folder_that_takes_nothing(folder: Path, command: str) -> None:
     """/proc takes no file, even from a user who may write anywhere."""
     arguments = [f"/proc/{word}" if word.startswith("out") else word for word in COMMANDS[command]]

@@ -178,6 +178,7 @@ def test_refusals(wire: Path, arguments: list[str], words: str) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["wire.toml"]
 
 
+@pytest.mark.slow
 def test_no_equilibrium_is_exit_code_three_and_still_written(wire: Path) -> None:
     """A rod that must reach a pose with its length exactly spent sideways: the support cannot be met."""
     text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
@@ -292,6 +293,7 @@ def test_examples_solve(path: Path, tmp_path: Path) -> None:
     assert result["error_estimate"] <= read_scene(path).accuracy.tolerance
 
 
+@pytest.mark.slow
 def test_inverse_writes_what_was_found(wire: Path) -> None:
     """A wire of 0.2 m that keeps its length reaches one point, and not one that lies beyond it."""
     target = 'inputs = ["push.force"]\n{}\n[[targets]]\nkind = "position"\nrod = "wire"\nposition = [{}, 0, 0.1]\n'
@@ -455,6 +457,7 @@ def test_export_refusals(wire: Path, arguments: list[str], words: str) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["twins.toml", "wire.toml"]
 
 
+@pytest.mark.slow
 def test_export_of_what_cannot_be_solved_writes_nothing(wire: Path) -> None:
     text = SCENE + '[[supports]]\nrod = "wire"\nkind = "clamped"\nposition = [0.2, 0, 0]\nquaternion = [1, 0, 0, 0]\n'
     (wire / "hard.toml").write_text(text)

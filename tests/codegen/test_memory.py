@@ -42,7 +42,7 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["tiny", "robot"])
-@pytest.mark.parametrize("optimised", ["-Os", "-O2", "-O3"])
+@pytest.mark.parametrize("optimised", ["-Os", "-O2", pytest.param("-O3", marks=pytest.mark.slow)])
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:
     stack, _ = measured(library(name), optimised, "-fPIC")
     assert stack <= stated(library(name))[0]

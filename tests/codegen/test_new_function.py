@@ -63,7 +63,7 @@ class Made:
     folder: Path
 
 
-@pytest.fixture(params=RODS)
+@pytest.fixture(params=["one rod", pytest.param("two rods", marks=pytest.mark.slow)])
 def made(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Made:
     cached(tmp_path / "cache", monkeypatch)
     wanted = scene({**push(), "rod": "left"}, WEIGHT, rods=RODS[request.param])

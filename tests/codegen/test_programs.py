@@ -70,6 +70,7 @@ def assert_whole(function: ca.Function, split: Parted) -> None:
     assert_allclose(found, expected, rtol=0, atol=1e-14 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_alike_legs_share_one_kernel_in_loops() -> None:
     function, made = split(3)
     assert_whole(function, made)

@@ -45,7 +45,7 @@ KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
 
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
-@pytest.mark.parametrize("language", ["c99", "c11", "c++20"])
+@pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 @pytest.mark.parametrize("name", KINDS)
 def test_solver_passes_every_lint_in_both_languages(
     library: Library, name: str, language: str, single: bool, tmp_path: Path

@@ -27,8 +27,9 @@ from tests.codegen.motions import (
 )
 
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
+FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, "given length", DRIVEN]
 """Rods alone and jointed, a floating base, constraints, a cable, a moving base with a length that changes."""
 
 
@@ -246,7 +247,7 @@ def test_rest_in_equilibrium(motion_library: MotionLibrary) -> None:
     assert_allclose(end.state.x, solved.x, rtol=0, atol=1e-10)
 
 
-@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", "free with body"])
+@pytest.mark.parametrize("family", ["kirchhoff", "fixed joint", FREE])
 def test_rest_out_of_balance_vs_python(motion_library: MotionLibrary, family: str) -> None:
     """Let go from a shape with closed constraints: accelerations and multipliers are those of Python's start."""
     made = motion_library(family)

@@ -110,7 +110,7 @@ def test_float_vs_double(motion_library: MotionLibrary) -> None:
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
 @pytest.mark.parametrize("family", ["planar", "fixed joint"])
-@pytest.mark.parametrize("language", ["c99", "c11", "c++20"])
+@pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
 def test_sources_pass_every_lint_in_both_languages(
     motion_library: MotionLibrary, family: str, language: str, single: bool
 ) -> None:

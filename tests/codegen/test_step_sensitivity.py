@@ -17,8 +17,9 @@ from tests.codegen.libraries import Exported
 from tests.codegen.motions import EXACT, Drive, MotionLibrary, accelerated, drive, python_steps, start_of
 
 DRIVEN = pytest.param("driven and held", marks=pytest.mark.slow)
+FREE = pytest.param("free with body", marks=pytest.mark.slow)
 
-FAMILIES = ["planar", "kirchhoff", "fixed joint", "free with body", "given length", DRIVEN]
+FAMILIES = ["planar", "kirchhoff", "fixed joint", FREE, "given length", DRIVEN]
 
 DT = 4e-3
 

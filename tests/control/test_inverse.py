@@ -52,6 +52,7 @@ def test_tensions_are_recovered_from_a_pose() -> None:
         assert_allclose(found.values[name].item(), tension, rtol=1e-7, atol=0)
 
 
+@pytest.mark.slow
 def test_only_what_is_bounded_changes() -> None:
     """A payload that is listed for a controller keeps the scene's value where tensions alone have bounds."""
     base = read_scene(ROOT / "examples" / "two_section_robot.toml")
@@ -79,7 +80,9 @@ def reachable(tensions: list[float]) -> Model:
     return build(changed(robot, targets=[target], bounds=bounds))
 
 
-@pytest.mark.parametrize("tensions", [[9.81, 12.326, 0.0, 1.52], [0.0, 17.306, 15.885, 0.0]])
+@pytest.mark.parametrize(
+    "tensions", [pytest.param([9.81, 12.326, 0.0, 1.52], marks=pytest.mark.slow), [0.0, 17.306, 15.885, 0.0]]
+)
 def test_scattered_starts_leave_a_local_minimum(tensions: list[float]) -> None:
     """From the scene's own tensions the search ends far off, at a bound; from another start the pose is met."""
     model = reachable(tensions)

@@ -23,7 +23,7 @@ def refuse(*arguments: object) -> None:
     raise AssertionError("a warm solve began again from the unloaded scene")
 
 
-@pytest.mark.parametrize("step", [2e-4, 6e-4])
+@pytest.mark.parametrize("step", [pytest.param(2e-4, marks=pytest.mark.slow), 6e-4])
 @pytest.mark.parametrize("kind", ["unknowns", "solution"])
 def test_cables_moved_turn_after_turn(model: Model, step: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     lengths = cable_lengths(step, TURNS)

@@ -524,6 +524,7 @@ EQUILIBRIA = (
 """Cases whose parameters move an equilibrium."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", EQUILIBRIA)
 def test_equilibria_are_those_of_a_scene_of_its_own(case: str) -> None:
     """The scene with these numbers has another scaling, and another model: poses are compared."""

@@ -275,6 +275,7 @@ def roped(length, **changes):
     return scene(rod(list(stiffness), stiffness, rotary_inertia=[1e-3, 1e-3, 2e-3]), actuators=[cable])
 
 
+@pytest.mark.slow
 def test_a_taut_cable_holds_and_a_slack_one_does_not():
     held = frequencies(roped(0.98), 5)
     assert_allclose(frequencies(roped(0.98, slack=True), 5), held, rtol=1e-9, atol=0)
@@ -309,6 +310,7 @@ def test_what_has_no_mass_and_no_stability_is_told():
     assert "what has no mass leaves the equilibrium at once" in modes.message
 
 
+@pytest.mark.slow
 def test_no_equilibrium_no_modes():
     described = scene(rod(base={"free": True}), weight(0.0, 0.0, -1.0))
     modes = modes_of_scene(described)
@@ -453,6 +455,7 @@ def test_damped_wire():
     assert "die away" in modes.message
 
 
+@pytest.mark.slow
 def test_free_ring():
     """Bending in and out of the plane of a ring: two halves on a stub without mass, whose tips a body joins."""
     stub = rod("kirchhoff", ARC, name="stub", length=0.1, base={"free": True})

@@ -50,7 +50,15 @@ def check_path(path: Path, tolerance: float) -> None:
     assert error <= motion.error_estimate + uncertainty
 
 
-@pytest.mark.parametrize("path", [path for path in CASES if path.stem not in SLOWER], ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.slow) if path.stem in ("shaken", "space_push") else path
+        for path in CASES
+        if path.stem not in SLOWER
+    ],
+    ids=lambda path: path.stem,
+)
 def test_path_of_the_tip_vs_independent_program(path: Path) -> None:
     check_path(path, 1e-3)
 

@@ -114,6 +114,7 @@ def crown(motion: Motion) -> FloatArray:
     return np.asarray(motion.section("arch", [0.5]).position[:, 0])
 
 
+@pytest.mark.slow
 def test_an_arch_snaps_through_to_the_far_equilibrium_of_its_path() -> None:
     path = arch_path()
     start = below_the_limit(path)

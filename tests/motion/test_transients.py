@@ -139,7 +139,7 @@ def test_sudden_weight_vs_independent_galerkin_method() -> None:
 # Spin-up
 
 
-@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), (0.05, 1e-6)])
+@pytest.mark.parametrize(("spacing", "atol"), [(0.1, 2e-5), pytest.param(0.05, 1e-6, marks=pytest.mark.slow)])
 def test_spin_up_vs_independent_galerkin_method(spacing: float, atol: float) -> None:
     """The base turns by a spline: the closer its knots, the nearer it comes to the angle of the reference."""
     time, lag = transients.SPIN_LAG
@@ -173,6 +173,7 @@ def in_turning_frame(scene: dict[str, Any]) -> FloatArray:
 # Free rods
 
 
+@pytest.mark.slow
 def test_flying_rod_in_a_plane() -> None:
     """Positions of both ends to 0.02; momentum is the impulse, 8 t, and stays after that, as angular momentum does."""
     scene = transients.flying_in_plane(tolerance=1e-2, times=[0.0, 1.0, 2.5, 5.0, 7.5])
@@ -235,6 +236,7 @@ def test_scissors_fly_as_their_impulses_say() -> None:
 # Two legs
 
 
+@pytest.mark.slow
 def test_right_angle_cantilever_vs_published_curves() -> None:
     """Heights of the tip's and the elbow's extremes to 0.2, the accuracy of reading the curves off."""
     scene = transients.right_angle(tolerance=1e-2)
