@@ -12,6 +12,7 @@ class Hand {
     this.mark.id = "hand";
     this.mark.title = "Drag me: the inputs follow";
     this.wanted = null;
+    this.following = null;
     this.mark.onpointerdown = (event) => this.take(event);
     this.mark.onpointermove = (event) => this.mark.hasPointerCapture(event.pointerId) && this.lead(this.under(event));
     this.mark.onpointerup = () => this.letGo();
@@ -46,11 +47,13 @@ class Hand {
   }
 
   // Go on towards a ray until the tip is on it, or no step brings the tip nearer.
-  async lead(ray) {
+  lead(ray) {
     this.wanted = ray;
     this.last = ray;
-    if (this.following) return;
-    this.following = true;
+    if (!this.following) this.following = this.follow().finally(() => (this.following = null));
+  }
+
+  async follow() {
     // Levenberg and Marquardt: a step that leads away is taken back, and tried again with more damping.
     let damping = DAMPING;
     let aim = this.wanted;
@@ -66,7 +69,6 @@ class Hand {
       const arrived = aim.distanceToPoint(this.position) < 1e-5 * this.scenery.size;
       if ((arrived || damping > MOST_DAMPING) && aim === this.wanted) this.wanted = null;
     }
-    this.following = false;
   }
 
   async step(ray, damping) {
@@ -101,6 +103,8 @@ class Hand {
     const point = this.last.closestPointToPoint(this.position, new THREE.Vector3());
     this.last = null;
     this.wanted = null;
+    // A step that is under way would otherwise have the last word.
+    await this.following;
     this.panel.say("… Finding the inputs", "for the point where you let go.");
     const answer = await this.panel.robot.reach(this.panel.facts.poses[this.panel.point], point.toArray());
     this.panel.receive(answer);
