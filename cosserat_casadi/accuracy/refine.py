@@ -61,7 +61,7 @@ COARSENING_SHARES = (0.85, 0.35)
 """Shares of the tolerance that coarsening may use up, one try after the other."""
 
 DECIDING_TOLERANCE = 1e-5
-"""Tolerance of the solution that decides which equilibrium of a held rod is meant."""
+"""Tolerance of the solution that decides which equilibrium of a held rod is meant, whatever is asked for."""
 
 MARGIN = 1.02
 """Factor on the distance to a reference solution whose own error is known."""
@@ -255,35 +255,29 @@ def _with_tolerance(solver: _SceneSolver) -> Solution:
     if solver.signal_modes > REFERENCE_MODES[-1]:
         # Not even the finest level sees what the scene asks for: whatever is found is no reference.
         return _blind(solver)
-    found = _of_held_rod(solver) if solver.is_held else _from_first_level(solver)
+    found = _of_held_rod(solver) if solver.is_held else _for_tolerance(solver, solver.tolerance)
     if isinstance(found, _Reference):
         return _coarsened(solver, found.resolution)
     return found
 
 
-def _from_first_level(solver: _SceneSolver) -> _Reference | Solution:
-    """A reference for the tolerance, refined from the level that it begins with; or a failure."""
-    first = Level.first(solver.tolerance, solver.signal_modes)
-    return _refined(solver, first, solver.tolerance)
+def _for_tolerance(solver: _SceneSolver, tolerance: float) -> _Reference | Solution:
+    """A reference for a tolerance, refined from the level that it begins with; or a failure."""
+    first = Level.first(tolerance, solver.signal_modes)
+    return _refined(solver, first, tolerance)
 
 
 def _of_held_rod(solver: _SceneSolver) -> _Reference | Solution:
     """A reference for the tolerance, refined from the equilibrium that is meant; or a failure."""
-    found = _deciding(solver)
+    found = _for_tolerance(solver, DECIDING_TOLERANCE)
     if isinstance(found, _Reference):
         if solver.tolerance >= DECIDING_TOLERANCE:
             return found
         return _refined(solver, found.level, solver.tolerance, found.solution)
     if found.outcome is Outcome.UNRESOLVED and solver.tolerance > DECIDING_TOLERANCE:
         # No level resolves it so well, but one may do for less.
-        return _from_first_level(solver)
+        return _for_tolerance(solver, solver.tolerance)
     return found
-
-
-def _deciding(solver: _SceneSolver) -> _Reference | Solution:
-    """The equilibrium of a held rod that is meant, whatever is asked of the discretisation; or a failure."""
-    first = Level.first(DECIDING_TOLERANCE, solver.signal_modes)
-    return _refined(solver, first, DECIDING_TOLERANCE)
 
 
 def _refined(
@@ -424,7 +418,7 @@ def _meant(solver: _SceneSolver) -> Solution | None:
     """The equilibrium of a held rod that is meant; None where nothing holds it, or none is found."""
     if not solver.is_held or solver.signal_modes > REFERENCE_MODES[-1]:
         return None
-    found = _deciding(solver)
+    found = _for_tolerance(solver, DECIDING_TOLERANCE)
     if isinstance(found, _Reference):
         return found.solution
     # The modes of the user may have an equilibrium all the same, and one to relax to.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar, Generic, Literal, TypeVar
+from typing import ClassVar, Generic, Literal, TypeVar
 
 from cosserat_casadi.actuators.routing import span_ends
 from cosserat_casadi.maths.grid import Grid
@@ -16,12 +16,12 @@ from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.rod.actuation import Quantity
 from cosserat_casadi.scene.actuators import ActuatorRecord
-from cosserat_casadi.scene.families import word_of
+from cosserat_casadi.scene.families import Kind
 
 RecordType = TypeVar("RecordType", bound=ActuatorRecord)
 
 
-class Actuator(ABC, Generic[RecordType]):
+class Actuator(Kind, ABC, Generic[RecordType]):
     """One kind of actuator. The methods take ``actuator``, the frozen record of the scene.
 
     Attributes:
@@ -36,17 +36,11 @@ class Actuator(ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[ActuatorRecord]]
-    kind: ClassVar[str]
     effort: ClassVar[str]
     conjugate: ClassVar[str]
     conjugate_unit: ClassVar[str]
     energy_sign: ClassVar[float]
     drawn_as: ClassVar[Literal["cable", "channel"]] = "channel"
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        if "record" in vars(cls):
-            cls.kind = word_of(cls.record)
 
     @property
     def effort_unit(self) -> str:

@@ -13,6 +13,8 @@ from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
+from cosserat_casadi.model.inputs import Input
+from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
@@ -46,31 +48,24 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
 
 def input_entries(model: Model) -> list[dict[str, Any]]:
     """Inputs in the order of their vector."""
-    return [
-        {
-            "name": entry.name,
-            "unit": entry.unit,
-            "axes": entry.axes,
-            "first": indices.start,
-            "shape": list(entry.shape),
-            "value": entry.default.ravel(order="F").tolist(),
-        }
-        for entry, indices in model.inputs
-    ]
+    return [_stacked_entry(entry, indices, axes=entry.axes) for entry, indices in model.inputs]
 
 
 def parameter_entries(model: Model) -> list[dict[str, Any]]:
     """Parameters in the order of their vector."""
-    return [
-        {
-            "name": entry.name,
-            "unit": entry.unit,
-            "first": indices.start,
-            "shape": list(entry.shape),
-            "value": entry.default.ravel(order="F").tolist(),
-        }
-        for entry, indices in model.parameters
-    ]
+    return [_stacked_entry(entry, indices) for entry, indices in model.parameters]
+
+
+def _stacked_entry(entry: Input | Parameter, indices: slice, **further: Any) -> dict[str, Any]:
+    """Where an input or a parameter is in its vector, and its value in the scene."""
+    return {
+        "name": entry.name,
+        "unit": entry.unit,
+        **further,
+        "first": indices.start,
+        "shape": list(entry.shape),
+        "value": entry.default.ravel(order="F").tolist(),
+    }
 
 
 def actuator_entries(model: Model) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,20 +18,8 @@ def input_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str,
         names: what things are called.
         entries: inputs as in the manifest.
     """
-    members = list[str]()
-    pack = list[str]()
-    unpack = list[str]()
-    for entry in entries:
-        member = identifier(entry["name"])
-        macro = input_macro(names, entry["name"])
-        members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
-        pack.append(f"  memcpy(inputs + {macro}, named->{member}, sizeof named->{member});")
-        unpack.append(f"  memcpy(named->{member}, inputs + {macro}, sizeof named->{member});")
-    return {
-        "input_members": "\n".join(members),
-        "pack_lines": "\n".join(pack),
-        "unpack_lines": "\n".join(unpack),
-    }
+    members, pack, unpack = _struct_lines(names, entries, "inputs", input_macro)
+    return {"input_members": members, "pack_lines": pack, "unpack_lines": unpack}
 
 
 def parameter_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[str, str]:
@@ -40,20 +29,31 @@ def parameter_struct_words(names: Names, entries: list[dict[str, Any]]) -> dict[
         names: what things are called.
         entries: parameters as in the manifest.
     """
+    members, pack, unpack = _struct_lines(names, entries, "parameters", parameter_macro)
+    return {"parameter_struct": members, "parameter_pack_lines": pack, "parameter_unpack_lines": unpack}
+
+
+def _struct_lines(
+    names: Names, entries: list[dict[str, Any]], vector: str, macro_of: Callable[[Names, str], str]
+) -> tuple[str, str, str]:
+    """Lines of the members of a struct, and of the copies from it into a vector and back.
+
+    Args:
+        names: what things are called.
+        entries: parts of the vector as in the manifest.
+        vector: name of the vector in C.
+        macro_of: name of a part ↦ macro of its first entry.
+    """
     members = list[str]()
     pack = list[str]()
     unpack = list[str]()
     for entry in entries:
         member = identifier(entry["name"])
-        macro = parameter_macro(names, entry["name"])
+        macro = macro_of(names, entry["name"])
         members.append(f"  {names.name}_real {member}[{macro}_SIZE]; /* {entry['unit']} */")
-        pack.append(f"  memcpy(parameters + {macro}, named->{member}, sizeof named->{member});")
-        unpack.append(f"  memcpy(named->{member}, parameters + {macro}, sizeof named->{member});")
-    return {
-        "parameter_struct": "\n".join(members),
-        "parameter_pack_lines": "\n".join(pack),
-        "parameter_unpack_lines": "\n".join(unpack),
-    }
+        pack.append(f"  memcpy({vector} + {macro}, named->{member}, sizeof named->{member});")
+        unpack.append(f"  memcpy(named->{member}, {vector} + {macro}, sizeof named->{member});")
+    return "\n".join(members), "\n".join(pack), "\n".join(unpack)
 
 
 def result_struct_words(model: Model, names: Names) -> dict[str, str]:

@@ -13,6 +13,7 @@ from cosserat_casadi.identification.statistics import Direction, Statistics
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
+from cosserat_casadi.scene.spelling import counted
 
 POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
@@ -168,8 +169,3 @@ def described(direction: Direction) -> str:
         sign = "−" if part < 0 else "+"
         terms.append(f"{sign} {abs(part):.2g} {name}" if len(direction.parts) > 1 else name)
     return " ".join(terms).removeprefix("+ ")
-
-
-def counted(count: int, noun: str) -> str:
-    """A count and what is counted."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

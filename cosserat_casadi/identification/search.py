@@ -18,7 +18,7 @@ from cosserat_casadi.identification.checks import plausibility
 from cosserat_casadi.identification.equilibria import Equilibria, Point
 from cosserat_casadi.identification.found import Identification, LeftOut, Row
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
-from cosserat_casadi.identification.report import Ending, counted
+from cosserat_casadi.identification.report import Ending
 from cosserat_casadi.identification.statistics import Statistics, statistics
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
@@ -28,6 +28,7 @@ from cosserat_casadi.numerics.arrow_least_squares import Arrow, ArrowFit, Fit, L
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Report
 from cosserat_casadi.numerics.robust_loss import Loss
+from cosserat_casadi.scene.spelling import counted
 
 SEED = 16
 """Of the cases that are held out, and of the random starts."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +12,7 @@ import numpy.typing as npt
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.faults import listing
-from cosserat_casadi.scene.number_table import finite_number
+from cosserat_casadi.scene.number_table import finite_number, length_faults, read_rows, repeated
 
 NOT_MEASURED = ("", "nan", "na", "none", "null")
 """Cells, in small letters, that say that nothing was measured."""
@@ -77,24 +75,14 @@ def read_table(path: Path) -> Table:
     Raises:
         SceneError: the file cannot be read, holds no row, has a column twice, or rows of another length.
     """
-    try:
-        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
-    except (OSError, ValueError, csv.Error) as error:
-        raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
-    filled = [(line, row) for line, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
-    if len(filled) < 2:
-        raise SceneError(Problem(str(path), "holds no row", "give a header and a row below it"))
-    header = [cell.strip() for cell in filled[0][1]]
-    repeated = sorted({column for column in header if header.count(column) > 1})
-    problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated]
-    for line, row in filled[1:]:
-        if len(row) != len(header):
-            problem = f"has {len(row)} values for {len(header)} columns"
-            problems.append(Problem(f"{path}, line {line}", problem))
+    header, rows = read_rows(path)
+    problems = [Problem(str(path), f"has the column {column!r} twice") for column in repeated(header)]
+    for line, row in rows:
+        problems += length_faults(f"{path}, line {line}", header, row)
     if problems:
         raise SceneError(*problems)
-    columns = {name: [row[k] for _, row in filled[1:]] for k, name in enumerate(header)}
-    return Table(str(path), columns, tuple(line for line, _ in filled[1:]))
+    columns = {name: [row[k] for _, row in rows] for k, name in enumerate(header)}
+    return Table(str(path), columns, tuple(line for line, _ in rows))
 
 
 def table_of(name: str, columns: Mapping[str, npt.ArrayLike]) -> Table:

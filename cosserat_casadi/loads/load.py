@@ -12,7 +12,7 @@ from abc import ABC
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Generic, Literal, TypeVar
+from typing import ClassVar, Generic, Literal, TypeVar
 
 import casadi as ca
 import numpy as np
@@ -35,7 +35,7 @@ from cosserat_casadi.maths.polynomials import legendre_table
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.section_kernel import wrench_of_energy
-from cosserat_casadi.scene.families import word_of
+from cosserat_casadi.scene.families import Kind
 from cosserat_casadi.scene.loads import LoadRecord
 
 RecordType = TypeVar("RecordType", bound=LoadRecord)
@@ -113,7 +113,7 @@ class BodyPoint:
     factor: Scalar = 1.0
 
 
-class Load(ABC, Generic[RecordType]):
+class Load(Kind, ABC, Generic[RecordType]):
     """One kind of load.
 
     The methods take ``load``, the frozen record of the scene. ``values`` holds each input as a 3×k or 1×1 matrix,
@@ -125,12 +125,6 @@ class Load(ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[LoadRecord]]
-    kind: ClassVar[str]
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        if "record" in vars(cls):
-            cls.kind = word_of(cls.record)
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.

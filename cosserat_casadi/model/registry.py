@@ -20,7 +20,7 @@ from cosserat_casadi.loads.penetration import PenetrationLoad
 from cosserat_casadi.loads.point_wrench import PointWrenchLoad
 from cosserat_casadi.loads.tip_wrench import TipWrenchLoad
 from cosserat_casadi.scene.actuators import ACTUATORS
-from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.families import Family, add_kind
 from cosserat_casadi.scene.loads import LOADS
 
 Member = TypeVar("Member", bound=type[Load[Any]] | type[Actuator[Any]])
@@ -35,13 +35,8 @@ def register(member: Member) -> Member:
     Raises:
         ValueError: another class has the same word.
     """
-    known = EFFECTS.get(member.kind)
-    if known is not None and type(known) is not member:
-        raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
     family: Family[Any] = LOADS if issubclass(member, Load) else ACTUATORS
-    if family.records.get(member.kind) is not member.record:
-        family.register(member.record)
-    EFFECTS[member.kind] = member()
+    add_kind(EFFECTS, family, member)
     return member
 
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import ClassVar, Generic, TypeVar
 
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.scene.families import word_of
+from cosserat_casadi.scene.families import Kind
 from cosserat_casadi.scene.obstacles import ObstacleRecord
 
 RecordType = TypeVar("RecordType", bound=ObstacleRecord)
@@ -24,7 +24,7 @@ ROUNDING = 1e-8
 """Distance, relative to the size of an obstacle, at which its middle is smoothed: (1e-8)²/2 is below rounding."""
 
 
-class Obstacle(ABC, Generic[RecordType]):
+class Obstacle(Kind, ABC, Generic[RecordType]):
     """One kind of obstacle.
 
     Attributes:
@@ -33,12 +33,6 @@ class Obstacle(ABC, Generic[RecordType]):
     """
 
     record: ClassVar[type[ObstacleRecord]]
-    kind: ClassVar[str]
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        if "record" in vars(cls):
-            cls.kind = word_of(cls.record)
 
     @abstractmethod
     def distance(self, obstacle: RecordType, point: Matrix) -> Matrix:

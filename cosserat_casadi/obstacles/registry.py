@@ -9,6 +9,7 @@ from cosserat_casadi.obstacles.lumen import LumenObstacle
 from cosserat_casadi.obstacles.obstacle import Obstacle
 from cosserat_casadi.obstacles.plane import PlaneObstacle
 from cosserat_casadi.obstacles.sphere import SphereObstacle
+from cosserat_casadi.scene.families import add_kind
 from cosserat_casadi.scene.obstacles import OBSTACLES
 
 Member = TypeVar("Member", bound=type[Obstacle[Any]])
@@ -23,12 +24,7 @@ def register_obstacle(member: Member) -> Member:
     Raises:
         ValueError: another class has the same word.
     """
-    known = SURFACES.get(member.kind)
-    if known is not None and type(known) is not member:
-        raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
-    if OBSTACLES.records.get(member.kind) is not member.record:
-        OBSTACLES.register(member.record)
-    SURFACES[member.kind] = member()
+    add_kind(SURFACES, OBSTACLES, member)
     return member
 
 

@@ -7,7 +7,7 @@ page are made from the family when they are asked for, so that a kind that is re
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Generic, TypeVar, cast, get_args, get_origin
+from typing import Annotated, Any, ClassVar, Generic, TypeVar, cast, get_args, get_origin
 
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
@@ -114,6 +114,42 @@ def word_of(record: type[Record], key: str = "kind") -> str:
     if len(words) != 1:
         raise ValueError(f"{record.__name__} needs a field {key} with one word, such as Literal['spring']")
     return str(words[0])
+
+
+class Kind:
+    """A class of the mechanics that stands for one record of a family.
+
+    Attributes:
+        record: the record of the scene.
+        kind: its word.
+    """
+
+    record: ClassVar[Any]
+    kind: ClassVar[str]
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if "record" in vars(cls):
+            cls.kind = word_of(cls.record)
+
+
+def add_kind(kinds: dict[str, Any], family: Family[Any], member: type[Kind]) -> None:
+    """Make a kind known, to the scene format and to the mechanics.
+
+    Args:
+        kinds: those that are known by their words, which it joins.
+        family: the family that its record joins, if it is not there yet.
+        member: the class of the kind.
+
+    Raises:
+        ValueError: another class has the same word.
+    """
+    known = kinds.get(member.kind)
+    if known is not None and type(known) is not member:
+        raise ValueError(f"{member.kind!r} is the word of {type(known).__name__} already")
+    if family.records.get(member.kind) is not member.record:
+        family.register(member.record)
+    kinds[member.kind] = member()
 
 
 def _referable(record: type[Record]) -> CoreSchema:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -100,3 +100,13 @@ def listing(names: Iterable[str], what: str) -> str:
     if len(known) > LONGEST_LIST:
         known = [*known[:LONGEST_LIST], "…"]
     return f"{what}: {', '.join(known)}"
+
+
+def frame_faults(given: Table) -> Iterator[Fault]:
+    """What is wrong with a table that names a section of a rod, or a body."""
+    if "rod" in given and "body" in given:
+        yield Fault(("body",), "stands beside rod", "give one of the two")
+    elif "rod" not in given and "body" not in given:
+        yield Fault(("rod",), "missing", "name a rod or a body")
+    elif "at" in given and "body" in given:
+        yield Fault(("at",), "is for a rod", "leave it out: a body has one pose")

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, shown
+from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, frame_faults, shown
 from cosserat_casadi.scene.input_rules import input_part_faults
 from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.spelling import counted
 from cosserat_casadi.scene.values import (
     BY_LENGTH,
     SEVERAL,
@@ -146,7 +147,7 @@ class MeasurementRecord(Entry):
         columns = given.get("columns")
         if isinstance(columns, list) and columns:
             if len(columns) != count:
-                problem = f"must have {_numbered(count, 'column')}, got {len(columns)}"
+                problem = f"must have {counted(count, 'column')}, got {len(columns)}"
                 yield Fault(("columns",), problem, f"{', '.join(cls.entries)}; '' for what was not measured")
             elif not any(columns):
                 yield Fault(("columns",), "names no column", "leave the measurement out")
@@ -167,10 +168,6 @@ class MeasurementRecord(Entry):
             if isinstance(name, str):
                 for fault in input_part_faults(name, scene):
                     yield fault.below(("inputs", name))
-
-
-def _numbered(count: int, noun: str) -> str:
-    return f"1 {noun}" if count == 1 else f"{count} {noun}s"
 
 
 MEASUREMENTS: Family[MeasurementRecord] = Family("measurements", key="quantity")
@@ -194,12 +191,7 @@ class FrameMeasurement(MeasurementRecord):
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A rod or a body; only rods have sections."""
         yield from super().conflicts(given)
-        if "rod" in given and "body" in given:
-            yield Fault(("body",), "stands beside rod", "give one of the two")
-        elif "rod" not in given and "body" not in given:
-            yield Fault(("rod",), "missing", "name a rod or a body")
-        elif "at" in given and "body" in given:
-            yield Fault(("at",), "is for a rod", "leave it out: a body has one pose")
+        yield from frame_faults(given)
 
 
 @MEASUREMENTS.register

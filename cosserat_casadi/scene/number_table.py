@@ -22,21 +22,41 @@ def read_numbers(path: Path) -> tuple[list[str], FloatArray, list[int], list[Pro
     Raises:
         SceneError: the file cannot be read, or holds no row.
     """
+    header, rows = read_rows(path)
+    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated(header)]
+    numbers = np.full((len(rows), len(header)), np.nan)
+    for values, (line, row) in zip(numbers, rows, strict=True):
+        problems += _fill(values, f"{path}, line {line}", header, row)
+    return header, numbers, [line for line, _ in rows], problems
+
+
+def read_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Header of a CSV file, and the line and the cells of each row that is not empty.
+
+    Raises:
+        SceneError: the file cannot be read, or holds no row.
+    """
     try:
         rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
     except (OSError, ValueError, csv.Error) as error:
         raise SceneError(Problem(str(path), f"cannot be read as CSV: {error}")) from None
-    filled = [(number, row) for number, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
+    filled = [(line, row) for line, row in enumerate(rows, 1) if any(cell.strip() for cell in row)]
     if len(filled) < 2:
         raise SceneError(Problem(str(path), "holds no row of numbers", "give a header and a row of numbers below it"))
     header = [cell.strip() for cell in filled[0][1]]
-    repeated = sorted({column for column in header if header.count(column) > 1})
-    problems = [Problem(str(path), f"has the column {column} twice") for column in repeated]
-    numbers = np.full((len(filled) - 1, len(header)), np.nan)
-    lines = [number for number, _ in filled[1:]]
-    for values, (number, row) in zip(numbers, filled[1:], strict=True):
-        problems += _fill(values, f"{path}, line {number}", header, row)
-    return header, numbers, lines, problems
+    return header, filled[1:]
+
+
+def repeated(header: list[str]) -> list[str]:
+    """Columns that are there twice."""
+    return sorted({column for column in header if header.count(column) > 1})
+
+
+def length_faults(where: str, header: list[str], row: list[str]) -> list[Problem]:
+    """What is wrong with the number of cells of a row."""
+    if len(row) == len(header):
+        return []
+    return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
 
 
 def finite_number(text: str) -> float | None:
@@ -58,9 +78,9 @@ def shortened(problems: list[Problem], where: str) -> list[Problem]:
 
 def _fill(values: FloatArray, where: str, header: list[str], row: list[str]) -> list[Problem]:
     """Put the numbers of a row into an array, and say what is wrong with the others."""
-    if len(row) != len(header):
-        return [Problem(where, f"has {len(row)} values for {len(header)} columns")]
-    problems = []
+    problems = length_faults(where, header, row)
+    if problems:
+        return problems
     for k, (column, cell) in enumerate(zip(header, row, strict=True)):
         number = finite_number(cell)
         if number is None:

@@ -1,4 +1,4 @@
-"""Known words that an unknown one looks like."""
+"""Words of messages: known ones that an unknown one looks like, and counts with their nouns."""
 
 from __future__ import annotations
 
@@ -19,3 +19,10 @@ def close_matches(word: str, known: Iterable[str]) -> list[str]:
     """The known word that looks most like another; empty where none does."""
     # difflib takes time with the square of the length.
     return difflib.get_close_matches(word[:40], known, n=1)
+
+
+def counted(count: int, noun: str) -> str:
+    """A count with its noun, such as "1 row" or "12,000 rows"."""
+    if count == 1:
+        return f"1 {noun}"
+    return f"{count:,} {noun}s"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field
 
 from cosserat_casadi.scene.families import Family
-from cosserat_casadi.scene.faults import Fault, Table
+from cosserat_casadi.scene.faults import Fault, Table, frame_faults
 from cosserat_casadi.scene.records import Entry
 from cosserat_casadi.scene.values import Component, NotEmpty, Positive, Quaternion, Share, Vector, numbers_of
 
@@ -40,12 +40,7 @@ class FrameTarget(TargetRecord):
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """A rod or a body; only rods have sections."""
-        if "rod" in given and "body" in given:
-            yield Fault(("body",), "stands beside rod", "give one of the two")
-        elif "rod" not in given and "body" not in given:
-            yield Fault(("rod",), "missing", "name a rod or a body")
-        elif "at" in given and "body" in given:
-            yield Fault(("at",), "is for a rod", "leave it out: a body has one pose")
+        yield from frame_faults(given)
 
 
 @TARGETS.register

@@ -13,12 +13,13 @@ from rich.table import Table
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import sweep_display
-from cosserat_casadi.cli.reports.format import plural, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import print_plain, print_written, title_line
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.estimation import Estimate, estimate_scene
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.results.estimate_file import estimate_table, estimate_text
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.scene.spelling import counted
 
 WRITERS = {".json": estimate_text, ".csv": estimate_table}
 
@@ -66,8 +67,8 @@ def estimate(
 def _print(console: Console, found: Estimate, title: str | None) -> None:
     """How many rows were found, and how well each unknown is known in the middle one."""
     print_plain(console, title_line(title))
-    counted = ", ".join(f"{word}: {plural(count, 'row')}" for word, count in found.counts.items())
-    print_plain(console, f"{counted}.", soft_wrap=True)
+    endings = ", ".join(f"{word}: {counted(count, 'row')}" for word, count in found.counts.items())
+    print_plain(console, f"{endings}.", soft_wrap=True)
     table = Table()
     for heading in ("unknown", "unit"):
         table.add_column(heading, no_wrap=True)

@@ -54,13 +54,6 @@ def digits(vector: FloatArray) -> list[str]:
     return [f"{entry:.6g}" for entry in rounded]
 
 
-def plural(count: int, noun: str) -> str:
-    """A count with its noun, such as "1 row" or "12,000 rows"."""
-    if count == 1:
-        return f"1 {noun}"
-    return f"{count:,} {noun}s"
-
-
 def listed(numbers: Sequence[int], noun: str) -> str:
     """Numbers behind their noun, such as "row 3" or "rows 3, 7"."""
     numbers_text = ", ".join(str(number) for number in numbers)

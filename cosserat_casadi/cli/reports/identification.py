@@ -12,13 +12,13 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import (
     discretisation_sentences,
-    plural,
     print_plain,
     print_written,
     table_of,
     title_line,
 )
 from cosserat_casadi.identification import Identification
+from cosserat_casadi.scene.spelling import counted
 
 MOST_CASES = 10
 """Unknowns of single cases that are printed for so many cases; the file has them all."""
@@ -81,13 +81,15 @@ def _number(value: float, figures: int) -> str:
 def _residuals(found: Identification) -> str:
     """How far model and measurements are apart, as a sentence."""
     numbers = sum(not row.held_out for row in found.rows)
-    sentence = f"{plural(numbers, 'number')} in {plural(len(found.cases), 'case')}, residuals {found.rms():.3g} σ (rms)"
+    sentence = (
+        f"{counted(numbers, 'number')} in {counted(len(found.cases), 'case')}, residuals {found.rms():.3g} σ (rms)"
+    )
     held_out = found.rms(held_out=True)
     if held_out is not None:
         sentence += f"; held out {held_out:.3g} σ"
     outliers = len(found.outliers)
     if outliers:
-        sentence += f"; {plural(outliers, 'outlier')}"
+        sentence += f"; {counted(outliers, 'outlier')}"
     starts, ended_here = found.starts
     if starts > 1:
         sentence += f"; {ended_here} of {starts} starts ended here"

@@ -8,10 +8,11 @@ from pathlib import Path
 from rich.console import Console
 from rich.markup import escape
 
-from cosserat_casadi.cli.reports.format import plural, print_plain, print_written
+from cosserat_casadi.cli.reports.format import print_plain, print_written
 from cosserat_casadi.control.inverse import Inverse
 from cosserat_casadi.control.target_table import TargetTable
 from cosserat_casadi.results.inverse_table import MET
+from cosserat_casadi.scene.spelling import counted
 
 MOST_TOLD = 20
 """Rows that failed which are told; the file has them all."""
@@ -26,7 +27,7 @@ def print_inverse_table(
 ) -> None:
     """Print how many rows are met, and of the others the line, the outcome and why."""
     failed = [row for row, outcome in enumerate(outcomes) if outcome != MET]
-    rows = plural(len(outcomes), "row")
+    rows = counted(len(outcomes), "row")
     if not failed:
         print_plain(console, f"[bold green]The targets of {rows} are met.[/]")
     else:

@@ -13,13 +13,13 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import (
     digits,
     discretisation_sentences,
-    plural,
     print_plain,
     print_written,
     table_of,
     title_line,
 )
 from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.scene.spelling import counted
 
 
 def print_motion(console: Console, motion: Motion, written: Sequence[Path]) -> None:
@@ -46,7 +46,7 @@ def print_hasty_animation(console: Console, frames: int, speed: float) -> None:
     """Say how an animation that is over at once can be slowed down."""
     print_plain(
         console,
-        f"The animation has {plural(frames, 'frame')}: add --speed {speed:g} to see the motion slowly.",
+        f"The animation has {counted(frames, 'frame')}: add --speed {speed:g} to see the motion slowly.",
         soft_wrap=True,
     )
 
@@ -86,6 +86,6 @@ def _step_words(motion: Motion) -> str:
     if statistics.steps:
         parts.append(f"of {statistics.smallest_step:.2g} to {statistics.largest_step:.2g} s")
     words = " ".join(parts)
-    iterations = plural(statistics.iterations, "iteration")
-    jacobians = plural(statistics.jacobians, "Jacobian")
+    iterations = counted(statistics.iterations, "iteration")
+    jacobians = counted(statistics.jacobians, "Jacobian")
     return f"{words}, {statistics.rejected:,} rejected; {iterations}, {jacobians}"

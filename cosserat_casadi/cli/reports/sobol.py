@@ -7,8 +7,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import plural, print_plain
+from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.spelling import counted
 from cosserat_casadi.sweep.sobol import SobolIndices
 
 
@@ -34,7 +35,7 @@ def print_sobol(console: Console, indices: SobolIndices) -> None:
         print_plain(console, f"Does not vary: {escape(', '.join(constant))}.", soft_wrap=True)
     if indices.left_out:
         sentence = (
-            f"[bold yellow]Left out: {plural(indices.left_out, 'draw')} of {indices.samples + indices.left_out}, "
+            f"[bold yellow]Left out: {counted(indices.left_out, 'draw')} of {indices.samples + indices.left_out}, "
             "of which some row has no equilibrium.[/] The indices are those of the others."
         )
         print_plain(console, sentence, soft_wrap=True)

@@ -13,7 +13,6 @@ from rich.table import Table
 from cosserat_casadi.cli.reports.format import (
     digits,
     discretisation_sentences,
-    plural,
     print_plain,
     print_written,
     table_of,
@@ -23,6 +22,7 @@ from cosserat_casadi.control.inverse import Inverse
 from cosserat_casadi.control.target_errors import Gap
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.scene.spelling import counted
 
 STABILITY = {True: "stable", False: "unstable", None: "stability: no potential, not judged"}
 
@@ -154,7 +154,7 @@ def _actuator_table(solution: Solution) -> Table:
 
 def _merit_sentence(solution: Solution) -> str:
     """How good the solution is, and what it was found on."""
-    parts = [f"residual {solution.residual_norm:.1e}", plural(solution.iterations, "iteration")]
+    parts = [f"residual {solution.residual_norm:.1e}", counted(solution.iterations, "iteration")]
     if solution.error_estimate is not None:
         parts.append(f"estimated tip error {solution.error_estimate:.1e} of the length")
     if solution.shape_error_estimate is not None:

@@ -12,7 +12,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosserat_casadi.cli.reports.format import listed, plural, print_plain, print_written, title_line
+from cosserat_casadi.cli.reports.format import listed, print_plain, print_written, title_line
+from cosserat_casadi.scene.spelling import counted
 from cosserat_casadi.sweep.outcome_file import STABLE, record_file
 from cosserat_casadi.sweep.outcome_table import Sweep
 from cosserat_casadi.sweep.run import Plan
@@ -73,7 +74,7 @@ def _choice_sentence(chosen: dict[str, Any], tolerance: float) -> str:
     # Rows without an equilibrium say nothing of the discretisation.
     count = len(chosen["rows"])
     sentence = escape(
-        f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals, chosen on {plural(count, 'row')}"
+        f"Modes {discretisation['modes']}, {discretisation['nodes']} intervals, chosen on {counted(count, 'row')}"
     )
     estimate = chosen["error_estimate"]
     if estimate is None:
@@ -98,7 +99,7 @@ def _check_sentences(checked: list[dict[str, Any]], tolerance: float) -> Iterato
         error = max(estimates)
         difference = max(entry["difference"] for entry in compared)
         yield (
-            f"{plural(len(compared), 'row')} solved again in Python: estimated error at most {error:.1e}, "
+            f"{counted(len(compared), 'row')} solved again in Python: estimated error at most {error:.1e}, "
             f"{_within(error, tolerance)} {tolerance:g}; poses differ by at most {difference:.1e}."
         )
     lost = [entry for entry in checked if entry["difference"] is None]
@@ -121,7 +122,7 @@ def _stability_sentences(sweep: Sweep) -> Iterator[str]:
     if STABLE not in sweep.found:
         return
     stable = sweep[STABLE][sweep.converged]
-    sentence = f"Stable: {plural(int(np.sum(stable == 1.0)), 'row')}, unstable: {int(np.sum(stable == 0.0))}"
+    sentence = f"Stable: {counted(int(np.sum(stable == 1.0)), 'row')}, unstable: {int(np.sum(stable == 0.0))}"
     without_potential = int(np.sum(np.isnan(stable)))
     if without_potential:
         sentence += f", not judged, since their loads have no potential: {without_potential}"

@@ -7,7 +7,7 @@ a state that holds, it says so. See docs/contact.md.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -240,29 +240,38 @@ def _alike(first: ContactState, second: ContactState) -> bool:
     return bool(np.all(np.abs(first.places - second.places) < ALIKE))
 
 
+@dataclass(frozen=True)
+class Change:
+    """What may be in place of a contact that is at fault.
+
+    Attributes:
+        touch: the contact; None where a stretch is inside an obstacle that no contact is at.
+        options: the contacts that may be there instead, the likeliest first.
+    """
+
+    touch: Touch | None
+    options: tuple[tuple[Touch, ...], ...]
+
+
 def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
     """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
-    touches = list(found.state.touches)
-    changes: list[tuple[tuple[Touch, ...], list[tuple[Touch, ...]]]] = []
-    for touch, pull in found.pulls():
-        if pull > tolerance:
-            changes.append(((touch,), list(_instead_of_pulling(touch))))
-    pulling = {change[0][0] for change in changes}
+    pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
+    changes = [Change(touch, tuple(_instead_of_pulling(touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
         # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
         if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
             continue
         if touch not in pulling:
-            replaced = () if touch is None else (touch,)
-            changes.append((replaced, list(_instead_of_entering(penetrated, touch))))
+            changes.append(Change(touch, tuple(_instead_of_entering(penetrated, touch))))
     if not changes:
         return
     # All that is at fault is changed at once; then each in another way.
-    yield _changed(touches, [(old, new[0]) for old, new in changes])
-    for index, (old, options) in enumerate(changes):
-        for option in options[1:]:
-            others = [(other_old, new[0]) for i, (other_old, new) in enumerate(changes) if i != index]
-            yield _changed(touches, [*others, (old, option)])
+    likeliest = [(change.touch, change.options[0]) for change in changes]
+    yield _changed(found.state, likeliest)
+    for index, change in enumerate(changes):
+        others = likeliest[:index] + likeliest[index + 1 :]
+        for option in change.options[1:]:
+            yield _changed(found.state, [*others, (change.touch, option)])
 
 
 def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | None]]:
@@ -278,11 +287,12 @@ def _by_touch(found: Found, tolerance: float) -> list[tuple[Penetrated, Touch | 
     return [*alone, *((penetrated, touch) for touch, penetrated in joined.items())]
 
 
-def _changed(touches: list[Touch], changes: list[tuple[tuple[Touch, ...], tuple[Touch, ...]]]) -> ContactState:
-    """The state with some contacts replaced by others."""
-    gone = {touch for old, _ in changes for touch in old}
-    come = [touch for _, new in changes for touch in new]
-    return ContactState.of([*(touch for touch in touches if touch not in gone), *come])
+def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[Touch, ...]]]) -> ContactState:
+    """The state with some contacts replaced by others; None replaces no contact."""
+    replaced = {old for old, _ in changes}
+    kept = [touch for touch in state.touches if touch not in replaced]
+    added = [touch for _, new in changes for touch in new]
+    return ContactState.of([*kept, *added])
 
 
 def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
