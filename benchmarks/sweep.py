@@ -70,7 +70,7 @@ def main() -> None:
     scene = read_scene(SCENE, DISCRETISATION)
     swept = variants_of(scene, table_of(pushes(1))).entries[0].scene
     library = row_library(build(swept), lanes=options.lanes)
-    run.row_library = lambda model, lanes: library
+    run.row_library = lambda model, **chosen: library
     run.check = lambda *given: []
     rate(scene, 1000, 1, ".csv", 1)
     table = Table(title=f"{options.rows:,} rows of a rod of {build(swept).size} unknowns, best of {options.repeats}")

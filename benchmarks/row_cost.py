@@ -1,0 +1,110 @@
+"""What a row of a sweep costs in C on one core: processor time of the compiled function for rows, best of several.
+
+Left out is all around it: reading and writing tables, choosing the discretisation, generating and compiling.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from benchmarks.markdown import put, table
+from cosserat_casadi import Model, build, read_scene, scene_from_dict
+from cosserat_casadi.codegen.rows import RowLibrary, row_library
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.writing import scene_tables
+
+PAGE = Path("docs/sweeps.md")
+BEGIN, END = "<!-- rows: written by benchmarks/row_cost.py -->", "<!-- end of rows -->"
+
+ROWS = 4000
+REPEATS = 7
+SPREAD = 0.1
+"""Relative width of what parameters are drawn from."""
+
+FIXED = ["accuracy.modes=[6,5,1]", "accuracy.nodes=8", 'accuracy.rotation="magnus6"']
+"""What a tolerance of 1e-6 picks for the wire at its own loads: 12 unknowns."""
+
+TENDON = {"name": "east", "kind": "tendon", "rod": "wire", "tension": 0.5, "offset": [1.5e-3, 0.0]}
+NUMBERS = ["wire.section.radius", "wire.material.youngs_modulus", "wire.intrinsic.curvature.y", "east.offset.x"]
+
+
+def wire(**changes: Any) -> Model:
+    """The nitinol wire of the examples, whose push is free."""
+    tables = scene_tables(read_scene("examples/nitinol_wire.toml", FIXED))
+    return build(scene_from_dict({**tables, "inputs": ["push.force"], **changes}))
+
+
+def robot() -> Model:
+    """The robot of two sections of the examples, on fixed modes and nodes."""
+    return build(read_scene("examples/two_section_robot.toml", ["accuracy.modes=4", "accuracy.nodes=8"]))
+
+
+def curved(**changes: Any) -> Model:
+    """The wire with a tendon and a little pre-curvature."""
+    rod = scene_tables(read_scene("examples/nitinol_wire.toml", FIXED))["rods"][0]
+    return wire(rods=[{**rod, "intrinsic": {"curvature": [0.0, 0.5, 0.0]}}], actuators=[TENDON], **changes)
+
+
+def drawn_inputs(model: Model) -> FloatArray:
+    """Rows of inputs about those of the scene; tensions stay tensions."""
+    rng = np.random.default_rng(1)
+    own = model.pack()
+    return own * rng.uniform(0.5, 1.5, (ROWS, len(own)))
+
+
+def drawn_parameters(model: Model) -> FloatArray:
+    """Rows of parameters about those of the scene."""
+    rng = np.random.default_rng(2)
+    own = model.parameters.pack()
+    return own * rng.uniform(1 - SPREAD, 1 + SPREAD, (ROWS, len(own)))
+
+
+def microseconds(model: Model, library: RowLibrary) -> float:
+    """Processor time of a row."""
+    arguments = [drawn_inputs(model)]
+    if model.parameters.size:
+        arguments.append(drawn_parameters(model))
+    results = library.solve(*arguments)
+    assert np.all(results[:, 0] == 0), "a row has no equilibrium"
+    best = np.inf
+    for _ in range(REPEATS):
+        began = time.process_time()
+        library.solve(*arguments)
+        best = min(best, time.process_time() - began)
+    return 1e6 * best / ROWS
+
+
+CASES: tuple[tuple[str, Callable[[], Model], dict[str, bool]], ...] = (
+    ("nitinol wire, three forces", wire, {}),
+    ("… with `--stability`", wire, {"stability": True}),
+    ("… rows side by side", wire, {"lanes": True}),
+    ("with a tendon and pre-curvature", curved, {}),
+    ("… radius, modulus, pre-curvature, offset as parameters", lambda: curved(parameters=NUMBERS), {}),
+    ("robot of two sections, tensions", robot, {}),
+    ("… rows side by side", robot, {"lanes": True}),
+)
+
+
+def main(
+    write: Annotated[bool, typer.Option("--write", help="Put the table into docs/sweeps.md.")] = False,
+) -> None:
+    """Print what a row costs."""
+    rows = []
+    for name, model_of, chosen in CASES:
+        model = model_of()
+        spent = microseconds(model, row_library(model, **chosen))
+        rows.append((name, str(model.size), f"{spent:.1f}", f"{1e6 / spent:,.0f}"))
+    text = table(("what is swept", "unknowns", "µs a row", "rows a second of one core"), rows)
+    print(text)
+    if write:
+        put(PAGE, BEGIN, END, text)
+
+
+if __name__ == "__main__":
+    typer.run(main)
