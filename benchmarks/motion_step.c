@@ -51,9 +51,10 @@ static void run(int task, double dt, long *iterations, long *jacobians, long *pa
     if (task == INVERSE_DYNAMICS) {
       @{name}_inverse_dynamics(state.x, state.v, state.a, given, rate, 0, residual, &workspace);
     } else if (task == MATRICES) {
-      @{name}_linearise(&state, given, rate, stiffness, damping, mass, 0, 0, &workspace);
+      @{name}_linearise(&state, given, rate, stiffness, damping, mass, 0, 0, 0, &workspace);
     } else if (task == SENSITIVITY) {
-      @{name}_step_sensitivity(given, rate, dt, &state, &memory, 0, by_start, by_inputs, by_inputs_rate, &workspace, &info);
+      @{name}_step_sensitivity(given, rate, dt, &state, &memory, 0, by_start, by_inputs, by_inputs_rate, 0,
+                               &workspace, &info);
     } else {
       @{name}_step(given, rate, dt, &state, &memory, 0, &workspace, &info);
     }

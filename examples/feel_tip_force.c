@@ -80,7 +80,7 @@ static int predict(belief *now, const double *tensions) {
   static double transition[ENTRIES][ENTRIES], product[ENTRIES][ENTRIES];
   double inputs[ROBOT_INPUTS];
   set_inputs(now->force, tensions, inputs);
-  if (robot_step_sensitivity(inputs, 0, PERIOD, &now->state, &now->memory, 0, by_start, by_inputs, 0, &workspace, 0) !=
+  if (robot_step_sensitivity(inputs, 0, PERIOD, &now->state, &now->memory, 0, by_start, by_inputs, 0, 0, &workspace, 0) !=
       ROBOT_MOTION_DONE) {
     return 0;
   }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -69,12 +69,14 @@ class StepSensitivity:
         by_start: by x and v at the start, shape (2 size, 2 size).
         by_inputs: by the inputs at the start, shape (2 size, inputs).
         by_inputs_rate: by their rates at the start, shape (2 size, inputs).
+        by_inputs_acceleration: by their accelerations in the step, shape (2 size, inputs).
         by_parameters: by the parameters, which stay what they are, shape (2 size, parameters).
     """
 
     by_start: FloatArray
     by_inputs: FloatArray
     by_inputs_rate: FloatArray
+    by_inputs_acceleration: FloatArray
     by_parameters: FloatArray
 
 
@@ -88,6 +90,7 @@ class LinearMotion:
         mass: by a, shape (size, size), s².
         by_inputs: by the inputs, shape (size, inputs).
         by_inputs_rate: by their rates, shape (size, inputs).
+        by_inputs_acceleration: by their accelerations, shape (size, inputs).
         by_parameters: by the parameters, shape (size, parameters).
     """
 
@@ -96,6 +99,7 @@ class LinearMotion:
     mass: FloatArray
     by_inputs: FloatArray
     by_inputs_rate: FloatArray
+    by_inputs_acceleration: FloatArray
     by_parameters: FloatArray
 
 
@@ -135,6 +139,29 @@ class _Given:
     inputs_rate: npt.ArrayLike | None
     inputs_acceleration: npt.ArrayLike | None
     parameters: ParameterValues
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Derivatives by what is given, one column after the other."""
+
+    by_inputs: FloatArray
+    by_inputs_rate: FloatArray
+    by_inputs_acceleration: FloatArray
+    by_parameters: FloatArray
+
+    @property
+    def in_order(self) -> list[FloatArray]:
+        """The same as functions in C take them; a scene without parameters has no derivative with them."""
+        of_motion = [self.by_inputs_rate, self.by_inputs_acceleration]
+        if len(self.by_parameters) == 0:
+            return [self.by_inputs, *of_motion]
+        return [self.by_inputs, self.by_parameters, *of_motion]
+
+    @property
+    def as_matrices(self) -> dict[str, FloatArray]:
+        """The same with a column for each number that is given, by name."""
+        return {field.name: getattr(self, field.name).T for field in fields(self)}
 
 
 class _Options(ctypes.Structure):
@@ -251,28 +278,22 @@ class CompiledMotion(ABC):
         memory: StepMemory | None = None,
         options: StepOptions | None = None,
     ) -> tuple[CompiledStep, StepSensitivity | None]:
-        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken.
-
-        They are those by the inputs and their rates at the start, with the acceleration held.
-        """
+        """As :meth:`step`, with the exact derivatives of its end; None where it has none or was not taken."""
         size = 2 * self.size
         by_start = np.zeros((size, size))
-        by_inputs, by_rate, by_parameters = self._columns(size)
-        results = [by_start, *self._ordered(by_inputs, by_rate, by_parameters)]
+        columns = self._columns(size)
+        results = [by_start, *columns.in_order]
         given = _Given(inputs, inputs_rate, inputs_acceleration, parameters)
         taken, status = self._take("step_sensitivity", state, dt, given, memory, options, results)
         if status is not MotionStatus.DONE:
             return taken, None
-        return taken, StepSensitivity(by_start.T, by_inputs.T, by_rate.T, by_parameters.T)
+        return taken, StepSensitivity(by_start.T, **columns.as_matrices)
 
-    def _columns(self, size: int) -> list[FloatArray]:
-        """Room for columns of so many entries by inputs, by their rates and by parameters."""
+    def _columns(self, size: int) -> _Columns:
+        """Room for columns of so many entries."""
         count = len(self.defaults)
-        return [np.zeros((columns, size)) for columns in (count, count, self.parameters.size)]
-
-    def _ordered(self, by_inputs: FloatArray, by_rate: FloatArray, by_parameters: FloatArray) -> list[FloatArray]:
-        """The same as functions in C take them; a scene without parameters has no derivative with them."""
-        return [by_inputs, by_parameters, by_rate] if self.parameters.size else [by_inputs, by_rate]
+        by_inputs, by_rate, by_acceleration = (np.zeros((count, size)) for _ in range(3))
+        return _Columns(by_inputs, by_rate, by_acceleration, np.zeros((self.parameters.size, size)))
 
     def inverse_dynamics(
         self,
@@ -303,12 +324,12 @@ class CompiledMotion(ABC):
     ) -> LinearMotion:
         """Derivatives of the equations of motion at a state."""
         stiffness, damping, mass = (np.zeros((self.size, self.size)) for _ in range(3))
-        by_inputs, by_rate, by_parameters = self._columns(self.size)
-        results = [stiffness, damping, mass, *self._ordered(by_inputs, by_rate, by_parameters)]
+        columns = self._columns(self.size)
+        results = [stiffness, damping, mass, *columns.in_order]
         p = self.parameters.passed(parameters)
         arguments = [pointer(self._packed(state)), self._given(inputs), *p, self._given(inputs_rate)]
         self._motion_function("linearise")(*arguments, *map(pointer, results), self._workspace())
-        return LinearMotion(stiffness.T, damping.T, mass.T, by_inputs.T, by_rate.T, by_parameters.T)
+        return LinearMotion(stiffness.T, damping.T, mass.T, **columns.as_matrices)
 
     def _take(
         self,

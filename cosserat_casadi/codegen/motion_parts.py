@@ -32,7 +32,7 @@ class MotionInC:
         blocks: of stiffness, damping and mass together.
         residual: the equations in parts.
         matrices: entries of stiffness, damping and mass in parts: one after the other, in the order of the pattern.
-        input_matrices: derivatives by inputs, then by their rates, in parts, by their index in the dense matrix.
+        input_matrices: derivatives by inputs, their rates, their accelerations, in parts: by index in the dense matrix.
     """
 
     blocks: Blocks
@@ -111,16 +111,19 @@ def _matrices(partition: Blocks, symbols: Sequence[ca.MX], matrices: Sequence[ca
 
 
 def _input_matrices(model: Model, partition: Blocks, name: str) -> Parted:
-    """Derivatives by inputs and by their rates, those with parameters behind the inputs."""
+    """Derivatives by inputs, their rates and their accelerations, each with room behind it for those by parameters."""
     state, inputs, factor, arguments = _symbols(model)
     # In the function's own symbols CasADi sees through the call, and writes a quarter of the derivatives.
     given = model.inverse_dynamics.mx_in()
     residual = model.inverse_dynamics.call(given)[0]
     symbols = dict(zip(model.inverse_dynamics.name_in(), given, strict=True))
-    moving = [symbols["inputs"], symbols["inputs_rate"]]
+    by_each = []
+    for name_of_order in ("inputs", "inputs_rate", "inputs_acceleration"):
+        by_each.append(ca.jacobian(residual, symbols[name_of_order]))
+        # Parameters have no rates and no accelerations.
+        by_each.append(ca.MX(model.size, model.parameters.size))
     if model.parameters.size:
-        moving.insert(1, symbols[PARAMETERS])
-    by_each = [ca.jacobian(residual, symbol) for symbol in moving]
+        by_each[1] = ca.jacobian(residual, symbols[PARAMETERS])
     by_inputs = ca.Function("by_inputs", given, [ca.horzcat(*by_each)])
     matrix = by_inputs.call(arguments)[0]
     rows, columns = matrix.sparsity().get_triplet()

@@ -118,7 +118,7 @@ def _workspace_reals(model: Model, motion: MotionInC, words: Words) -> int:
     """Numbers that the workspace has for motions."""
     size, room = model.size, words["input_room"]
     entries = words["stage_entries"] * (2 * len(MATRICES) + 4) + words["most_motion_entries"]
-    matrices = 4 * words["stage_matrix"] + 4 * size**2 + 8 * size * room
+    matrices = 4 * words["stage_matrix"] + 4 * size**2 + 12 * size * room
     vectors = 12 * size + 8 * room + 4 * size + 10 * size
     remembered = 2 * size * (2 * MOST_STEP_ITERATIONS + MOST_STEP_PARTS)
     rooms = 8 * (words["front_room"] + words["interface_room"] + 2 * size)

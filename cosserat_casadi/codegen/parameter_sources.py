@@ -141,4 +141,4 @@ def _workspace_reals(basics: Words, dynamics: bool) -> int:
     """Numbers that the workspace has for parameters."""
     room = int(basics["input_room"])
     statics = 2 * room + int(basics["unknowns"]) + 7 * int(basics["poses"]) * room
-    return statics + (2 * room + 4 * int(basics["unknowns"]) * room if dynamics else 0)
+    return statics + (2 * room + 6 * int(basics["unknowns"]) * room if dynamics else 0)

@@ -54,7 +54,13 @@ def test_equations_of_motion(made: Exported) -> None:
     matrices = model.dynamics_jacobian(*at[:-1], 0 * rate)[:3]
     for found, expected in zip((linear.stiffness, linear.damping, linear.mass), matrices, strict=True):
         assert_allclose(found, expected.full(), rtol=0, atol=1e-12 * np.abs(expected.full()).max())
-    for number, found in {3: linear.by_inputs, 4: linear.by_parameters, 5: linear.by_inputs_rate}.items():
+    by_each = {
+        3: linear.by_inputs,
+        4: linear.by_parameters,
+        5: linear.by_inputs_rate,
+        6: linear.by_inputs_acceleration,
+    }
+    for number, found in by_each.items():
         for j in range(len(at[number])):
             change = np.zeros(len(at[number]))
             change[j] = STEP * max(abs(at[number][j]), 1e-2)

@@ -297,9 +297,10 @@ def test_derivatives_by_inputs_vs_differences(motion_library: MotionLibrary, fam
     drawn = moving_scenes.drawn_state(made.model)
     state = StepState(drawn.x, drawn.v, drawn.a)
     linear = made.compiled.linearise(state, drawn.inputs, drawn.inputs_rate)
-    for matrix, which in ((linear.by_inputs, 0), (linear.by_inputs_rate, 1)):
+    by_each = [linear.by_inputs, linear.by_inputs_rate, linear.by_inputs_acceleration]
+    for which, matrix in enumerate(by_each):
         for j in range(len(drawn.inputs)):
-            given = [drawn.inputs, drawn.inputs_rate]
+            given = [drawn.inputs, drawn.inputs_rate, 0.0 * drawn.inputs]
             span = 1e-6 * (1.0 + abs(given[which][j]))
             change = span * (np.arange(len(drawn.inputs)) == j)
             values = []

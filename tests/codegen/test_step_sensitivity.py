@@ -34,7 +34,7 @@ def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
     moves = np.diag(differential.astype(float))
     still = np.eye(size) - moves
     system = np.zeros((2 * size, 2 * size))
-    right = np.zeros((2 * size, 2 * size + 2 * count))
+    right = np.zeros((2 * size, 2 * size + 3 * count))
     for i in range(2):
         time = method.nodes[i] * h
         rate = driven.rates[0] + time * driven.accelerations[0]
@@ -47,11 +47,12 @@ def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
             columns = slice(j * size, (j + 1) * size)
             system[rows, columns] = (of_shapes + (i == j) * mass) @ moves + (i == j) * stiffness @ still
         residual = model.inverse_dynamics
-        by_inputs, by_rate = (slopes(residual, at, which) for which in (3, 4))
+        by_inputs, by_rate, by_acceleration = (slopes(residual, at, which) for which in (3, 4, 5))
         right[rows, :size] = stiffness @ moves
         right[rows, size : 2 * size] = (method.nodes[i] * h * stiffness + damping) @ moves
         right[rows, 2 * size : 2 * size + count] = by_inputs
-        right[rows, 2 * size + count :] = method.nodes[i] * h * by_inputs + by_rate
+        right[rows, 2 * size + count : 2 * size + 2 * count] = time * by_inputs + by_rate
+        right[rows, 2 * size + 2 * count :] = time**2 / 2.0 * by_inputs + time * by_rate + by_acceleration
     row_scales = np.abs(system).max(axis=1)[:, None]
     column_scales = np.abs(system / row_scales).max(axis=0)[:, None]
     scaled = system / row_scales / column_scales.T
@@ -64,8 +65,8 @@ def of_python(model: Model, step: Step, driven: Drive) -> StepSensitivity:
     of_x[:, size : 2 * size] += h * moves
     of_v[:, size : 2 * size] += moves
     whole = np.vstack([of_x, of_v])
-    by_start, by_inputs, by_rate = np.split(whole, [2 * size, 2 * size + count], axis=1)
-    return StepSensitivity(by_start, by_inputs, by_rate, np.zeros((2 * size, 0)))
+    ends = 2 * size + count * np.arange(3)
+    return StepSensitivity(*np.split(whole, ends, axis=1), np.zeros((2 * size, 0)))
 
 
 def slopes(function: Callable[..., object], at: tuple[FloatArray, ...], which: int) -> FloatArray:
@@ -105,7 +106,7 @@ def assert_sensitivity_of_python(made: Exported, driven: Drive) -> None:
     plain = made.compiled.step(start, driven.dt, *next(driven.steps), options=EXACT)
     assert_allclose(end.x, plain.state.x, rtol=0, atol=0)
     scale = entry_scales(made.model)
-    for name in ("by_start", "by_inputs", "by_inputs_rate"):
+    for name in ("by_start", "by_inputs", "by_inputs_rate", "by_inputs_acceleration"):
         ours, theirs = getattr(found, name), getattr(wanted, name)
         rows = scale * (1.0 + np.abs(theirs).max(axis=1))
         assert_allclose(ours / rows[:, None], theirs / rows[:, None], rtol=0, atol=1e-11, err_msg=name)
@@ -133,16 +134,15 @@ def test_sensitivity_with_accelerations_of_inputs_vs_differences(motion_library:
 def assert_sensitivity_of_differences(made: Exported, driven: Drive) -> None:
     start = start_of(made.model)
     _, found = taken(made, start, driven)
-    size, count = made.model.size, len(driven.inputs[0])
+    size = made.model.size
     moves = np.concatenate([made.model.discrete.unknowns.differential] * 2)
-    whole = np.hstack([found.by_start, found.by_inputs, found.by_inputs_rate])
-    given = np.concatenate([start.x, start.v, driven.inputs[0], driven.rates[0]])
+    whole = np.hstack([found.by_start, found.by_inputs, found.by_inputs_rate, found.by_inputs_acceleration])
+    given = np.concatenate([start.x, start.v, driven.inputs[0], driven.rates[0], driven.accelerations[0]])
 
     def end(values: FloatArray) -> FloatArray:
         state = StepState(values[:size], values[size : 2 * size], start.a)
-        inputs = values[2 * size : 2 * size + count]
-        rate = values[2 * size + count :]
-        step = made.compiled.step(state, driven.dt, inputs, rate, driven.accelerations[0], options=EXACT)
+        inputs, rate, acceleration = np.split(values[2 * size :], 3)
+        step = made.compiled.step(state, driven.dt, inputs, rate, acceleration, options=EXACT)
         assert step.done
         return np.concatenate([step.state.x, step.state.v])
 
@@ -185,16 +185,25 @@ def test_sensitivity_of_a_step_in_parts_is_that_of_its_parts(motion_library: Mot
     by_start = np.eye(2 * made.model.size)
     by_inputs = np.zeros((2 * made.model.size, len(inputs)))
     by_rate = by_inputs
+    by_acceleration = by_inputs
     for k in range(cut.parts):
         t = k * part
         path = (inputs + t * rate + t**2 / 2.0 * acceleration, rate + t * acceleration, acceleration)
         step, own = made.compiled.step_sensitivity(state, part, *path, options=StepOptions(1e-12, 20, 1))
         assert own is not None
+        by_acceleration = own.by_start @ by_acceleration + own.by_inputs_acceleration
+        by_acceleration += t * own.by_inputs_rate + t**2 / 2.0 * own.by_inputs
         by_rate = own.by_start @ by_rate + own.by_inputs_rate + t * own.by_inputs
         by_inputs = own.by_start @ by_inputs + own.by_inputs
         by_start = own.by_start @ by_start
         state = step.state
-    for ours, theirs in ((found.by_start, by_start), (found.by_inputs, by_inputs), (found.by_inputs_rate, by_rate)):
+    pairs = [
+        (found.by_start, by_start),
+        (found.by_inputs, by_inputs),
+        (found.by_inputs_rate, by_rate),
+        (found.by_inputs_acceleration, by_acceleration),
+    ]
+    for ours, theirs in pairs:
         assert_allclose(ours, theirs, rtol=0, atol=1e-7 * (1.0 + np.abs(theirs).max()))
 
 

@@ -27,7 +27,8 @@ static void fill_dense(const real *entries, real *matrix) {
 
 void solver_linearise(const solver_state *state, const real *inputs, const real *inputs_rate, real *stiffness,
                       real *damping, real *mass, real *d_residual_d_inputs, real *d_residual_d_inputs_rate,
-                      workspace *work) {
+                      real *d_residual_d_inputs_acceleration, workspace *work) {
+  real *by_inputs[ORDERS] = {d_residual_d_inputs, d_residual_d_inputs_rate, d_residual_d_inputs_acceleration};
   set_instant(state->x, state->v, state->a, inputs, inputs_rate, 0, &work->at);
   if (stiffness || damping || mass) {
     matrices_at(&work->at, work->matrices[0], work);
@@ -35,11 +36,13 @@ void solver_linearise(const solver_state *state, const real *inputs, const real 
     fill_dense(work->matrices[0] + STAGE_ENTRIES, damping);
     fill_dense(work->matrices[0] + 2 * STAGE_ENTRIES, mass);
   }
-  if (d_residual_d_inputs || d_residual_d_inputs_rate) {
+  if (by_inputs[0] || by_inputs[1] || by_inputs[2]) {
     const size_t count = N * INPUTS;
     input_matrices_at(&work->at, work->input_matrices[0], work);
-    if (d_residual_d_inputs) memcpy(d_residual_d_inputs, work->input_matrices[0], count * sizeof(real));
-    if (d_residual_d_inputs_rate) memcpy(d_residual_d_inputs_rate, work->input_matrices[0] + count, count * sizeof(real));
+    for (int order = 0; order < ORDERS; order++) {
+      const real *matrix = work->input_matrices[0] + (size_t)order * count;
+      if (by_inputs[order]) memcpy(by_inputs[order], matrix, count * sizeof *matrix);
+    }
   }
 }
 

@@ -51,5 +51,6 @@ enum {
   STAGED = 2 * SOLVER_UNKNOWNS, /* unknowns of all stages */
   FOUR = 4,                     /* right-hand sides that are solved for together */
   MATRICES = 3,                 /* stiffness, damping, mass */
+  ORDERS = 3,                   /* derivatives by inputs, their rates, their accelerations */
   STAGE_ENTRIES = SOLVER_STAGE_ENTRIES
 };

@@ -26,9 +26,9 @@ static void matrices_at(const instant *at, real *matrices, workspace *work) {
   evaluate_motion(MOTION_MATRIX_PARTS, MOTION_MATRIX_PART_COUNT, at, matrices, work);
 }
 
-/* Derivatives of the residual by the inputs, then by their rates, N x INPUTS each. */
+/* Derivatives of the residual by the inputs, by their rates, by their accelerations, N x INPUTS each. */
 static void input_matrices_at(const instant *at, real *matrices, workspace *work) {
-  memset(matrices, 0, 2 * N * SOLVER_INPUT_ROOM * sizeof *matrices);
+  memset(matrices, 0, ORDERS * N * SOLVER_INPUT_ROOM * sizeof *matrices);
   evaluate_motion(MOTION_INPUT_PARTS, MOTION_INPUT_PART_COUNT, at, matrices, work);
 }
 

@@ -3,8 +3,7 @@
 /* Where derivatives go, 2 N numbers in each column; any may be null. */
 typedef struct {
   real *by_start;       /* by x, then v */
-  real *by_inputs;
-  real *by_inputs_rate;
+  real *by_inputs[ORDERS]; /* by inputs, their rates at the start, their accelerations */
 } step_derivatives;
 
 /* The matrix of both stages, whose unknowns are h^2 a and the values of multipliers. */
@@ -53,15 +52,19 @@ static void change_by_start(real size, int column, real *stages, const workspace
   }
 }
 
-/* The same with an input, or with its rate, which are behind the inputs. */
+/* The same with an input; its rate is behind the inputs, its acceleration behind the rates. */
 static void change_by_input(real size, int column, real *stages, const workspace *work) {
-  const int input = column % (INPUTS > 0 ? INPUTS : 1);
-  const int of_rate = column >= INPUTS;
+  const int count = INPUTS > 0 ? INPUTS : 1;
+  const int input = column % count;
+  const int changed = column / count;
   for (int s = 0; s < STAGES; s++) {
-    const real *of_value = work->input_matrices[s] + input * N;
-    const real *of_speed = work->input_matrices[s] + (INPUTS + input) * N;
-    const real share = of_rate ? STAGE_NODES[s] * size : 1;
-    for (int i = 0; i < N; i++) stages[s * N + i] = -share * of_value[i] - (of_rate ? of_speed[i] : 0);
+    /* What a change of the rate, or of the acceleration, has made of the inputs and their rates by the stage. */
+    const real time = STAGE_NODES[s] * size;
+    const real grown[ORDERS] = {1, time, time * time / 2};
+    for (int order = 0; order <= changed; order++) {
+      const real *matrix = work->input_matrices[s] + (order * INPUTS + input) * N;
+      for (int i = 0; i < N; i++) stages[s * N + i] -= grown[changed - order] * matrix[i];
+    }
   }
 }
 
@@ -143,47 +146,55 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
     stage_at(start, s, unknowns, &work->at);
     matrices_at(&work->at, work->matrices[s], work);
     if (!all_finite(work->matrices[s], MATRICES * STAGE_ENTRIES)) return 0;
-    if (!own->by_inputs && !own->by_inputs_rate) continue;
+    if (!own->by_inputs[0] && !own->by_inputs[1] && !own->by_inputs[2]) continue;
     input_matrices_at(&work->at, work->input_matrices[s], work);
-    if (!all_finite(work->input_matrices[s], 2 * N * INPUTS)) return 0;
+    if (!all_finite(work->input_matrices[s], ORDERS * N * INPUTS)) return 0;
   }
   if (!factorise_stages(start->size, &factors, work)) return 0;
   if (own->by_start) differentiate_by_start(start->size, &factors, own->by_start, work);
-  if (own->by_inputs) differentiate_columns(change_by_input, start->size, 0, INPUTS, &factors, own->by_inputs, work);
-  if (own->by_inputs_rate) {
-    differentiate_columns(change_by_input, start->size, INPUTS, 2 * INPUTS, &factors, own->by_inputs_rate, work);
+  for (int order = 0; order < ORDERS; order++) {
+    const int first = order * INPUTS;
+    real *columns = own->by_inputs[order];
+    if (columns) differentiate_columns(change_by_input, start->size, first, first + INPUTS, &factors, columns, work);
   }
   return 1;
+}
+
+/* Adds what a later part of a step changes by with the inputs, their rates, or their accelerations, at its start. */
+static void add_part(const step_derivatives *later, real time, const step_derivatives *wanted, workspace *work) {
+  if (wanted->by_start) carry_on(later->by_start, 2 * N, wanted->by_start, work);
+  const real grown[ORDERS] = {1, time, time * time / 2};
+  for (int changed = 0; changed < ORDERS; changed++) {
+    real *columns = wanted->by_inputs[changed];
+    if (!columns) continue;
+    carry_on(later->by_start, INPUTS, columns, work);
+    for (int order = 0; order <= changed; order++) {
+      add_columns(later->by_inputs[order], grown[changed - order], columns);
+    }
+  }
 }
 
 /* Derivatives of a step that was taken in parts, from work->begin, the state that it began with. Zero where there are
    none. */
 static int differentiate_step(const step_start *whole, int count, const step_derivatives *wanted, workspace *work) {
-  const step_derivatives later = {work->by_start, work->by_inputs, work->by_inputs_rate};
+  const step_derivatives later = {work->by_start,
+                                  {work->by_inputs, work->by_inputs_rate, work->by_inputs_acceleration}};
   work->end = work->begin;
   for (int number = 0; number < count; number++) {
     const real *unknowns = work->parts_unknowns[number];
     const step_start start = part_of_step(whole, number, count, work);
     if (!differentiate_part(&start, unknowns, number == 0 ? wanted : &later, work)) return 0;
-    if (number > 0) {
-      if (wanted->by_start) carry_on(later.by_start, 2 * N, wanted->by_start, work);
-      if (wanted->by_inputs) {
-        carry_on(later.by_start, INPUTS, wanted->by_inputs, work);
-        add_columns(later.by_inputs, 1, wanted->by_inputs);
-      }
-      if (wanted->by_inputs_rate) {
-        carry_on(later.by_start, INPUTS, wanted->by_inputs_rate, work);
-        add_columns(later.by_inputs_rate, 1, wanted->by_inputs_rate);
-        add_columns(later.by_inputs, (real)number * start.size, wanted->by_inputs_rate);
-      }
-    }
+    if (number > 0) add_part(&later, (real)number * start.size, wanted, work);
     stage_at(&start, STAGES - 1, unknowns, &work->at);
     memcpy(work->end.x, work->at.state, sizeof work->end.x);
     memcpy(work->end.v, work->at.state + N, sizeof work->end.v);
   }
-  return (!wanted->by_start || all_finite(wanted->by_start, 4 * N * N)) &&
-         (!wanted->by_inputs || all_finite(wanted->by_inputs, 2 * N * INPUTS)) &&
-         (!wanted->by_inputs_rate || all_finite(wanted->by_inputs_rate, 2 * N * INPUTS));
+  if (wanted->by_start && !all_finite(wanted->by_start, 4 * N * N)) return 0;
+  for (int order = 0; order < ORDERS; order++) {
+    const real *columns = wanted->by_inputs[order];
+    if (columns && !all_finite(columns, 2 * N * INPUTS)) return 0;
+  }
+  return 1;
 }
 
 /* Where the step needed many iterations, the Jacobians at its stages make the one that the next step begins with. */
@@ -201,8 +212,9 @@ static void keep_jacobian_of_stages(real size, solver_step_memory *memory, works
 solver_motion_status solver_step_sensitivity(const real *inputs, const real *inputs_rate, real dt, solver_state *state,
                                              solver_step_memory *memory, const solver_step_options *options,
                                              real *d_end_d_start, real *d_end_d_inputs, real *d_end_d_inputs_rate,
-                                             workspace *work, solver_step_info *info) {
-  const step_derivatives wanted = {d_end_d_start, d_end_d_inputs, d_end_d_inputs_rate};
+                                             real *d_end_d_inputs_acceleration, workspace *work,
+                                             solver_step_info *info) {
+  const step_derivatives wanted = {d_end_d_start, {d_end_d_inputs, d_end_d_inputs_rate, d_end_d_inputs_acceleration}};
   const solver_step_options chosen = chosen_options(options);
   const step_start whole = {work->begin.x, work->begin.v, inputs, inputs_rate, chosen.inputs_acceleration, dt};
   solver_step_info found = no_step();

@@ -15,7 +15,8 @@ enum { N = @{MACRO}_UNKNOWNS, INPUTS = @{MACRO}_INPUTS, STATUSES = 6 };
 static @{name}_workspace workspace;
 static @{name}_step_memory memory;
 static double by_start[4 * N * N], by_inputs[2 * N * INPUTS + 1], by_rate[2 * N * INPUTS + 1];
-static double matrices[5][N * (N > INPUTS ? N : INPUTS)];
+static double by_acceleration[2 * N * INPUTS + 1];
+static double matrices[6][N * (N > INPUTS ? N : INPUTS)];
 static long counts[STATUSES], cut, differentiated;
 
 static double seconds(void) {
@@ -57,8 +58,8 @@ static void step(const double *inputs, const double *rate, const double *acceler
   @{name}_motion_status said;
   const double begun = seconds();
   if (differentiate) {
-    said = @{name}_step_sensitivity(inputs, rate, dt, &state, &memory, &options, by_start, by_inputs, by_rate, &workspace,
-                                    &info);
+    said = @{name}_step_sensitivity(inputs, rate, dt, &state, &memory, &options, by_start, by_inputs, by_rate,
+                                    by_acceleration, &workspace, &info);
   } else {
     said = @{name}_step(inputs, rate, dt, &state, &memory, &options, &workspace, &info);
   }
@@ -78,7 +79,8 @@ static void step(const double *inputs, const double *rate, const double *acceler
   if (!finite(state.x, N) || !finite(state.v, N) || !finite(state.a, N)) fail("done, not finite", &info);
   if (!isfinite(info.residual) || !isfinite(info.error_left)) fail("done, with what is left not finite", &info);
   if (differentiate && said == @{MACRO}_MOTION_DONE) {
-    if (!finite(by_start, 4 * N * N) || !finite(by_inputs, 2 * N * INPUTS) || !finite(by_rate, 2 * N * INPUTS)) {
+    if (!finite(by_start, 4 * N * N) || !finite(by_inputs, 2 * N * INPUTS) || !finite(by_rate, 2 * N * INPUTS) ||
+        !finite(by_acceleration, 2 * N * INPUTS)) {
       fail("derivatives are not finite", &info);
     }
     differentiated++;
@@ -117,7 +119,8 @@ int main(int count, char **words) {
       else state.a[i - 2 * N] = special[a];
       step(own, 0, 0, 1e-3, &state, i % 2);
       @{name}_inverse_dynamics(state.x, state.v, state.a, own, 0, 0, matrices[0], &workspace);
-      @{name}_linearise(&state, own, 0, matrices[0], matrices[1], matrices[2], matrices[3], matrices[4], &workspace);
+      @{name}_linearise(&state, own, 0, matrices[0], matrices[1], matrices[2], matrices[3], matrices[4],
+                        matrices[5], &workspace);
     }
   }
   for (k = 0; k < random; k++) {

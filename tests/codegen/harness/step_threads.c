@@ -29,7 +29,7 @@ static void *run(void *given) {
   for (k = 0; k < STEPS; k++) {
     for (i = 0; i < INPUTS; i++) inputs[i] = own[i] * (1 + 0.1 * sin(0.2 * k + i));
     mine->states[k + 1] = mine->states[k];
-    @{name}_step_sensitivity(inputs, 0, 1e-3, &mine->states[k + 1], &mine->memory, 0, mine->by_start, mine->by_inputs, 0,
+    @{name}_step_sensitivity(inputs, 0, 1e-3, &mine->states[k + 1], &mine->memory, 0, mine->by_start, mine->by_inputs, 0, 0,
                              &mine->workspace, &mine->info[k]);
   }
   return 0;
