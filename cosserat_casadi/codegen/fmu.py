@@ -21,18 +21,28 @@ from cosserat_casadi.codegen.kernels import kernel, kernel_sources
 from cosserat_casadi.codegen.library import VERBATIM, render, resource
 from cosserat_casadi.codegen.motion_outputs import MotionOutputs, motion_outputs
 from cosserat_casadi.codegen.motion_parts import check_motion
+from cosserat_casadi.codegen.motion_sources import STEP_ITERATIONS, STEP_PARTS, STEP_TOLERANCE
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.scene import Scene
 
 SUFFIX = ".fmu"
 
 STEP = 1e-3
 """Step of the integrator where the scene names none, s."""
 
-FMI_SOURCES = ("fmi3.c", "fmi3.h")
+FMI_SOURCES = (
+    "fmi3.c",
+    "fmi3.h",
+    "fmi3_instances.c",
+    "fmi3_course.c",
+    "fmi3_steps.c",
+    "fmi3_values.c",
+    "fmi3_states.c",
+    "fmi3_derivatives.c",
+    "fmi3_missing.c",
+)
 """Files of the folder ``c`` that an FMU includes, as they are."""
 
 ARCHITECTURES = {"amd64": "x86_64", "arm64": "aarch64"}
@@ -70,8 +80,8 @@ def write_fmu(
 
     Its inputs are the scene's; its outputs are poses and velocities of tips and bodies, efforts of actuators and what
     these do work on. It begins at rest, in the equilibrium of its inputs, or in the unloaded shape where the scene
-    starts there or has a free base. Loads are held over a communication step; bases and lengths move linearly to the
-    value that is set.
+    starts there or has a free base. Loads are held over a communication step; bases and lengths move to the value that
+    is set, with rates that do not jump. Its parameters are the scene's, and the longest step of the integrator.
 
     Args:
         model: a model that was built with its motion.
@@ -85,7 +95,6 @@ def write_fmu(
         ExportError: the file, the name or a motion of this scene is refused, there is no compiler, or it fails; nothing
             was written.
     """
-    refuse_parameters(model.scene)
     check_motion(model)
     check_fmu(path)
     names = model_names(name, model)
@@ -116,18 +125,6 @@ def write_fmu(
     return Path(path)
 
 
-def refuse_parameters(scene: Scene) -> None:
-    """Refuse a scene that names parameters.
-
-    Raises:
-        ExportError: with the first of them.
-    """
-    if scene.parameters:
-        problem = f"{scene.parameters[0]!r} is a parameter, and an FMU has inputs alone"
-        remedy = "give --set parameters=[], or in Python write model.at(…), whose parameters have values"
-        raise ExportError(Problem("parameters[0]", problem, remedy))
-
-
 def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float) -> dict[str, str]:
     """What an FMU has besides the library: its interface, and the kernels of its outputs."""
     functions = [
@@ -136,12 +133,14 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
     ]
     moves = list[int]()
     for entry, _ in model.inputs:
-        moves += [int(entry.declared.geometry or entry.declared.continuous)] * entry.size
+        moves += [int(entry.declared.moves)] * entry.size
     words = {
         "name": names.name,
         "MACRO": names.macro,
         "outputs": len(outputs.entries),
         "moves": numbers(moves) or "0",
+        **_parameter_words(model, names),
+        "budget": f"{STEP_TOLERANCE!r}, {STEP_ITERATIONS}, {STEP_PARTS}",
         "step": repr(step),
         "unloaded": int(_starts_unloaded(model)),
         "token": "@{token}",
@@ -150,6 +149,22 @@ def _fmu_sources(model: Model, names: Names, outputs: MotionOutputs, step: float
         f"{names.name}_fmu.c": render("fmu.c.in", words),
         **kernel_sources(functions, names, f"{names.name}_outputs"),
         **{file: resource("c", file) for file in FMI_SOURCES},
+    }
+
+
+def _parameter_words(model: Model, names: Names) -> dict[str, str | int]:
+    """How many parameters there are, their values, and how functions of the library take them."""
+    count = model.parameters.size
+    arguments = {
+        "parameters": "parameters",
+        "d_parameters": "d_parameters",
+        "d_x_d_parameters": "d_x_d_parameters",
+        "nothing": "0",
+    }
+    return {
+        "parameter_count": count,
+        "parameter_defaults": f"{names.macro}_PARAMETER_DEFAULTS" if count else "{0}",
+        **{word: f", {argument}" if count else "" for word, argument in arguments.items()},
     }
 
 

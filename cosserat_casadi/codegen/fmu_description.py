@@ -14,6 +14,9 @@ from cosserat_casadi.scene.inputs import column_suffixes
 STEP_NAME = "step"
 """Name of the parameter that is the step of the integrator."""
 
+COURSE = " Set for the end of a communication step; moves there in it, with a rate that does not jump."
+"""What the description of a base or a length says of its values."""
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -35,7 +38,7 @@ class Variable:
 
 
 def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> list[Variable]:
-    """All variables in the order of their value references: time, inputs, outputs, step.
+    """All variables in the order of their value references: time, inputs, outputs, step, parameters of the scene.
 
     Args:
         model: the model.
@@ -48,12 +51,16 @@ def variables(model: Model, outputs: Sequence[MotionOutput], step: float) -> lis
         suffixes = column_suffixes(*entry.shape)
         for suffix, start in zip(suffixes, entry.default.ravel(order="F").tolist(), strict=True):
             described = f"Entry of {entry.name}{axes}."
-            if entry.declared.geometry:
-                described += " Moves linearly over a communication step; jumps of its speed exert no inertia forces."
+            if entry.declared.moves:
+                described += COURSE
             listed.append(Variable(f"{entry.name}{suffix}", entry.unit, described, "input", start))
     listed += [Variable(output.name, output.unit, output.description, "output") for output in outputs]
     described = "Longest step of the integrator: every communication step is divided into equal ones."
     listed.append(Variable(STEP_NAME, "s", described, "parameter", step))
+    for parameter, span in model.parameters:
+        described = f"Number of {parameter.name}, held from the start on."
+        for cell, value in zip(parameter.numbers.cell_names, model.parameters.pack()[span].tolist(), strict=True):
+            listed.append(Variable(cell, parameter.unit, described, "parameter", value))
     return listed
 
 

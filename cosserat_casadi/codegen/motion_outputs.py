@@ -12,12 +12,10 @@ import casadi as ca
 
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.function_table import PARAMETERS
 
 POSITION = ("x", "y", "z")
 QUATERNION = ("w", "x", "y", "z")
-
-STATE_ARGUMENTS = ("x", "v", "inputs", "inputs_rate")
-"""Arguments of the outputs: the state of the motion, the inputs and their rates."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +39,10 @@ class MotionOutputs:
 
     Attributes:
         entries: what each entry of the vector is.
-        function: (x, v, inputs, inputs_rate) ↦ outputs, shape (k,).
-        jacobian: the same arguments ↦ derivatives with (x, v) side by side, k×2n, with inputs and with inputs_rate.
+        function: (x, v, inputs, inputs_rate) ↦ outputs, shape (k,); of a scene with parameters (x, v, inputs, p,
+            inputs_rate).
+        jacobian: the same arguments ↦ derivatives with (x, v) side by side, k×2n, with inputs, with p where there are
+            parameters, and with inputs_rate.
     """
 
     entries: tuple[MotionOutput, ...]
@@ -56,14 +56,13 @@ def motion_outputs(model: Model) -> MotionOutputs:
     Args:
         model: a model that was built with its motion.
     """
-    size = model.size
-    count = model.inputs.size
-    sizes = (size, size, count, count)
-    x, v, inputs, inputs_rate = (ca.MX.sym(name, n) for name, n in zip(STATE_ARGUMENTS, sizes, strict=True))
+    x, v = ca.MX.sym("x", model.size), ca.MX.sym("v", model.size)
+    inputs, inputs_rate = ca.MX.sym("inputs", model.inputs.size), ca.MX.sym("inputs_rate", model.inputs.size)
+    p = [ca.MX.sym(PARAMETERS, model.parameters.size)] if model.parameters.size else []
     entries: list[MotionOutput] = []
     values: list[Matrix] = []
     for name, pose in _poses(model):
-        position, quaternion = pose(x, inputs)[:2]
+        position, quaternion = pose(x, inputs, *p)[:2]
         velocity = ca.jtimes(position, x, v) + ca.jtimes(position, inputs, inputs_rate)
         entries += [MotionOutput(f"{name}.position.{axis}", "m", f"Position of {name}.") for axis in POSITION]
         entries += [MotionOutput(f"{name}.quaternion.{part}", "1", f"Orientation of {name}.") for part in QUATERNION]
@@ -71,18 +70,19 @@ def motion_outputs(model: Model) -> MotionOutputs:
         values += [position, quaternion, velocity]
     for name, actuator in model.actuator.items():
         outputs = type(model).actuator.spec.outputs_of(model.discrete, name)[:2]
-        for output, value in zip(outputs, actuator(x, inputs)[:2], strict=True):
+        for output, value in zip(outputs, actuator(x, inputs, *p)[:2], strict=True):
             full_name = f"{name}.{output.name}"
             # What is given is no result: the tension of a tendon that is pulled by one.
             if full_name not in model.inputs.names:
                 entries.append(MotionOutput(full_name, output.unit, f"{output.name.capitalize()} of {name}."))
                 values.append(value)
     stacked = ca.densify(ca.vertcat(*values))
-    arguments = [x, v, inputs, inputs_rate]
+    arguments = [x, v, inputs, *p, inputs_rate]
+    names = ["x", "v", "inputs", *([PARAMETERS] if p else []), "inputs_rate"]
     return MotionOutputs(
         entries=tuple(entries),
-        function=ca.Function("motion_outputs", arguments, [stacked], [*STATE_ARGUMENTS], ["outputs"]),
-        jacobian=_jacobian(stacked, arguments),
+        function=ca.Function("motion_outputs", arguments, [stacked], names, ["outputs"]),
+        jacobian=_jacobian(stacked, arguments, names),
     )
 
 
@@ -93,11 +93,11 @@ def _poses(model: Model) -> Iterator[tuple[str, ca.Function]]:
     yield from model.body.items()
 
 
-def _jacobian(stacked: Matrix, arguments: list[ca.MX]) -> ca.Function:
-    """Derivatives with (x, v), with inputs and with their rates."""
-    x, v, inputs, inputs_rate = arguments
+def _jacobian(stacked: Matrix, arguments: list[ca.MX], names: list[str]) -> ca.Function:
+    """Derivatives with (x, v), and with each of the other arguments."""
+    x, v, *others = arguments
     by_state = ca.horzcat(ca.jacobian(stacked, x), ca.jacobian(stacked, v))
-    results = [by_state, ca.jacobian(stacked, inputs), ca.jacobian(stacked, inputs_rate)]
-    names = ["d_outputs_d_state", "d_outputs_d_inputs", "d_outputs_d_inputs_rate"]
+    results = [by_state, *(ca.jacobian(stacked, other) for other in others)]
     dense = [ca.densify(result) for result in results]
-    return ca.Function("motion_outputs_jacobian", arguments, dense, [*STATE_ARGUMENTS], names)
+    derivatives = [f"d_outputs_d_{word}" for word in ("state", *names[2:])]
+    return ca.Function("motion_outputs_jacobian", arguments, dense, names, derivatives)

@@ -43,6 +43,11 @@ class InputField:
     on_request: bool = False
     nonlinear: bool = False
 
+    @property
+    def moves(self) -> bool:
+        """Whether it moves rods or prescribes a length: it cannot jump, and its rate and acceleration matter."""
+        return self.geometry or self.continuous
+
     def entry_count(self, value: Any) -> int:
         """Count the numbers of the input where its table has this value; faulty values have no coefficients."""
         if not self.polynomial or not isinstance(value, list | tuple):

@@ -108,7 +108,7 @@ def _path_faults(motion: InputMotion, declared: InputField, duration: float) -> 
     jumps = [time for time in motion.jumps if 0.0 < time <= duration]
     # A velocity that the motion begins or ends with is no jump of it.
     kinks = [time for time in motion.kinks if 0.0 < time < duration]
-    if jumps and (declared.geometry or declared.continuous):
+    if jumps and declared.moves:
         problem = f"{motion.input} must not jump, and does at {jumps[0]:g} s"
         yield Fault(("interpolation",), problem, 'interpolation = "cubic"')
     elif kinks and declared.geometry:

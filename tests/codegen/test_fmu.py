@@ -50,7 +50,7 @@ duration = 0.1
 step = 2e-3
 """
 PERIOD = 5e-3
-STEPS = 3
+STEPS = 4
 
 
 @pytest.fixture(scope="module")
@@ -108,19 +108,31 @@ def initialised(slave, inputs=None, described=None):
     return slave
 
 
-def by_library(model, library, courses):
-    """Outputs after each communication step: (inputs at its start, rates in it)."""
+def by_library(model, library, moves, courses):
+    """Outputs after each communication step: of (value, rate) of the inputs at its start and at its end.
+
+    What does not move has the value of the end; what moves, an acceleration in each half.
+    """
     outputs = motion_outputs(model).function
-    state = library.rest(courses[0][2], library.solve(courses[0][2]).x)
+    before = courses[0][0][0]
+    state = library.rest(before, library.solve(before).x)
     memory = library.step_memory()
     seen = []
-    for inputs, rate, _ in courses:
-        moved = inputs.copy()
-        for _ in range(STEPS):
-            taken = library.step(state, PERIOD / STEPS, moved, rate, memory=memory)
+    for (value, rate), (end_value, end_rate) in courses:
+        moved = np.where(moves, value, end_value)
+        half = PERIOD / 2
+        # Values and rates at the end by accelerations in both halves.
+        matrix = [[3 * half**2 / 2, half**2 / 2], [half, half]]
+        accelerations = np.linalg.solve(matrix, [end_value - moved - PERIOD * rate, end_rate - rate])
+        for k in range(STEPS):
+            acceleration = accelerations[k // (STEPS // 2)]
+            dt = PERIOD / STEPS
+            taken = library.step(state, dt, moved, rate, acceleration, memory=memory)
             assert taken.done
             state = taken.state
-            moved = moved + PERIOD / STEPS * rate
+            moved = moved + dt * rate + dt**2 / 2 * acceleration
+            rate = rate + dt * acceleration
+        assert_allclose(moved, end_value, rtol=0, atol=1e-15)
         seen.append(outputs(state.x, state.v, moved, rate).full().ravel())
     return np.array(seen)
 
@@ -145,10 +157,13 @@ def test_motion_vs_library(model, library, described, instance):
     # A load jumps to its value, a base moves there.
     moves = np.zeros(len(inputs), dtype=bool)
     moves[model.inputs.slices["finger.base.position"]] = True
-    start = np.where(moves, inputs, given)
-    first_rate = np.where(moves, (given - inputs) / PERIOD, 0.0)
-    courses = [(start, first_rate, inputs), (given, np.zeros(len(inputs)), inputs)]
-    wanted = by_library(model, library, courses)
+    # Parabolas through the last values: from rest, then one that ends where the value stays.
+    mean_rate = np.where(moves, (given - inputs) / PERIOD, 0.0)
+    courses = [
+        ((inputs, 0.0 * inputs), (given, 2.0 * mean_rate)),
+        ((given, 2.0 * mean_rate), (given, -0.5 * mean_rate)),
+    ]
+    wanted = by_library(model, library, moves, courses)
 
     initialised(instance)
     instance.setFloat64(references(described, "input"), given.tolist())

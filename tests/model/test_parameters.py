@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -11,7 +10,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import (
-    ExportError,
     Model,
     Scene,
     SceneError,
@@ -20,7 +18,6 @@ from cosserat_casadi import (
     modes_of,
     scene_from_dict,
     solve,
-    write_fmu,
 )
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
@@ -712,13 +709,6 @@ def test_axes_that_keep_planar_rods_in_their_plane_are_refused() -> None:
     with pytest.raises(SceneError, match="keeps planar rods in their plane") as refused:
         build(scene_from_dict({**given, "parameters": names}))
     assert [problem.where for problem in refused.value.problems] == [names[0], names[2]]
-
-
-def test_an_fmu_is_refused_with_what_to_do(tmp_path: Path) -> None:
-    model = model_of("density")
-    with pytest.raises(ExportError, match="an FMU has inputs alone"):
-        write_fmu(model, tmp_path / "wire.fmu", "wire")
-    assert list(tmp_path.iterdir()) == []
 
 
 def with_kind(load: LoadRecord, rod: dict[str, Any], *parameters: str) -> Scene:

@@ -18,7 +18,7 @@ from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
-from cosserat_casadi.codegen.fmu import check_fmu, refuse_parameters, write_fmu
+from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
 from cosserat_casadi.codegen.motion_parts import check_motion
 from cosserat_casadi.codegen.names import scene_names
 from cosserat_casadi.codegen.stability import check_stability
@@ -84,8 +84,6 @@ def export(
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
-    if fmu is not None:
-        refuse_parameters(exported_scene)
     scene_names(name, exported_scene)
     if stability:
         check_stability(build(exported_scene, discretise(exported_scene, 1, 2)))

@@ -1,0 +1,68 @@
+/* How inputs move over a communication step.
+
+   Loads are held: they are all along what was given. What moves rods or prescribes a length needs rates and
+   accelerations, and the importer gives a value for the end of each communication step alone. The rate at the end of a
+   step is that of the parabola through the last three values; the first step begins at rest, and its parabola without a
+   rate. Two accelerations, one in each half of the step, lead from value and rate at its start to those at its end. So
+   neither values nor rates jump; on a smooth path they are right to the third and to the second power of the step. */
+
+/* Values at both ends of a communication step, and rates. */
+typedef struct {
+  const double *from;
+  const double *from_rate;
+  const double *to;
+  const double *to_rate;
+  double duration; /* s */
+} course;
+
+/* Inputs at one time, with what they do in the integrator's step that begins there. */
+typedef struct {
+  double value[INPUT_ROOM];
+  double rate[INPUT_ROOM];
+  double acceleration[INPUT_ROOM];
+} moving_inputs;
+
+/* Share of the change of the mean rate that the rate at the end of a step is beyond its mean rate. */
+static double lead_of_rate(const snapshot *held, double duration) {
+  return held->last_step > 0 ? duration / (duration + held->last_step) : 1;
+}
+
+static double rate_at_end(const snapshot *held, int input, double duration) {
+  const double now = held->now.inputs[input];
+  const double mean = (held->given[input] - now) / duration;
+  const double mean_before = held->last_step > 0 ? (now - held->before.inputs[input]) / held->last_step : 0;
+  return mean + lead_of_rate(held, duration) * (mean - mean_before);
+}
+
+/* Inputs so many seconds after the start of a communication step, as its first or its second half has them. */
+static void inputs_on(const course *way, double time, int is_second_half, moving_inputs *at) {
+  const double left = way->duration - time;
+  for (int i = 0; i < FMU_INPUTS; i++) {
+    at->value[i] = way->to[i];
+    at->rate[i] = 0;
+    at->acceleration[i] = 0;
+    if (!MOVES[i]) continue;
+    const double mean_rate = (way->to[i] - way->from[i]) / way->duration;
+    const double sooner = 4 * (mean_rate - way->from_rate[i]) / way->duration;
+    const double mean = (way->to_rate[i] - way->from_rate[i]) / way->duration;
+    if (is_second_half) {
+      const double acceleration = 3 * mean - sooner;
+      at->value[i] = way->to[i] - left * (way->to_rate[i] - left / 2 * acceleration);
+      at->rate[i] = way->to_rate[i] - left * acceleration;
+      at->acceleration[i] = acceleration;
+    } else {
+      const double acceleration = sooner - mean;
+      at->value[i] = way->from[i] + time * (way->from_rate[i] + time / 2 * acceleration);
+      at->rate[i] = way->from_rate[i] + time * acceleration;
+      at->acceleration[i] = acceleration;
+    }
+  }
+}
+
+/* Steps of the integrator in a communication step: as many in each half where an input moves. */
+static int count_steps(const snapshot *held, double duration) {
+  int halves = 1;
+  for (int i = 0; i < FMU_INPUTS; i++) halves = MOVES[i] ? 2 : halves;
+  const double count = ceil(duration / halves / held->step - 1e-9);
+  return count < 1 ? halves : halves * (int)count;
+}
