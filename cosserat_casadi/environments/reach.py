@@ -43,7 +43,8 @@ class _Episode:
     Attributes:
         state: of the motion.
         inputs: stacked.
-        inputs_rate: with which they moved at last, units per second.
+        inputs_rate: with which they move by now, units per second.
+        aimed: where the last action wants them.
         target: where the tip is to be, m, shape (3,).
         memory: of the steps in C.
         periods: that have passed.
@@ -52,6 +53,7 @@ class _Episode:
     state: StepState
     inputs: FloatArray
     inputs_rate: FloatArray
+    aimed: FloatArray
     target: FloatArray
     memory: StepMemory
     periods: int = 0
@@ -60,10 +62,13 @@ class _Episode:
 class ReachEnvironment(gymnasium.Env[Observation, Observation]):
     """Bring the tip of a rod to a target by the inputs that the scene bounds.
 
-    An action says where those inputs are to be at the end of a control period, from −1 at the lower bound to 1 at the
-    upper one; they move there linearly. A base or a length whose speed jumps so exerts no inertia forces by the jump.
-    An observation stacks position and velocity of the tip (m, m/s), the inputs in
-    the same shares as actions, and the target (m). The reward is minus the distance to the target over the length of
+    An action says where those inputs are to be, from −1 at the lower bound to 1 at the upper one. Tensions and other
+    loads move there linearly in a control period. The rate of a base or a length does not jump: it changes linearly, to
+    what would have led from the action before to this one in the period. At its end the base or the length is half way
+    between the two, and it is never beyond its bounds.
+
+    An observation stacks position and velocity of the tip (m, m/s), the inputs in the same shares as actions, the last
+    actions of bases and lengths, and the target (m). The reward is minus the distance to the target over the length of
     the rod. An episode is truncated at its duration, and terminated where a step cannot be computed: ``info["status"]``
     is the sentence that says why, ``info["distance"]`` the distance in m.
 
@@ -110,6 +115,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         self.rod = _rod_name(described, rod)
         self.model = build(described, solve_scene(described).model.discretisation, moving=True)
         self._acting = _acting_inputs(self.model)
+        self._moves = _moving_entries(self.model)
+        self._late = self._moves[self._acting.indices]
         self.library = _compiled(self.model)
         self._outputs = motion_outputs(self.model)
         self._seen = _seen_entries([output.name for output in self._outputs.entries], self.rod)
@@ -121,7 +128,8 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         actions = len(self._acting.indices)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (actions,), dtype=np.float64)
         # What is seen is finite, and has no bounds that are known beforehand.
-        self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (9 + actions,), dtype=np.float64)
+        seen = 9 + actions + int(self._late.sum())
+        self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (seen,), dtype=np.float64)
         self._episode = self._begun(self.model.pack(), np.zeros(3))
 
     def reset(
@@ -154,17 +162,21 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         """
         shares = np.clip(_finite(action, len(self._acting.indices), "action"), -1.0, 1.0)
         episode = self._episode
-        aimed = episode.inputs.copy()
+        aimed = episode.aimed.copy()
         aimed[self._acting.indices] = self._from_share(shares)
-        rate = (aimed - episode.inputs) / (self._steps * self.dt)
-        episode.inputs_rate = rate
+        asked_rate = (aimed - episode.aimed) / self.period
+        acceleration = np.where(self._moves, (asked_rate - episode.inputs_rate) / self.period, 0.0)
+        episode.inputs_rate = np.where(self._moves, episode.inputs_rate, asked_rate)
+        episode.aimed = aimed
         episode.periods += 1
         for _ in range(self._steps):
-            taken = self.library.step(episode.state, self.dt, episode.inputs, rate, memory=episode.memory)
+            path = episode.inputs, episode.inputs_rate, acceleration
+            taken = self.library.step(episode.state, self.dt, *path, memory=episode.memory)
             if not taken.done:
                 return self._observation(), self._reward(), True, False, self._info(taken.status.value)
             episode.state = taken.state
-            episode.inputs = episode.inputs + self.dt * rate
+            episode.inputs = episode.inputs + self.dt * (episode.inputs_rate + self.dt / 2.0 * acceleration)
+            episode.inputs_rate = episode.inputs_rate + self.dt * acceleration
         truncated = episode.periods >= self._periods
         return self._observation(), self._reward(), False, truncated, self._info("")
 
@@ -174,7 +186,7 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         state = self.library.rest(inputs, found.x) if found.converged else None
         if state is None:
             raise RuntimeError(f"no episode can begin: {found.outcome.value}")
-        return _Episode(state, inputs, np.zeros_like(inputs), target, self.library.step_memory())
+        return _Episode(state, inputs, np.zeros_like(inputs), inputs, target, self.library.step_memory())
 
     def _random_target(self) -> FloatArray:
         """The tip in equilibrium at random inputs within the bounds, m."""
@@ -193,6 +205,12 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         values: FloatArray = self._acting.lower + (share + 1.0) / 2.0 * (self._acting.upper - self._acting.lower)
         return values
 
+    def _share(self, inputs: FloatArray) -> FloatArray:
+        """Shares −1 to 1 that the inputs that act are at in their ranges."""
+        ranges = self._acting.upper - self._acting.lower
+        share: FloatArray = 2.0 * (inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
+        return share
+
     def _tip(self) -> FloatArray:
         """Position and velocity of the tip, m and m/s, shape (6,)."""
         episode = self._episode
@@ -201,9 +219,9 @@ class ReachEnvironment(gymnasium.Env[Observation, Observation]):
         return np.asarray(outputs.full().ravel()[self._seen])
 
     def _observation(self) -> Observation:
-        ranges = self._acting.upper - self._acting.lower
-        share = 2.0 * (self._episode.inputs[self._acting.indices] - self._acting.lower) / ranges - 1.0
-        return np.concatenate([self._tip(), share, self._episode.target])
+        episode = self._episode
+        actions = self._share(episode.aimed)[self._late]
+        return np.concatenate([self._tip(), self._share(episode.inputs), actions, episode.target])
 
     def _distance(self) -> float:
         return float(np.linalg.norm(self._tip()[:3] - self._episode.target))
@@ -259,6 +277,14 @@ def _acting_inputs(model: Model) -> DecisionVariables:
         raise SceneError(*problems)
     moves = bounded.upper > bounded.lower
     return DecisionVariables(bounded.indices[moves], bounded.lower[moves], bounded.upper[moves])
+
+
+def _moving_entries(model: Model) -> npt.NDArray[np.bool_]:
+    """Which entries of the stacked inputs move rods or prescribe a length."""
+    moves = np.zeros(model.inputs.size, dtype=bool)
+    for entry, entries in model.inputs:
+        moves[entries] = entry.declared.moves
+    return moves
 
 
 def _compiled(model: Model) -> Compiled:

@@ -167,8 +167,8 @@ def test_base_and_length_that_move_vs_simulator(
         assert np.abs(exact[rows] - at_rest[rows]).max() > least
         assert np.all(orders(errors) > 1.7), (quantity, errors)
         assert errors[-1] < accuracy
-    # The base itself is where the importer has put it, and as fast as the parabola through the last values.
-    assert_allclose(ends[-1][names.index("flexor.tension")], exact[names.index("flexor.tension")], rtol=2e-3, atol=0)
+    tension = names.index("flexor.tension")
+    assert_allclose(ends[-1][tension], exact[tension], rtol=2e-3, atol=0)
 
 
 def test_parameters_are_seen_and_hold_from_the_start_on(begin: Begin, described: ModelDescription) -> None:
@@ -198,17 +198,16 @@ def test_derivatives_at_the_start_vs_differences(begin: Begin, described: ModelD
 
 
 def after_steps(
-    slave: FMU3Slave, described: ModelDescription, periods: Sequence[float], last: dict[str, float]
+    slave: FMU3Slave, described: ModelDescription, periods: Sequence[float], name: str, value: float
 ) -> None:
-    """Communication steps of several lengths, the last of which ends at values by name."""
-    references_of_last = [reference(described, name) for name in last]
+    """Communication steps of several lengths, the last of which ends at a value of one input."""
     base = reference(described, "finger.base.position.x")
     time = 0.0
     for k, period in enumerate(periods):
         if k < len(periods) - 1:
             slave.setFloat64([base], [1e-4 * (k + 1) ** 2])
         else:
-            slave.setFloat64(references_of_last, list(last.values()))
+            slave.setFloat64([reference(described, name)], [value])
         slave.doStep(time, period)
         time += period
 
@@ -224,11 +223,11 @@ def test_derivatives_of_a_step_vs_differences(
     sides = []
     for side in (1.0, -1.0):
         slave = begin(SOFTER)
-        after_steps(slave, described, periods, {name: value + side * span})
+        after_steps(slave, described, periods, name, value + side * span)
         sides.append(outputs_of(slave, described))
     wanted = (sides[0] - sides[1]) / (2 * span)
     slave = begin(SOFTER)
-    after_steps(slave, described, periods, {name: value})
+    after_steps(slave, described, periods, name, value)
     exact = slave.getDirectionalDerivative(references(described, "output"), [reference(described, name)], [1.0])
     assert np.abs(wanted).max() > 1.0
     assert_allclose(exact, wanted, rtol=1e-5, atol=1e-6 * np.abs(wanted).max())

@@ -1,6 +1,7 @@
 """The environment of Gymnasium over the step in C."""
 
 import dataclasses
+import itertools
 
 import gymnasium
 import numpy as np
@@ -11,6 +12,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 from cosserat_casadi import parse_scene
 from cosserat_casadi.environments import REACH, ReachEnvironment
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.numerics.collocation import radau
+from cosserat_casadi.numerics.integration import StepOutcome, StepSettings
+from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.time_steps import integrate
+from tests.codegen.motions import equations
 
 SCENE = """
 schema = 1
@@ -173,3 +179,72 @@ def test_a_target_that_is_none_is_refused(environment):
 def test_times_must_be_positive():
     with pytest.raises(ValueError, match="must be > 0"):
         ReachEnvironment(parse_scene(SCENE + BOUNDS), period=0.0)
+
+
+MOVING = (
+    SCENE
+    + """
+[[bounds]]
+input = "finger.base.position"
+lower = [-0.02, 0.0, 0.0]
+upper = [0.02, 0.0, 0.0]
+[[bounds]]
+input = "flexor.tension"
+lower = 0.0
+upper = 1.0
+"""
+)
+
+
+@pytest.fixture(scope="module")
+def on_slide(quick_compiler):
+    """A finger whose base slides."""
+    scene = 'inputs = ["finger.base.position", "flexor.tension"]\n' + MOVING
+    return ReachEnvironment(parse_scene(scene), duration=0.5)
+
+
+def test_gymnasium_finds_no_fault_in_a_base_that_slides(on_slide):
+    assert on_slide.observation_space.shape == (12,)
+    check_env(on_slide, skip_render_check=True)
+
+
+def test_a_base_moves_with_a_rate_that_does_not_jump(on_slide):
+    """Half way between the last two actions at the end of a period, with the rate that leads from one to the other."""
+    on_slide.reset(seed=0)
+    base = on_slide.model.inputs.slices["finger.base.position"].start
+    aims = [0.0, 0.5, -1.0, 1.0, 1.0]
+    for before, aim in itertools.pairwise(aims):
+        observation, *_ = on_slide.step(np.array([aim, 0.0]))
+        episode = on_slide._episode
+        assert_allclose(episode.inputs[base], 0.02 * (before + aim) / 2, rtol=0, atol=1e-14)
+        assert_allclose(episode.inputs_rate[base], 0.02 * (aim - before) / on_slide.period, rtol=0, atol=1e-12)
+        assert_allclose(observation[6:9], [(before + aim) / 2, 0.0, aim], rtol=0, atol=1e-12)
+
+
+def test_a_base_that_slides_vs_simulator(on_slide):
+    """The rod lags behind the base by its inertia: the same motion as by the method of order five in Python."""
+    on_slide.reset(seed=0)
+    model = on_slide.model
+    base = model.inputs.slices["finger.base.position"].start
+    period = on_slide.period
+    state = on_slide._episode.state
+    now = Instant(0.0, state.x, state.v, state.a)
+    aims = [0.0, 0.5, 1.0, 0.2]
+    inputs = model.pack()
+    rate = np.zeros_like(inputs)
+    actions = [np.array([aim, -0.8]) for aim in aims[1:]]
+    for (before, aim), action in zip(itertools.pairwise(aims), actions, strict=True):
+        on_slide.step(action)
+        acceleration = np.zeros_like(inputs)
+        acceleration[base] = (0.02 * (aim - before) / period - rate[base]) / period
+        system = equations(model, inputs, rate, acceleration)
+        settings = StepSettings(np.full(model.size, 1e-9), first=period / 50, longest=period / 10)
+        moved = integrate(system, now, period, radau(3), settings)
+        assert moved.outcome is StepOutcome.COMPLETED
+        now = dataclasses.replace(moved.end, time=0.0)
+        inputs = inputs + period * rate + period**2 / 2 * acceleration
+        rate = rate + period * acceleration
+    found = on_slide._episode
+    assert np.abs(now.x - state.x).max() > 1e-2
+    assert_allclose(found.state.x, now.x, rtol=0, atol=2e-3 * np.abs(now.x).max())
+    assert_allclose(found.state.v, now.v, rtol=0, atol=5e-3 * np.abs(now.v).max())
