@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi import Model, Solution, solve
+from cosserat_casadi import Model, Solution, build, solve
 from cosserat_casadi.control import lifted
 from examples.trace_circle import LENGTH, finger
 
@@ -27,9 +27,15 @@ def robot() -> tuple[Model, Solution]:
     return model, solve(model, raise_on_failure=True)
 
 
-def arrival(model: Model, x: ca.MX, tensions: ca.MX) -> ca.MX:
+def robot_with_parameters(*names: str) -> Model:
+    """The same finger, some numbers of which are parameters."""
+    model = finger()
+    return build(model.scene.model_copy(update={"parameters": names}), model.discretisation)
+
+
+def arrival(model: Model, x: ca.MX, tensions: ca.MX, *parameters: ca.MX) -> ca.MX:
     """What is paid for the tip's distance from the goal at the end."""
-    return 100 * ca.sumsqr((model.tip["finger"](x, tensions)[0] - ca.DM(GOAL)) / LENGTH)
+    return 100 * ca.sumsqr((model.tip["finger"](x, tensions, *parameters)[0] - ca.DM(GOAL)) / LENGTH)
 
 
 def effort(tensions: ca.MX, rates: ca.MX) -> ca.MX:
@@ -37,9 +43,15 @@ def effort(tensions: ca.MX, rates: ca.MX) -> ca.MX:
     return 1e-3 * ca.sumsqr(tensions) + 1e-3 * ca.sumsqr(rates)
 
 
-def optimum() -> np.ndarray:
-    """Tensions after each interval, shape (STAGES, 3), N: the lifted rod at the end of the horizon in an Opti."""
+def optimum(other: Model | None = None) -> np.ndarray:
+    """Tensions after each interval, shape (STAGES, 3), N: the lifted rod at the end of the horizon in an Opti.
+
+    Args:
+        other: a finger with other numbers.
+    """
     model, near = robot()
+    if other is not None:
+        model, near = other, solve(other, raise_on_failure=True)
     opti = ca.Opti()
     rates = opti.variable(3, STAGES)
     tensions = [ca.MX(ca.DM(near.inputs))]

@@ -8,34 +8,68 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from cosserat_casadi import Model, Solution, solve
 from tests.control import swing
-from tests.control.quasi_static import IPOPT, LARGEST, RATE, STAGES, STEP, arrival, effort, optimum, robot
+from tests.control.quasi_static import (
+    IPOPT,
+    LARGEST,
+    RATE,
+    STAGES,
+    STEP,
+    arrival,
+    effort,
+    optimum,
+    robot,
+    robot_with_parameters,
+)
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # it says which of its own extras are not installed
     do_mpc = pytest.importorskip("do_mpc")
 
 
+MODULUS = "finger.material.youngs_modulus"
+
+
 @pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
 def test_do_mpc_vs_nlp() -> None:
-    """Its terminal cost sees no algebraic state: the last of one more stage is the arrival, by a weight in time."""
     model, near = robot()
+    assert_plan_is(model, near, None, optimum())
+
+
+@pytest.mark.filterwarnings("ignore::FutureWarning")  # by do-mpc
+def test_do_mpc_with_a_parameter_vs_nlp() -> None:
+    """A parameter of the scene is a variable of the kind _p: the plan is that of a finger with this number."""
+    model = robot_with_parameters(MODULUS)
+    stiffer = model.at({MODULUS: 1.5e6})
+    wanted = optimum(stiffer)
+    assert np.abs(wanted - optimum()).max() > 0.01
+    assert_plan_is(model, solve(stiffer, raise_on_failure=True), 1.5e6, wanted)
+
+
+def assert_plan_is(model: Model, near: Solution, modulus: float | None, expected: np.ndarray) -> None:
+    """A plan of do-mpc that begins at an equilibrium is this one.
+
+    Its terminal cost sees no algebraic state: the last of one more stage is the arrival, by a weight in time.
+    """
     described = do_mpc.model.Model("discrete", symvar_type="MX")
     tensions = described.set_variable("_x", "tensions", shape=(3, 1))
     rates = described.set_variable("_u", "rates", shape=(3, 1))
     x = described.set_variable("_z", "rod", shape=(model.size, 1))
     last = described.set_variable("_tvp", "last")
+    parameters = [] if modulus is None else [described.set_variable("_p", "modulus")]
     described.set_rhs("tensions", tensions + STEP * rates)
-    described.set_alg("equilibrium", model.residual(x, tensions))
+    described.set_alg("equilibrium", model.residual(x, tensions, *parameters))
     described.setup()
     controller = do_mpc.controller.MPC(described)
     controller.settings.n_horizon = STAGES + 1
     controller.settings.t_step = STEP
     controller.settings.nlpsol_opts = IPOPT
-    controller.set_objective(
-        mterm=0 * last, lterm=(1 - last) * effort(tensions, rates) + last * arrival(model, x, tensions)
-    )
+    arrived = arrival(model, x, tensions, *parameters)
+    controller.set_objective(mterm=0 * last, lterm=(1 - last) * effort(tensions, rates) + last * arrived)
     controller.set_rterm(rates=0.0)
+    if modulus is not None:
+        controller.set_uncertainty_values(modulus=np.array([modulus]))
     for side, largest_rate, tension in (("lower", -RATE, 0.0), ("upper", RATE, LARGEST)):
         controller.bounds[side, "_u", "rates"] = largest_rate
         controller.bounds[side, "_x", "tensions"] = tension
@@ -48,7 +82,6 @@ def test_do_mpc_vs_nlp() -> None:
     first = controller.make_step(near.inputs)
     assert controller.solver_stats["success"]
     found = np.array([controller.opt_x_num["_x", k, 0, -1].full()[:, 0] for k in range(1, STAGES + 1)])
-    expected = optimum()
     assert_allclose(found, expected, rtol=0, atol=1e-6)
     assert_allclose(near.inputs + STEP * first[:, 0], expected[0], rtol=0, atol=1e-6)
 
