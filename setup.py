@@ -14,6 +14,7 @@ SHIPPED = (
     "examples/sweeps/*.toml",
     "examples/validation/*.toml",
     "examples/*.py",
+    "examples/swing_free/*.py",
     "examples/*.c",
     "docs/*.md",
     "docs/api/*.md",

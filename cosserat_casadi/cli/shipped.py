@@ -68,8 +68,8 @@ def page_title(page: Path) -> str:
 def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
     """What else an example reads or speaks of.
 
-    Tables that a scene names, and what their folder says of source and licence; scenes and sources in C whose names
-    stand in a program or a table of a sweep.
+    Tables that a scene names, and what their folder says of source and licence; modules that a program imports from a
+    folder beside it; scenes and sources in C whose names stand in a program, its modules, or a table of a sweep.
     """
     if file.suffix == ".toml" and file.parent.name != "sweeps":
         scene = tomllib.loads(file.read_text(encoding="utf-8"))
@@ -77,9 +77,15 @@ def _needs(file: Path, folder: Path) -> tuple[Path, ...]:
         tables = {Path(os.path.normpath(file.parent / entry["file"])) for entry in entries if "file" in entry}
         notices = {table.with_name("README.md") for table in tables}
         return tuple(sorted(tables | {notice for notice in notices if notice.exists()}))
-    words = set(re.findall(r"\w+", file.read_text(encoding="utf-8")))
+    words = _words(file)
+    modules = [module for module in sorted(folder.glob("*/*.py")) if {module.stem, module.parent.name} <= words]
+    words = words.union(*map(_words, modules))
     others = [*sorted(folder.glob("*.toml")), *sorted(folder.glob("*.c"))]
-    return tuple(other for other in others if other.stem in words)
+    return (*modules, *(other for other in others if other.stem in words))
+
+
+def _words(file: Path) -> set[str]:
+    return set(re.findall(r"\w+", file.read_text(encoding="utf-8")))
 
 
 def _title(file: Path) -> str:

@@ -3,6 +3,7 @@ model it swings."""
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 from pathlib import Path
@@ -10,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from swing_free import plans, task, with_motion
+from swing_free.robot import Run, simulate
 
 from cosserat_casadi import CompiledMotionStage, solve
 from cosserat_casadi.codegen.motion_stage import poses_functions
@@ -19,13 +22,13 @@ from tests.codegen.test_load import cached, needs_compiler
 from tests.conftest import ROOT
 
 
-def check_bounds(run: example.Run, first: np.ndarray) -> None:
+def check_bounds(run: Run, first: np.ndarray) -> None:
     """Every plan was found, and tensions and rates are within their bounds."""
     assert all(plan.solved for plan in run.plans)
     assert run.tensions.min() >= 0.0
-    assert run.tensions.max() <= example.LARGEST
-    rates = np.diff(np.vstack([first, run.tensions]), axis=0) / example.STEP
-    assert np.abs(rates).max() <= example.RATE * (1 + 1e-6)
+    assert run.tensions.max() <= task.LARGEST
+    rates = np.diff(np.vstack([first, run.tensions]), axis=0) / task.STEP
+    assert np.abs(rates).max() <= task.RATE * (1 + 1e-6)
 
 
 def not_compiled(stage: MotionStage, name: str) -> CompiledMotionStage:
@@ -36,13 +39,13 @@ def not_compiled(stage: MotionStage, name: str) -> CompiledMotionStage:
 
 def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     """To the end of the move, with a payload that the model does not have."""
-    monkeypatch.setattr(example, "compiled_motion_stage", not_compiled)
-    known, model = example.known_model(), example.moved_model(modes=3)
-    tensions = example.start_tensions(model)
-    near = solve(known, dict(zip(example.TENSIONS, tensions, strict=True)))
-    controller = example.Moving(known, near.x)
-    steps = round((example.SETTLING + example.DURATION) / example.STEP)
-    run = example.simulate(controller, known, model, tensions, steps)
+    monkeypatch.setattr(with_motion, "compiled_motion_stage", not_compiled)
+    known, model = task.known_model(), task.moved_model(modes=3)
+    tensions = task.start_tensions(model)
+    near = solve(known, dict(zip(task.TENSIONS, tensions, strict=True)))
+    controller = with_motion.Moving(known, near.x)
+    steps = round((task.SETTLING + task.DURATION) / task.STEP)
+    run = simulate(controller, known, model, tensions, steps)
     check_bounds(run, tensions)
     gaps = np.linalg.norm(run.tips - run.wanted, axis=1)
     assert gaps.max() < 0.015  # m, of a move by 0.15 m
@@ -54,28 +57,35 @@ def test_the_robot_arrives(monkeypatch: pytest.MonkeyPatch) -> None:
     assert example.summary("motion", run).startswith("| motion | ")
     # Where no plan is found, the tensions are held.
     monkeypatch.setattr(controller, "change", lambda *_: None)
-    measured = example.Measured(run.tips[-1], near.x, 0.0 * near.x, tensions, np.zeros(example.COUNT))
-    held = controller.step(run.plans[-1], measured, np.tile(example.START, (example.STAGES, 1)))
-    assert not held.solved
+    measured = plans.Measured(run.tips[-1], near.x, 0.0 * near.x, tensions, np.zeros(task.COUNT))
+    held = controller.step(run.plans[-1], measured, np.tile(task.START, (task.STAGES, 1)))
+    assert held.fault == "the quadratic problem was not solved"
     assert_allclose(held.first, 0.0, rtol=0, atol=0)
+    nowhere = dataclasses.replace(measured, tensions=np.full(task.COUNT, np.nan))
+    lost = controller.step(run.plans[-1], nowhere, np.tile(task.START, (task.STAGES, 1)))
+    assert lost.fault == "the state at the next step was not found"
+    assert_allclose(lost.first, 0.0, rtol=0, atol=0)
 
 
 @needs_compiler
 @pytest.mark.slow
 def test_only_the_plan_with_motion_stops(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cached(tmp_path, monkeypatch)
-    known, model = example.known_model(), example.moved_model()
-    tensions = example.start_tensions(model)
-    steps = round((example.SETTLING + example.DURATION + 0.6) / example.STEP)
-    runs = {
-        name: example.simulate(controller, known, model, tensions, steps)
-        for name, controller in example.controllers(known, tensions).items()
-    }
+    known, model = task.known_model(), task.moved_model()
+    tensions = task.start_tensions(model)
+    steps = round((task.SETTLING + task.DURATION + 0.6) / task.STEP)
+    controllers = example.controllers(known, tensions)
+    runs = {name: simulate(controller, known, model, tensions, steps) for name, controller in controllers.items()}
     for run in runs.values():
         check_bounds(run, tensions)
     assert runs["motion"].swing < 0.008  # m
     assert runs["equilibria"].swing > 0.05
     assert np.linalg.norm(runs["motion"].tips[-1] - runs["motion"].wanted[-1]) < 1e-3
+    size = known.size
+    nowhere = plans.Measured(task.START, np.zeros(size), np.zeros(size), np.full(4, np.nan), np.zeros(4))
+    resting = controllers["equilibria"]
+    lost = resting.step(resting.begin(), nowhere, np.tile(task.START, (task.STAGES, 1)))
+    assert lost.fault == "the equilibrium at the measured tensions was not found"
 
 
 @needs_compiler
