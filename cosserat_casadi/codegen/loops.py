@@ -16,8 +16,9 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.codegen.numbered import Argument, Numbers, Program, Step, Value
 from cosserat_casadi.codegen.routines import TOGETHER
-from cosserat_casadi.codegen.steps import Argument, Numbers, Program, Step, UnknownInstructionError, Value, program_of
+from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 
 FEW_PIECES = 8
 """Pieces of other vectors of which a vector is put together one by one."""

@@ -14,8 +14,9 @@ import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.loops import in_loops, written
+from cosserat_casadi.codegen.numbered import Program
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
-from cosserat_casadi.codegen.steps import Program, UnknownInstructionError, program_of
+from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
 from cosserat_casadi.codegen.streams import Line, Stream, names_of_part, scalars, shared, stacked
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]

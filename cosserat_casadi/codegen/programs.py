@@ -15,16 +15,8 @@ import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.codegen.steps import (
-    Argument,
-    Numbers,
-    Origins,
-    Program,
-    Step,
-    Value,
-    column,
-    entrywise,
-)
+from cosserat_casadi.codegen.numbered import Argument, Numbers, Origins, Program, Step, Value, column
+from cosserat_casadi.codegen.steps import entrywise
 from cosserat_casadi.codegen.streams import Stream, names_of_part, shared
 
 CONSTANT = -1

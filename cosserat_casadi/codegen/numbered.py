@@ -1,0 +1,200 @@
+"""What a function as steps on numbered entries is made of: values, steps, what the numbers stand for.
+
+Every number that is computed has a number of its own: a matrix says of each of its entries which one it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[np.int64]
+
+SMALL = 400
+"""Instructions up to which a step is written without a loop."""
+
+
+@dataclass(frozen=True, eq=False)
+class Value:
+    """A matrix as entries that were computed before.
+
+    Attributes:
+        pattern: sparsity.
+        numbers: for each stored entry the number of what was computed; 0 for a zero.
+    """
+
+    pattern: ca.Sparsity
+    numbers: Numbers
+
+    @property
+    def transposed(self) -> Value:
+        """The transpose."""
+        return _of_matrix(self._matrix.T)
+
+    def projected(self, pattern: ca.Sparsity) -> Value:
+        """The entries of another pattern."""
+        return _of_matrix(ca.project(self._matrix, pattern))
+
+    @property
+    def dense(self) -> Value:
+        """All entries."""
+        return self.projected(ca.Sparsity.dense(*self.pattern.shape))
+
+    @property
+    def _matrix(self) -> ca.DM:
+        return ca.DM(self.pattern, self.numbers.astype(np.float64))
+
+
+def _of_matrix(matrix: ca.DM) -> Value:
+    numbers = np.array(matrix.nonzeros(), dtype=np.int64)
+    return Value(matrix.sparsity(), numbers)
+
+
+def column(numbers: Numbers) -> Value:
+    """A column of these entries."""
+    return Value(ca.Sparsity.dense(len(numbers)), numbers)
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A computation.
+
+    Attributes:
+        function: what is computed.
+        operands: its arguments.
+        results: its results, each with numbers one after the other.
+        instructions: length without a loop.
+        called: whether it stays a function of its own.
+        operation: CasADi's number of what is done entry by entry; None for any other computation.
+    """
+
+    function: ca.Function
+    operands: list[Value]
+    results: list[Value]
+    instructions: float
+    called: bool = False
+    operation: int | None = None
+
+    def of(self, arguments: Sequence[ca.MX]) -> list[ca.MX]:
+        """The results for these arguments."""
+        return list(self.function.call(arguments, not self.called, self.called))
+
+    @property
+    def small(self) -> bool:
+        """Whether it is written without a loop."""
+        return self.instructions <= SMALL
+
+
+class Origins:
+    """What the numbers stand for: entry after entry of arguments, constants and results of steps.
+
+    Number 0 is a zero, and the first of these things.
+    """
+
+    def __init__(self) -> None:
+        # Arrays of things with room for more, which is doubled when it is full.
+        self._first = np.zeros(64, dtype=np.int64)
+        self._constant = np.zeros(64, dtype=np.bool_)
+        self._values: list[list[float] | None] = []
+        self.sizes: list[int] = []
+        self._count = 0
+        self.add(ca.Sparsity.dense(1), [0.0])
+
+    def add(self, pattern: ca.Sparsity, constants: list[float] | None = None) -> Value:
+        """Number the entries of one more thing, of constants with their values."""
+        thing = len(self.sizes)
+        if thing == len(self._first):
+            self._first = np.concatenate([self._first, np.zeros_like(self._first)])
+            self._constant = np.concatenate([self._constant, np.zeros_like(self._constant)])
+        self._first[thing] = self._count
+        self._constant[thing] = constants is not None
+        self._values.append(constants)
+        self.sizes.append(pattern.nnz())
+        numbers = np.arange(self._count, self._count + pattern.nnz())
+        self._count += pattern.nnz()
+        if constants is not None:
+            numbers[np.array(constants) == 0.0] = 0
+        return Value(pattern, numbers)
+
+    @property
+    def count(self) -> int:
+        """How many numbers there are."""
+        return self._count
+
+    def is_constant(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
+        """Which of these are constants."""
+        return self._constant[self._things(numbers)]
+
+    def numbers(self, thing: int) -> Numbers:
+        """Numbers of all entries of a thing."""
+        first = int(self._first[thing])
+        return np.arange(first, first + self.sizes[thing])
+
+    def entries(self, thing: int, numbers: Numbers) -> Numbers:
+        """Which entries of a thing these are."""
+        return numbers - int(self._first[thing])
+
+    def owners(self, numbers: Numbers) -> Numbers:
+        """For each number the thing that it is an entry of; 0 for all constants."""
+        owners = self._things(numbers)
+        return np.where(self._constant[owners], 0, owners)
+
+    def _things(self, numbers: Numbers) -> Numbers:
+        return np.searchsorted(self._first[: len(self.sizes)], numbers, side="right") - 1
+
+    def is_whole(self, numbers: Numbers) -> bool:
+        """Whether these are all entries of one thing in their order, or constants."""
+        if len(numbers) == 0:
+            return True
+        owners = self.owners(numbers)
+        owner = int(owners[0])
+        if np.any(owners != owner):
+            return False
+        return owner == 0 or (len(numbers) == self.sizes[owner] and bool(np.all(np.diff(numbers) == 1)))
+
+    def constants(self, numbers: Numbers) -> list[float]:
+        """Values of constants."""
+        values = []
+        for thing, number in zip(self._things(numbers).tolist(), numbers.tolist(), strict=True):
+            of_thing = self._values[thing]
+            assert of_thing is not None, "asked for of constants alone"
+            values.append(of_thing[number - int(self._first[thing])])
+        return values
+
+
+@dataclass(frozen=True, eq=False)
+class Argument:
+    """An argument of a program.
+
+    Attributes:
+        name: what it is called.
+        pattern: sparsity.
+        pieces: its entries in columns that lie one after the other, each numbered as one thing.
+    """
+
+    name: str
+    pattern: ca.Sparsity
+    pieces: list[Value]
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A function as steps.
+
+    Attributes:
+        name: what it is called.
+        origins: what the numbers stand for.
+        arguments: its arguments.
+        steps: its computations in their order.
+        results: its results by name.
+    """
+
+    name: str
+    origins: Origins
+    arguments: list[Argument]
+    steps: list[Step]
+    results: dict[str, Value]
