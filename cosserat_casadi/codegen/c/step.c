@@ -28,7 +28,7 @@ static void matrices_at(const instant *at, real *matrices, workspace *work) {
 
 /* Derivatives of the residual by the inputs, by their rates, by their accelerations, N x INPUTS each. */
 static void input_matrices_at(const instant *at, real *matrices, workspace *work) {
-  memset(matrices, 0, ORDERS * N * SOLVER_INPUT_ROOM * sizeof *matrices);
+  memset(matrices, 0, (int)ORDERS * N * SOLVER_INPUT_ROOM * sizeof *matrices);
   evaluate_motion(MOTION_INPUT_PARTS, MOTION_INPUT_PART_COUNT, at, matrices, work);
 }
 

@@ -148,7 +148,7 @@ static int differentiate_part(const step_start *start, const real *unknowns, con
     if (!all_finite(work->matrices[s], MATRICES * STAGE_ENTRIES)) return 0;
     if (!own->by_inputs[0] && !own->by_inputs[1] && !own->by_inputs[2]) continue;
     input_matrices_at(&work->at, work->input_matrices[s], work);
-    if (!all_finite(work->input_matrices[s], ORDERS * N * INPUTS)) return 0;
+    if (!all_finite(work->input_matrices[s], (int)ORDERS * N * INPUTS)) return 0;
   }
   if (!factorise_stages(start->size, &factors, work)) return 0;
   if (own->by_start) differentiate_by_start(start->size, &factors, own->by_start, work);
