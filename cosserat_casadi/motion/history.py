@@ -13,6 +13,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.mean_frames import MeanFrames
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
@@ -21,6 +22,7 @@ from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
 from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
+from cosserat_casadi.numerics.mean_frame import MeanFrame
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
 from cosserat_casadi.numerics.time_steps import integrate
@@ -39,8 +41,14 @@ AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
 
-def equations_of(model: Model, piece: Piece) -> MotionEquations:
-    """The equations of motion of a model while its inputs follow one piece of their paths."""
+def equations_of(model: Model, piece: Piece, frames: MeanFrames | None = None) -> MotionEquations:
+    """The equations of motion of a model while its inputs follow one piece of their paths.
+
+    Args:
+        model: the model.
+        piece: of its inputs.
+        frames: the mean frames of a rod that flies free, which save iterations; None for none.
+    """
     inverse_dynamics = RepeatedCall(model.inverse_dynamics)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
@@ -50,7 +58,13 @@ def equations_of(model: Model, piece: Piece) -> MotionEquations:
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *piece.at(t))
         return stiffness.full(), damping.full(), mass.full()
 
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+    if frames is None:
+        return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
+
+    def mean_frame(t: float, x: FloatArray) -> MeanFrame:
+        return frames.at(x, piece.at(t).value)
+
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, mean_frame=mean_frame)
 
 
 @dataclass(frozen=True)
@@ -183,12 +197,13 @@ def integrated(
     """
     cables = SlackCables(model)
     keeper = MomentumKeeper(model) if flies_free(model) else None
+    frames = MeanFrames(model) if flies_free(model) else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     phases = cables.first_phases(x, pieces[0].at(at.time).value)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
-        plain = equations_of(model, piece)
+        plain = equations_of(model, piece, frames)
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.

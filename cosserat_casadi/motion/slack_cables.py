@@ -9,7 +9,7 @@ that goes with it. An elastic cable takes nothing: its tension grows from zero.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -97,7 +97,7 @@ class SlackCables:
                     stiffness[row, row] = cable.softness
             return stiffness, damping, mass
 
-        return MotionEquations(plain.differential, residual, jacobians)
+        return replace(plain, residual=residual, jacobians=jacobians)
 
     def guards(self, piece: Piece, phases: Phases) -> Guards | None:
         """What has to stay at zero or above: the sag of a slack cable, the tension of a taut one; None without any."""

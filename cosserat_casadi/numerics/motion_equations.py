@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.mean_frame import MeanFrame
 
 
 @dataclass(frozen=True)
@@ -63,12 +64,14 @@ class MotionEquations:
         jacobians: (t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n).
         residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None where one at a time
             is as quick.
+        mean_frame: (t, x) ↦ the mean frame of what flies free; None where nothing does.
     """
 
     differential: npt.NDArray[np.bool_]
     residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
+    mean_frame: Callable[[float, FloatArray], MeanFrame] | None = None
 
     @property
     def size(self) -> int:

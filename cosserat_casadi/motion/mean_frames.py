@@ -1,0 +1,64 @@
+"""Mean frames of a rod that flies free, from its momentum: see :mod:`numerics.mean_frame`."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.numerics.mean_frame import MeanFrame
+
+MOMENTA = 6
+"""Entries of momentum and angular momentum."""
+
+
+class MeanFrames:
+    """The mean frames of a model over its unknowns.
+
+    Args:
+        model: of one rod that flies free, see :func:`motion.momentum.flies_free`.
+    """
+
+    def __init__(self, model: Model) -> None:
+        ((_, entries),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
+        (frame,) = model.discrete.frames.values()
+        self._poses = np.arange(entries.start, entries.stop)
+        self._start = frame.start.quaternion
+        self._rows = RepeatedCall(_momentum_rows(model))
+
+    def at(self, x: FloatArray, inputs: FloatArray) -> MeanFrame:
+        """The mean frame at unknowns of shape (size,) and stacked inputs."""
+        rows = self._rows(x, inputs).reshape(-1, MOMENTA).T
+        # The least rates: none along the norm of the quaternion, which no momentum belongs to.
+        share = np.linalg.pinv(rows[:, self._poses]) @ rows
+        share[:, self._poses] = 0.0
+        return MeanFrame(self._poses, self._turn(x[self._poses]), share)
+
+    def _turn(self, deviation: FloatArray) -> FloatArray:
+        """From world axes to those of the base, and from rates of its quaternion to spins about them, shape (7, 7)."""
+        quaternion = self._start + deviation[3:]
+        quaternion = quaternion / np.linalg.norm(quaternion)
+        turn = np.zeros((7, 7))
+        turn[:3, :3] = quaternion_to_matrix(quaternion).T
+        turn[3:, 3:] = _spins(quaternion).T
+        return turn
+
+
+def _spins(quaternion: FloatArray) -> FloatArray:
+    """A unit quaternion, and its products with i, j and k, one a column, orthonormal, shape (4, 4)."""
+    w, x, y, z = quaternion
+    return np.array([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
+
+
+def _momentum_rows(model: Model) -> ca.Function:
+    """(x, inputs) ↦ derivatives of momentum and angular momentum with velocities, one row below the other."""
+    x, v = (ca.MX.sym(name, model.size) for name in ("x", "v"))
+    inputs = ca.MX.sym("inputs", model.inputs.size)
+    momentum = ca.vertcat(*model.momentum(x, v, inputs, ca.MX.zeros(model.inputs.size)))
+    gradients = ca.jtimes(momentum, v, ca.DM.eye(MOMENTA), True)
+    of_any = ca.graph_substitute(gradients, [v], [ca.MX.zeros(model.size)])
+    return ca.Function("momentum_rows", [x, inputs], [ca.densify(ca.vec(of_any.T))])
