@@ -15,7 +15,7 @@ import pytest
 from cosserat_casadi import scene_from_dict
 from cosserat_casadi.scene import Scene, reference
 from cosserat_casadi.scene.families import Family, contents_of
-from cosserat_casadi.scene.measurements import MeasurementRecord
+from cosserat_casadi.scene.measurement_record import MeasurementRecord
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.rods import SectionRecord
 
