@@ -3,8 +3,8 @@
 The steps have one size, so that the path is a smooth function of the unknowns. A step solves F = 0 at its stages. With
 U, their accelerations and multipliers, and G = ∂F/∂U, dU = −G⁻¹ (F_x dx + F_v dv + F_inputs d inputs + F_p dp), and
 the end of the step and its polynomial are linear in x, v and U. These are derivatives of the path as it is computed,
-not of the equations of motion (E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer
-1993, section I.14).
+not of the equations of motion (E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd
+ed., Springer 1993, section I.14).
 """
 
 from __future__ import annotations
