@@ -1,32 +1,50 @@
-"""Identification of a wire from made-up shapes: time, recovery from random starts and truths, coverage of intervals.
+"""Identification from made-up shapes and motions: time, recovery from random starts and truths, coverage of intervals.
 
     python benchmarks/identification.py              # 1000 tries, about ten minutes on one core
     python benchmarks/identification.py --count 50
+    python benchmarks/identification.py --motion --count 100    # some minutes
     python benchmarks/identification.py --data examples/data/wire_shapes.csv
+    python benchmarks/identification.py --motion --data examples/data/released_strip.csv
 
 Each try draws E, G and two coefficients of the curvature, 20 loads, noise, and where the search begins; it solves for
 the shapes of a rod of twelve unknowns, and says whether the truth is within the 95 % intervals. What is timed is
 `identify`, after the model is built, with the functions of the misfit that it makes: processor time and clock.
-``--data`` writes the shapes of examples/wire_from_shapes.toml.
+``--motion`` does the same with the path of the tip of a cantilever that is let go: E, density and damping are
+found. ``--data`` writes the table of examples/wire_from_shapes.toml, or of examples/released_strip.toml.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from cosserat_casadi import Model, build, identify
+from cosserat_casadi import Model, build, identify, read_scene
 from cosserat_casadi.files import write_atomically
+from cosserat_casadi.identification.cases import Data
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene import scene_from_dict
 from tests.identification.made_up import NAMES, TRUTH, WIRE, measured_shapes
+from tests.identification.released import CANTILEVER, path_of
+from tests.identification.released import TRUTH as TRUE_CANTILEVER
+from tests.identification.released import with_noise as path_with_noise
 
 NOISE = 2e-4
 """Standard deviation of one coordinate, m."""
+
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+
+TRUTH_OF_STRIP = {
+    "strip.material.youngs_modulus": 1.3e6,
+    "strip.material.density": 1080.0,
+    "strip.damping.retardation_time": 0.012,
+}
+"""What the table of examples/released_strip.toml is made with."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +62,30 @@ class Try:
     converged: bool
     processor: float
     clock: float
+
+
+def one_motion(seed: int) -> Try:
+    """Draw a truth, noise and a start for a cantilever that is let go, and identify from there."""
+    rng = np.random.default_rng(seed)
+    rod = {**CANTILEVER["rods"][0], "material": dict(CANTILEVER["rods"][0]["material"])}
+    own = {name: value * 1.5 ** rng.uniform(-1.0, 1.0) for name, value in TRUE_CANTILEVER.items()}
+    truth = {name: value * 1.2 ** rng.uniform(-1.0, 1.0) for name, value in TRUE_CANTILEVER.items()}
+    for name, value in own.items():
+        _, table, key = name.split(".")
+        rod[table] = {**rod[table], key: value}
+    model = build(scene_from_dict({**CANTILEVER, "rods": [rod]}).with_unknowns())
+    return timed(model, path_with_noise(path_of(model, truth), rng), truth)
+
+
+def timed(model: Model, data: Data, truth: Mapping[str, float]) -> Try:
+    """Identify, and compare with the truth."""
+    clock = time.perf_counter()
+    processor = time.process_time()
+    found = identify(model, data)
+    processor = time.process_time() - processor
+    clock = time.perf_counter() - clock
+    true_values = np.array([truth[name] for name in found.labels])
+    return Try((found.shared - true_values) / found.sigma, found.converged, processor, clock)
 
 
 def drawn_truth(rng: np.random.Generator) -> dict[str, float]:
@@ -67,13 +109,7 @@ def one_try(seed: int) -> Try:
     rng = np.random.default_rng(seed)
     model = started(rng)
     shapes = measured_shapes(model, rng, cases=20, noise=NOISE, truth=drawn_truth(rng))
-    clock = time.perf_counter()
-    processor = time.process_time()
-    found = identify(model, shapes.data)
-    processor = time.process_time() - processor
-    clock = time.perf_counter() - clock
-    truth = np.array([shapes.truth[name] for name in found.labels])
-    return Try((found.shared - truth) / found.sigma, found.converged, processor, clock)
+    return timed(model, shapes.data, shapes.truth)
 
 
 def report(tries: list[Try]) -> str:
@@ -115,18 +151,33 @@ def write_data(file: Path) -> None:
     write_atomically(file, ("\n".join(rows) + "\n").encode())
 
 
+def write_released(file: Path) -> None:
+    """The table of examples/released_strip.toml: the path of its tip, in ms and mm."""
+    scene = read_scene(EXAMPLES / "released_strip.toml", ("accuracy.modes=8", "accuracy.nodes=20"))
+    path = path_of(build(scene.with_unknowns()), TRUTH_OF_STRIP, np.linspace(0.0, 1.0, 51))
+    rng = np.random.default_rng(16)
+    lines = ["t_ms,x_mm,z_mm"]
+    for t, x, z in zip(path["t"], path["x"], path["z"], strict=True):
+        x_noise, z_noise = 0.5 * rng.standard_normal(2)
+        lines.append(f"{1e3 * t:.0f},{1e3 * x + x_noise:.2f},{1e3 * z + z_noise:.2f}")
+    write_atomically(file, ("\n".join(lines) + "\n").encode())
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000, help="tries")
     parser.add_argument("--first", type=int, default=0, help="seed of the first try")
+    parser.add_argument("--motion", action="store_true", help="a cantilever that is let go, in place of shapes")
     parser.add_argument("--data", type=Path, help="write the table of the example here, and end")
     arguments = parser.parse_args()
     if arguments.data is not None:
-        write_data(arguments.data)
+        write = write_released if arguments.motion else write_data
+        write(arguments.data)
         return
+    one = one_motion if arguments.motion else one_try
     tries: list[Try] = []
     for number in range(1, arguments.count + 1):
-        tries.append(one_try(arguments.first + number - 1))
+        tries.append(one(arguments.first + number - 1))
         if number % 50 == 0:
             print(f"{number} tries", flush=True)
     print(report(tries))

@@ -62,17 +62,18 @@ CANTILEVER: dict[str, Any] = {
 """A known force holds the tip up, and lets go."""
 
 
-def path_of(model: Model, truth: dict[str, float] = TRUTH) -> dict[str, FloatArray]:
+def path_of(model: Model, truth: dict[str, float] = TRUTH, times: FloatArray = TIMES) -> dict[str, FloatArray]:
     """The path of the tip by the adaptive steps of the simulator, by column."""
     bound = model.at(truth)
     asked = model.scene.simulation
     assert asked is not None
-    simulation = asked.model_copy(update={"times": tuple(TIMES.tolist()), "tolerance": 1e-7})
+    simulation = asked.model_copy(update={"times": tuple(times.tolist()), "tolerance": 1e-7})
+    (rod,) = bound.tip
     motion = simulate(bound, simulation=simulation)
     assert motion.converged, motion.message
-    tips = [bound.tip["rod"](x, inputs)[0].full()[:, 0] for x, inputs in zip(motion.x, motion.inputs, strict=True)]
+    tips = [bound.tip[rod](x, inputs)[0].full()[:, 0] for x, inputs in zip(motion.x, motion.inputs, strict=True)]
     x, _, z = np.array(tips).T
-    return {"t": TIMES, "x": x, "z": z}
+    return {"t": times, "x": x, "z": z}
 
 
 def with_noise(path: dict[str, FloatArray], rng: np.random.Generator) -> dict[str, dict[str, FloatArray]]:

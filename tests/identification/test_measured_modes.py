@@ -131,7 +131,7 @@ def test_derivatives_are_those_of_differences(scene: dict[str, Any]) -> None:
 
 
 def made_up(modulus: float, density: float, rng: np.random.Generator) -> dict[str, dict[str, FloatArray]]:
-    """First three frequencies of the cantilever by the closed form of Euler and Bernoulli, both directions of bending."""
+    """First three frequencies of the cantilever by Euler and Bernoulli, both directions of bending."""
     roots = np.array([ROOT, ROOT, 4.694091132974175])
     heights = np.array([HEIGHT, WIDTH, HEIGHT])
     rigidity = np.sqrt(modulus / density) * heights / np.sqrt(12.0)

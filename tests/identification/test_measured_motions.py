@@ -277,4 +277,4 @@ def test_rows_of_one_motion_are_one_case(model: Model, path: dict[str, FloatArra
     assert len(cases) == 1
     assert cases[0].moves
     assert [datum.time for datum in cases[0].data[0]] == TIMES.tolist()
-    assert NAMES == unknown_layout(model).shared_labels
+    assert unknown_layout(model).shared_labels == NAMES
