@@ -37,6 +37,7 @@ class Row:
         residual: the difference in standard deviations.
         weight: what the loss leaves of it, 1 for all.
         held_out: whether it was predicted and not fitted.
+        time: at which it was measured in its motion, s; None in an equilibrium.
     """
 
     where: str
@@ -48,6 +49,7 @@ class Row:
     residual: float
     weight: float
     held_out: bool
+    time: float | None = None
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from cosserat_casadi.numerics.step import Step, stages_of
 FIRST_STEPS = 16
 """Steps that the longest motion is first divided into; they are halved until their error is small enough."""
 
-COARSE = 1e-3
+COARSE = 1e-2
 """Error of a step, over the length, of the motion that tells how long the first steps are."""
 
 Flags = npt.NDArray[np.bool_]

@@ -353,6 +353,7 @@ class Task:
                     residual=float(residual[i]),
                     weight=1.0 if held_out else float(weights[i]),
                     held_out=held_out,
+                    time=None if np.isnan(datum.time) else datum.time,
                 )
                 rows.append(row)
         return rows

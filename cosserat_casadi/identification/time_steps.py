@@ -11,6 +11,18 @@ from cosserat_casadi.motion.simulate import HALVED, LEFT_BY_HALF
 STEP_ERROR = 0.05
 """Error that the steps leave in any number that was measured, in standard deviations, that is small enough."""
 
+SPARE = 0.2
+"""Share of that error which longer steps aim at."""
+
+ORDER = 4.0
+"""Power of the step that its error goes with, at least."""
+
+MOST_LONGER = 4.0
+"""Most that steps are made longer at once."""
+
+TINY = 1e-9
+"""Error, in standard deviations, below which all are alike."""
+
 MOST_HALVINGS = 9
 """Times that the first steps are halved before they are taken as they are."""
 
@@ -41,8 +53,15 @@ def with_steps(misfit: Misfit, state: MisfitState) -> MisfitState:
     point = state.point
     misfit.motions.suggest_size(case, point.x[case], point.inputs[case], point.p)
     state = misfit.first(point, state.shared, state.own)
+    error = HALVED * _distance_to_half(misfit, state)[0]
+    longer = (SPARE * STEP_ERROR / max(error, TINY)) ** (1.0 / ORDER)
+    if longer > 1.0:
+        misfit.motions.size *= min(longer, MOST_LONGER)
+        state = misfit.first(point, state.shared, state.own)
     for _ in range(MOST_HALVINGS):
         distance, finer = _distance_to_half(misfit, state)
+        if HALVED * distance <= STEP_ERROR:
+            break
         misfit.motions.size /= 2.0
         state = finer
         if LEFT_BY_HALF * distance <= STEP_ERROR:
