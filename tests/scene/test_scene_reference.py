@@ -77,16 +77,19 @@ def completed(example: str) -> dict[str, Any]:
     return tables
 
 
-def records(record: type[Record] = Scene) -> list[type[Record]]:
-    """Every record that a scene may hold."""
+def records(record: type[Record] = Scene, told: dict[str, Any] | None = None) -> list[type[Record]]:
+    """Every record that a scene may hold; a table that kinds of one family share is told once."""
     met = [record]
-    for field in record.model_fields.values():
+    for key, field in record.model_fields.items():
         contents = contents_of(field)
         if isinstance(contents, Family):
+            shared: dict[str, Any] = {}
             for kind in contents.records.values():
-                met += records(kind)
-        elif contents is not None:
+                met += records(kind, shared)
+        elif contents is not None and (told is None or told.get(key) is not contents):
             met += records(contents)
+            if told is not None:
+                told[key] = contents
     return met
 
 
