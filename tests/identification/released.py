@@ -67,7 +67,7 @@ def path_of(model: Model, truth: dict[str, float] = TRUTH, times: FloatArray = T
     bound = model.at(truth)
     asked = model.scene.simulation
     assert asked is not None
-    simulation = asked.model_copy(update={"times": tuple(times.tolist()), "tolerance": 1e-7})
+    simulation = asked.model_copy(update={"times": tuple(times.tolist()), "tolerance": 1e-6})
     (rod,) = bound.tip
     motion = simulate(bound, simulation=simulation)
     assert motion.converged, motion.message

@@ -34,7 +34,7 @@ ROD: dict[str, Any] = {
 
 SCENE: dict[str, Any] = {
     "schema": 1,
-    "accuracy": {"modes": 5, "nodes": 12},
+    "accuracy": {"modes": 4, "nodes": 10},
     "rods": [ROD],
     "loads": [{"name": "push", "kind": "tip_wrench", "rod": "rod", "force": [0.02, 0.0, 0.05]}],
     "measurements": [
