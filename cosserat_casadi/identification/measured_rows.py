@@ -96,9 +96,11 @@ class MeasuredRows:
 
 
 def by_instant(rows: Sequence[tuple[int, list[Datum]]]) -> list[tuple[int, list[Datum]]]:
-    """Rows of cases as rows of instants: what was measured at one time of one case stands together."""
-    instants: dict[tuple[int, float], list[Datum]] = {}
+    """Rows of cases as rows of instants: those of one time, or of one equilibrium, stand together."""
+    instants: dict[tuple[int, float | None], list[Datum]] = {}
     for case, data in rows:
         for datum in data:
-            instants.setdefault((case, datum.time), []).append(datum)
+            # No number that is none equals another.
+            time = None if np.isnan(datum.time) else datum.time
+            instants.setdefault((case, time), []).append(datum)
     return [(case, data) for (case, _), data in instants.items()]
