@@ -84,6 +84,13 @@ STUDIES = (
     ),
     Study("silicone_beam", (Number("block.material.youngs_modulus", "E, kPa", 1e-3, "263.8"),)),
     Study(
+        "silicone_release",
+        (
+            Number("block.material.youngs_modulus", "E, kPa", 1e-3, "263.8"),
+            Number("block.damping.retardation_time", "retardation time, ms", 1e3),
+        ),
+    ),
+    Study(
         "silicone_arm",
         (
             Number("chamber.offset.0", "offset in the plane of bending, mm", 1e3),

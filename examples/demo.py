@@ -33,6 +33,7 @@ SCENES = (
     "rod_in_stream",
     "rubbing_tendon",
     "wire_from_shapes",
+    "released_strip",
     "rod_on_table",
     "rod_over_bar",
     "wire_in_vessel",
@@ -41,7 +42,7 @@ SCENES = (
 
 WITH_TARGETS = ("finger_to_point",)
 
-WITH_MEASUREMENTS = ("wire_from_shapes",)
+WITH_MEASUREMENTS = ("wire_from_shapes", "released_strip")
 
 WITH_FELT_LOADS = ("felt_loads",)
 

@@ -114,7 +114,7 @@ def common_discretisation(
     Returns:
         the discretisation, and the solution of every case on it.
     """
-    chosen = _union([d for solution in alone for d in solution.model.discretisation.values()])
+    chosen = union_of([d for solution in alone for d in solution.model.discretisation.values()])
     for _ in range(ROUNDS):
         together = [solve_case(fixed(free, chosen), values) for free, values in cases]
         met = True
@@ -134,7 +134,7 @@ def _error(solution: Solution) -> float:
     return solution.error_estimate
 
 
-def _union(chosen: Sequence[Discretisation]) -> Discretisation:
+def union_of(chosen: Sequence[Discretisation]) -> Discretisation:
     """The least discretisation with all the modes and nodes of these; one number of modes where rods differ."""
     counts = {len(d.modes) for d in chosen}
     if len(counts) == 1:

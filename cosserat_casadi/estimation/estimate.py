@@ -31,6 +31,7 @@ from cosserat_casadi.identification.cases import Data, read_cases
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.sweep.local import available_cores
 
 CHUNK = 256
@@ -165,6 +166,13 @@ def check_unknowns(scene: scenes.Scene) -> None:
     problems = []
     if not scene.measurements:
         problems.append(Problem("measurements", "missing", "say what was measured"))
+    for i, measurement in enumerate(scene.measurements):
+        if isinstance(measurement, ModeMeasurement):
+            problem = f"{measurement.quantity}: an estimate knows equilibria, and none of their vibrations"
+            problems.append(Problem(f"measurements[{i}].quantity", problem, "use cosserat identify"))
+        elif getattr(measurement, "time", None) is not None:
+            problem = "an estimate knows equilibria, and no motion"
+            problems.append(Problem(f"measurements[{i}].time", problem, "leave it out, or use cosserat identify"))
     if not scene.unknowns:
         problems.append(Problem("unknowns", "missing", "name what is to be felt"))
     for i, unknown in enumerate(scene.unknowns):

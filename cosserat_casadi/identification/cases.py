@@ -1,12 +1,13 @@
-"""From tables to cases: what was measured in each equilibrium.
+"""From tables to cases: what was measured in each equilibrium, or in each motion.
 
 A case is one equilibrium. Rows of one file are cases of their own; measurements of the same file share them. Rows
 whose inputs are equal have one equilibrium and are one case, unless inputs are unknown anew in each row. A column
-``case`` joins rows, of several files too.
+``case`` joins rows, of several files too. Rows with times are of a motion: those with equal inputs are one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,28 +35,34 @@ class Datum:
 
     Attributes:
         where: the row in words.
-        at: abscissa of its section; NaN where the quantity has none.
+        at: abscissa of its section, or number of its mode; NaN where the quantity has neither.
         values: in SI units, shape (entries,); NaN where not measured.
+        time: in the motion of its case, s; NaN where that is an equilibrium.
     """
 
     where: str
     at: float
     values: FloatArray
+    time: float = math.nan
 
 
 @dataclass
 class Case:
-    """What was measured in one equilibrium.
+    """What was measured in one equilibrium, or in one motion.
 
     Attributes:
         where: its first row in words.
         inputs: stacked inputs, shape (size of the inputs,); those that are unknown have the scene's values.
+        moves: whether it is a motion.
         data: rows by the number of their measurement.
+        held_out: whether a row says that the case is to be predicted and not fitted.
     """
 
     where: str
     inputs: FloatArray
+    moves: bool = False
     data: dict[int, list[Datum]] = field(default_factory=dict)
+    held_out: bool = False
 
 
 @dataclass
@@ -69,6 +76,8 @@ class _Row:
         label: its cell in the column that joins rows to cases; None without one.
         set_inputs: values by index in the stacked inputs.
         datum: what was measured; None where it only says what the row is under.
+        moves: whether it is a row of a motion.
+        held_out: whether it says that its case is held out.
     """
 
     measurement: int
@@ -77,6 +86,8 @@ class _Row:
     label: str | None
     set_inputs: dict[int, float]
     datum: Datum | None
+    moves: bool
+    held_out: bool
 
 
 def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = None) -> list[Case]:
@@ -92,10 +103,11 @@ def read_cases(scene: scenes.Scene, layout: InputLayout, data: Data | None = Non
     """
     tables, problems = _tables(scene, data)
     per_row = any(unknown.per_row for unknown in scene.unknowns)
+    duration = 0.0 if scene.simulation is None else scene.simulation.duration
     rows: list[_Row] = []
     for number, measurement in enumerate(scene.measurements):
         if number in tables:
-            reader = _Reader(number, measurement, tables[number], layout)
+            reader = _Reader(number, measurement, tables[number], layout, duration)
             rows += reader.rows()
             problems += shortened(reader.problems, tables[number].source)
     if problems:
@@ -133,6 +145,7 @@ class _Reader:
         measurement: its record.
         table: its rows.
         layout: inputs of the model.
+        duration: time that is simulated, s.
         problems: what was wrong.
     """
 
@@ -140,6 +153,7 @@ class _Reader:
     measurement: scenes.MeasurementRecord
     table: Table
     layout: InputLayout
+    duration: float
     problems: list[Problem] = field(default_factory=list)
 
     def rows(self) -> list[_Row]:
@@ -147,20 +161,19 @@ class _Reader:
         measurement, table = self.measurement, self.table
         columns = [column for column in measurement.columns if column]
         columns += [entry.column for entry in measurement.set_inputs.values() if entry.column is not None]
-        columns += list(measurement.where)
-        at = getattr(measurement, "at", None)
-        if isinstance(at, str):
-            columns.append(at)
+        columns += [*measurement.where, *measurement.held_out]
+        place = self._place
+        if isinstance(place, str):
+            columns.append(place)
+        time = self._time
+        if time is not None and time.column is not None:
+            columns.append(time.column)
         if measurement.case is not None:
             columns.append(measurement.case)
         self.problems += table.missing(columns)
         if self.problems:
             return []
-        chosen = [
-            row
-            for row in range(len(table))
-            if all(table.holds(column, row, value) for column, value in measurement.where.items())
-        ]
+        chosen = [row for row in range(len(table)) if table.holds_all(measurement.where, row)]
         values = self._values(chosen)
         measured = np.any(np.isfinite(values), axis=1)
         if not np.any(measured):
@@ -169,16 +182,30 @@ class _Reader:
         self._check_labels(chosen)
         inputs = self._inputs(chosen, measured)
         abscissae = self._abscissae(chosen, measured)
+        times = self._times(chosen, measured)
         rows = []
         for i, row in enumerate(chosen):
             where = table.where(row)
             set_inputs = {index: float(column[i]) for index, column in inputs.items() if np.isfinite(column[i])}
-            datum = Datum(where, float(abscissae[i]), values[i]) if measured[i] else None
+            datum = Datum(where, float(abscissae[i]), values[i], float(times[i])) if measured[i] else None
             case = measurement.case
             label = None if case is None else table.columns[case][row].strip()
-            place = (table.source, table.lines[row])
-            rows.append(_Row(self.number, where, place, label, set_inputs, datum))
+            line = (table.source, table.lines[row])
+            held_out = bool(measurement.held_out) and table.holds_all(measurement.held_out, row)
+            rows.append(_Row(self.number, where, line, label, set_inputs, datum, time is not None, held_out))
         return rows
+
+    @property
+    def _place(self) -> str | float | None:
+        """The abscissa of the section or the number of the mode, or the column that has it; None without either."""
+        place: str | float | None = getattr(self.measurement, "at", getattr(self.measurement, "mode", None))
+        return place
+
+    @property
+    def _time(self) -> scenes.InputColumn | None:
+        """Where the times of the rows are; None where each case is an equilibrium."""
+        time: scenes.InputColumn | None = getattr(self.measurement, "time", None)
+        return time
 
     def _check_labels(self, rows: Sequence[int]) -> None:
         """Every row says which case it belongs to: rows with empty cells there have nothing in common."""
@@ -218,18 +245,41 @@ class _Reader:
                 self.problems.append(Problem(self.table.where(row), "has a quaternion that is zero"))
 
     def _abscissae(self, rows: Sequence[int], measured: Flags) -> FloatArray:
-        """Abscissa of the section of each row; NaN where the quantity has none."""
-        at = getattr(self.measurement, "at", None)
-        if not isinstance(at, str):
-            return np.full(len(rows), np.nan if at is None else at)
-        values, problems = self.table.numbers(at, rows)
+        """Abscissa of the section or number of the mode of each row; NaN where the quantity has neither."""
+        place = self._place
+        if not isinstance(place, str):
+            return np.full(len(rows), np.nan if place is None else place)
+        values, problems = self.table.numbers(place, rows)
         self.problems += problems
+        of_modes = hasattr(self.measurement, "mode")
         for row, value, is_measured in zip(rows, values, measured, strict=True):
-            if is_measured and not 0.0 <= value <= 1.0:
+            fits = 0.0 <= value <= 1.0
+            what = "an abscissa from 0 to 1"
+            remedy = "divide the distance along the rod by its length"
+            if of_modes:
+                fits = value >= 1.0 and value == round(value)
+                what = "the number of a mode: 1, 2, …"
+                remedy = "count those that swing, by frequency"
+            if is_measured and not fits:
                 got = "an empty cell" if np.isnan(value) else f"{value:g}"
-                problem = f"{at} must be an abscissa from 0 to 1, got {got}"
-                remedy = "divide the distance along the rod by its length"
-                self.problems.append(Problem(self.table.where(row), problem, remedy))
+                self.problems.append(Problem(self.table.where(row), f"{place} must be {what}, got {got}", remedy))
+        return values
+
+    def _times(self, rows: Sequence[int], measured: Flags) -> FloatArray:
+        """Time of each row in its motion, s; NaN where its case is an equilibrium."""
+        time = self._time
+        if time is None:
+            return np.full(len(rows), np.nan)
+        values = np.full(len(rows), time.shift)
+        if time.column is not None:
+            numbers, problems = self.table.numbers(time.column, rows)
+            self.problems += problems
+            values = values + time.scale * numbers
+        for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if is_measured and not 0.0 <= value <= self.duration:
+                got = "an empty cell" if np.isnan(value) else f"{value:g} s"
+                problem = f"the time must be from 0 to the duration of the simulation, {self.duration:g} s, got {got}"
+                self.problems.append(Problem(self.table.where(row), problem, "shift it, or simulate for longer"))
         return values
 
     def _inputs(self, rows: Sequence[int], measured: Flags) -> dict[int, FloatArray]:
@@ -277,7 +327,8 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
         raise SceneError(*shortened(joining.problems, "measurements"))
     cases: dict[Hashable, Case] = {}
     for row, key in zip(measured, keys, strict=True):
-        case = cases.setdefault(key, Case(row.where, layout.pack()))
+        case = cases.setdefault(key, Case(row.where, layout.pack(), row.moves))
+        case.held_out = case.held_out or row.held_out
         for index, (value, _) in {**by_case[key], **by_place[row.place]}.items():
             case.inputs[index] = value
         if row.datum is not None:
@@ -288,13 +339,13 @@ def _joined(rows: Sequence[_Row], layout: InputLayout, per_row: bool) -> list[Ca
 def _key(row: _Row, settled: Mapping[int, tuple[float, str]], layout: InputLayout, per_row: bool) -> Hashable:
     """What rows of one case have in common."""
     if row.label is not None:
-        return "case", row.label
-    if per_row:
+        return "case", row.label, row.moves
+    if per_row and not row.moves:
         return "row", row.place
     stacked = layout.pack()
     for index, (value, _) in settled.items():
         stacked[index] = value
-    return "inputs", *stacked.tolist()
+    return "inputs", row.moves, *stacked.tolist()
 
 
 @dataclass

@@ -52,11 +52,13 @@ class Equilibria:
     Attributes:
         model: of the scene, with its parameters.
         cases: their number.
+        sought: which cases are to be in equilibrium, shape (cases,); the others stay unloaded.
     """
 
-    def __init__(self, model: Model, cases: int) -> None:
+    def __init__(self, model: Model, cases: int, unloaded: Flags | None = None) -> None:
         self.model = model
         self.cases = cases
+        self.sought: Flags = np.ones(cases, dtype=bool) if unloaded is None else ~unloaded
         self._tolerance = NewtonSettings()
         self._residual = self._mapped(model.residual)
         self._jacobian = self._mapped(model.jacobian)
@@ -103,6 +105,9 @@ class Equilibria:
         outcomes = []
         given = p if self.model.parameters.size else None
         for case in range(self.cases):
+            if not self.sought[case]:
+                outcomes.append(Outcome.CONVERGED)
+                continue
             end = follow(load_path(self.model, inputs[case], given), ContinuationSettings())
             x[case] = end.x
             outcomes.append(end.outcome)
@@ -151,7 +156,7 @@ class Equilibria:
         """Newton's method on all cases: unknowns, inverse Jacobians, and which cases converged."""
         x = start.copy()
         residual = self.residuals(x, inputs, p)
-        norms = _relative(residual, x)
+        norms = np.where(self.sought, _relative(residual, x), 0.0)
         fresh = False
         for _ in range(STEPS):
             waiting = norms > self._tolerance.aim
@@ -160,7 +165,7 @@ class Equilibria:
             tried = x - np.einsum("cij,cj->ci", inverses, residual)
             tried[~waiting] = x[~waiting]
             tried_residual = self.residuals(tried, inputs, p)
-            tried_norms = _relative(tried_residual, tried)
+            tried_norms = np.where(self.sought, _relative(tried_residual, tried), 0.0)
             better = waiting & (tried_norms < norms)
             slow = waiting & ~(tried_norms <= CONTRACTION * norms) & (norms > self._tolerance.tolerance)
             x[better] = tried[better]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,19 @@ def with_found(scene: scenes.Scene, model: Model, layout: UnknownLayout, shared:
     values = model.inputs.unpack(inputs)
     for name in fields:
         _set_input(tables, name, values[name])
+    return scenes.scene_from_dict(tables)
+
+
+def with_inputs(scene: scenes.Scene, values: Mapping[str, FloatArray]) -> scenes.Scene:
+    """A scene with values for some of its inputs, which are then its own.
+
+    Args:
+        scene: the scene.
+        values: by name, in the shape in which a model unpacks them.
+    """
+    tables = scene_tables(scene)
+    for name, value in values.items():
+        _set_input(tables, name, value)
     return scenes.scene_from_dict(tables)
 
 

@@ -37,6 +37,7 @@ class Row:
         residual: the difference in standard deviations.
         weight: what the loss leaves of it, 1 for all.
         held_out: whether it was predicted and not fitted.
+        time: at which it was measured in its motion, s; None in an equilibrium.
     """
 
     where: str
@@ -48,6 +49,7 @@ class Row:
     residual: float
     weight: float
     held_out: bool
+    time: float | None = None
 
 
 @dataclass(frozen=True)
@@ -80,13 +82,15 @@ class Identification:
         cost: half the sum of squares, in squared standard deviations, priors among them.
         rows: every measured number beside the model's.
         cases: their first rows in words.
-        unknowns_x: unknowns of the model in each case, shape (cases, size).
-        inputs: stacked inputs of each case, shape (cases, size of the inputs).
+        unknowns_x: unknowns of the model in each case, of motions at their start, shape (cases, size).
+        inputs: stacked inputs of each case, of motions at their start, shape (cases, size of the inputs).
         unstable: cases whose equilibrium is unstable.
         left_out: cases that took no part.
         at_bounds: names of the numbers that are at a bound.
         warnings: sentences on what looks wrong.
         starts: how many starts there were, and how many ended here.
+        step: of the motions that were measured, s; None where nothing was measured over time.
+        step_error: largest error that these steps leave in a residual, in standard deviations; None likewise.
     """
 
     model: Model
@@ -108,6 +112,8 @@ class Identification:
     at_bounds: tuple[str, ...]
     warnings: tuple[str, ...]
     starts: tuple[int, int]
+    step: float | None = None
+    step_error: float | None = None
 
     @cached_property
     def parameters(self) -> dict[str, FloatArray]:

@@ -1,91 +1,31 @@
 """How far the model is from what was measured in all cases, with exact derivatives by the implicit function theorem.
 
-Each case has its own equilibrium g(x, inputs, p) = 0, so that dx = −(∂g/∂x)⁻¹ (∂g/∂inputs d inputs + ∂g/∂p dp).
+Each case has its own equilibrium g(x, inputs, p) = 0, so that dx = −(∂g/∂x)⁻¹ (∂g/∂inputs d inputs + ∂g/∂p dp). A case
+that was measured over time begins there, or unloaded, and moves on by the steps of identification/motions.py.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
-import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
-from cosserat_casadi.identification.cases import Case, Datum
-from cosserat_casadi.identification.equilibria import Equilibria, Flags, Point, split
-from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.identification.cases import Case
+from cosserat_casadi.identification.equilibria import Equilibria, Flags, Point
+from cosserat_casadi.identification.measured_modes import JointModes, MeasuredModes, Vibrations
+from cosserat_casadi.identification.measured_rows import MeasuredRows, by_instant
+from cosserat_casadi.identification.motions import Motions, Run
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.scene.measurements import ModeMeasurement
 
 Indices = npt.NDArray[np.int64]
 
 ROUNDING = 1e-10
 """Share of the largest derivative, each times the size of its unknown, below which one is rounding."""
-
-
-class MeasuredRows:
-    """All rows of one measurement.
-
-    Attributes:
-        record: the measurement.
-        cases: the cases that have such rows, shape (count,).
-        data: these rows, in the order of the residuals.
-    """
-
-    def __init__(self, model: Model, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
-        self.record = record
-        self.cases: Indices = np.array([case for case, _ in rows], dtype=np.int64)
-        count = len(rows)
-        sections = max(len(data) for _, data in rows)
-        entries = len(record.entries)
-        differences = len(record.differences)
-        self._at = np.zeros((count, sections))
-        measured = np.zeros((count, entries, sections))
-        if record.quantity == "pose":
-            measured[:, 3] = 1.0
-        known = np.zeros((count, sections, differences), dtype=bool)
-        self.data: list[tuple[Datum, int]] = []
-        self.row_cases: list[int] = []
-        for i, (case, data) in enumerate(rows):
-            for k, datum in enumerate(data):
-                self._at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
-                given = np.isfinite(datum.values)
-                measured[i, given, k] = datum.values[given]
-                known[i, k] = given[:differences]
-                for entry in np.flatnonzero(known[i, k]).tolist():
-                    self.data.append((datum, entry))
-                    self.row_cases.append(case)
-        self._measured = measured
-        self._known = known.reshape(count, sections * differences)
-        deviations = np.broadcast_to(np.asarray(record.sigma, dtype=float), differences)
-        self.sigma = np.tile(deviations, sections)
-        function = difference(model, record, sections)
-        arguments = function.mx_in()
-        value = ca.Function("value", arguments, function.call(arguments)[:1])
-        self._values = value.map("values", "serial", count, [2], [])
-        self._derivatives = function.map("derivatives", "serial", count, [2], [])
-
-    def _arguments(self, point: Point) -> list[FloatArray]:
-        count = len(self.cases)
-        at = self._at.reshape(1, -1)
-        measured = self._measured.transpose(1, 0, 2).reshape(-1, count * self._at.shape[1])
-        return [point.x[self.cases].T, point.inputs[self.cases].T, point.p, at, measured]
-
-    def residual(self, point: Point) -> FloatArray:
-        """Differences in standard deviations, those measured, case after case, shape (rows,)."""
-        values = self._values(*self._arguments(point)).full().T
-        scaled = values / self.sigma
-        return np.asarray(scaled[self._known])
-
-    def derivatives(self, point: Point) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Derivatives of the residual with x, inputs and p of its case, (rows, …) each."""
-        count = len(self.cases)
-        _, *matrices = self._derivatives(*self._arguments(point))
-        by_x, by_inputs, by_p = ((split(matrix, count) / self.sigma[:, None])[self._known] for matrix in matrices)
-        return by_x, by_inputs, by_p
 
 
 @dataclass
@@ -96,7 +36,9 @@ class MisfitState:
         shared: shared unknowns, shape (n,).
         own: those of each case, shape (cases, k).
         point: the equilibria.
-        residual: differences in standard deviations, case after case, shape (m,).
+        residual: differences in standard deviations, case after case, shape (m,); NaN of modes that do not swing, and
+            of motions that could not be computed.
+        runs: motions of the cases that were measured over time, by their number; None of those without.
         sensitivities: derivatives of the equilibria with the shared unknowns and with those of the case, (cases, size,
             n) and (cases, size, k); None until they are asked for.
     """
@@ -105,6 +47,7 @@ class MisfitState:
     own: FloatArray
     point: Point
     residual: FloatArray
+    runs: dict[int, Run | None] = field(default_factory=dict)
     sensitivities: tuple[FloatArray, FloatArray] | None = None
 
 
@@ -115,6 +58,9 @@ class Misfit:
         model: with the parameters that are unknown.
         layout: what is unknown.
         cases: what was measured.
+        equilibria: of the cases; of motions those where they start.
+        moves: which cases are motions, shape (cases,).
+        motions: of these cases.
         measurements: rows by measurement.
         offsets: where the residuals of each case begin, shape (cases + 1,).
     """
@@ -124,12 +70,17 @@ class Misfit:
         self.layout = layout
         self.cases = cases
         self.equilibria = equilibria
-        self.measured_inputs = np.array([case.inputs for case in cases]).reshape(len(cases), -1)
-        self.measurements: dict[int, MeasuredRows] = {}
+        self.measured_inputs = inputs_of(cases)
+        self.moves = moving(cases)
+        self.motions = Motions(model, {i: _times(case) for i, case in enumerate(cases) if case.moves})
+        self.measurements: dict[int, MeasuredRows | MeasuredModes] = {}
+        vibrations = Vibrations(model)
         for number, record in enumerate(model.scene.measurements):
             rows = [(i, case.data[number]) for i, case in enumerate(cases) if number in case.data]
-            if rows:
-                self.measurements[number] = MeasuredRows(model, record, rows)
+            if rows and isinstance(record, ModeMeasurement):
+                self.measurements[number] = MeasuredModes(vibrations, record, rows)
+            elif rows:
+                self.measurements[number] = MeasuredRows(model, record, by_instant(rows))
         row_cases = np.concatenate([rows.row_cases for rows in self.measurements.values()]).astype(np.int64)
         # Residuals stand case after case.
         self.order: Indices = np.argsort(row_cases, kind="stable")
@@ -139,7 +90,8 @@ class Misfit:
 
     def first(self, point: Point, shared: FloatArray, own: FloatArray) -> MisfitState:
         """The state at equilibria that are known."""
-        return MisfitState(shared, own, point, self._residual(point))
+        runs = {case: self.motions.run(case, point.x[case], point.inputs[case], point.p) for case in self.motions.times}
+        return MisfitState(shared, own, point, self._residual(point, runs), runs)
 
     def at(self, shared: FloatArray, own: FloatArray, near: MisfitState) -> MisfitState | None:
         """The state at other unknowns; None where a case cannot be followed there."""
@@ -147,11 +99,12 @@ class Misfit:
         point, reached = self.moved(shared, own, near, far=False)
         if not np.all(reached):
             return None
-        return MisfitState(shared, own, point, self._residual(point))
+        return self.first(point, shared, own)
 
     def moved(self, shared: FloatArray, own: FloatArray, near: MisfitState, *, far: bool = True) -> tuple[Point, Flags]:
         """The equilibria at other unknowns, and which of them could be reached; far as in `Equilibria.tracked`."""
-        inputs = self.layout.inputs(shared, own, self.measured_inputs)
+        of_cases = self.layout.inputs(shared, own, self.measured_inputs)
+        inputs = self.motions.start.of(of_cases, self.moves)
         p = self.layout.parameters(shared)
         predicted = near.point.x
         if near.sensitivities is not None:
@@ -167,18 +120,75 @@ class Misfit:
         p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, inputs)
         inputs_by_own = self.layout.by_own(state.own, inputs)
         state.sensitivities = self._sensitivities(state.point, p_by_shared, inputs_by_shared, inputs_by_own)
-        x_by_shared, x_by_own = state.sensitivities
-        shared = []
-        own = []
+        n = len(state.shared)
+        # Shared unknowns and those of the case side by side, for each case.
+        inputs_by_all = np.concatenate(
+            [np.broadcast_to(inputs_by_shared, (len(self.cases), inputs, n)), inputs_by_own], 2
+        )
+        p_by_all = np.hstack([p_by_shared, np.zeros((len(p_by_shared), inputs_by_own.shape[2]))])
+        x_by_all = np.concatenate(state.sensitivities, axis=2)
+        moved = {
+            case: self.motions.sensitivity(run, x_by_all[case], inputs_by_all[case], p_by_all)
+            for case, run in state.runs.items()
+            if run is not None
+        }
+        columns = []
         for rows in self.measurements.values():
-            by_x, by_inputs, by_p = rows.derivatives(state.point)
-            cases = np.array(rows.row_cases)
-            by_shared = np.einsum("mi,min->mn", by_x, x_by_shared[cases])
-            shared.append(by_shared + by_inputs @ inputs_by_shared + by_p @ p_by_shared)
-            by_own = np.einsum("mi,mik->mk", by_x, x_by_own[cases])
-            own.append(by_own + np.einsum("mi,mik->mk", by_inputs, inputs_by_own[cases]))
+            by_x, by_inputs, by_p = rows.derivatives(*self._at_places(rows, state.point, state.runs))
+            x_by = x_by_all[rows.cases]
+            inputs_by = inputs_by_all[rows.cases]
+            for place, case, instant in self._instants(rows):
+                over_time, held = moved[case]
+                x_by[place] = over_time[instant]
+                inputs_by[place] = held
+            of_rows = np.einsum("mi,min->mn", by_x, x_by[rows.places])
+            of_rows += np.einsum("mi,min->mn", by_inputs, inputs_by[rows.places])
+            columns.append(of_rows + by_p @ p_by_all)
+        whole = np.concatenate(columns)[self.order]
         sizes = self.layout.scales(state.shared), self.layout.own_scales
-        return without_rounding(np.concatenate(shared)[self.order], np.concatenate(own)[self.order], sizes)
+        return without_rounding(whole[:, :n], whole[:, n:], sizes)
+
+    def joint_modes(self, state: MisfitState) -> list[JointModes]:
+        """Measured modes of one frequency, of which the mean is compared; the Jacobian has been asked for there."""
+        found = []
+        assert state.sensitivities is not None, "follow from the Jacobian"
+        p_by_shared, inputs_by_shared = self.layout.by_shared(state.shared, state.point.inputs.shape[1])
+        sizes = self.layout.scales(state.shared)
+        for rows in self.measurements.values():
+            if isinstance(rows, MeasuredModes):
+                by_shared = [
+                    np.vstack([of_case, inputs_by_shared, p_by_shared])
+                    for of_case in state.sensitivities[0][rows.cases]
+                ]
+                at_places = self._at_places(rows, state.point, state.runs)
+                found += rows.joint_modes(*at_places, np.array(by_shared), sizes)
+        return found
+
+    def residual_of(self, rows: MeasuredRows | MeasuredModes, state: MisfitState) -> FloatArray:
+        """Differences of one measurement in standard deviations, in the order of its data."""
+        return rows.residual(*self._at_places(rows, state.point, state.runs))
+
+    def _instants(self, rows: MeasuredRows | MeasuredModes) -> list[tuple[int, int, int]]:
+        """Places of rows of motions, each with its case and the number of its time there."""
+        if isinstance(rows, MeasuredModes):
+            return []
+        found = []
+        for place, (case, time) in enumerate(zip(rows.cases.tolist(), rows.times.tolist(), strict=True)):
+            if case in self.motions.times:
+                found.append((place, case, int(np.searchsorted(self.motions.times[case], time))))
+        return found
+
+    def _at_places(
+        self, rows: MeasuredRows | MeasuredModes, point: Point, runs: Mapping[int, Run | None]
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unknowns and inputs where the rows were measured, and parameters; NaN of motions that were not computed."""
+        x = point.x[rows.cases]
+        inputs = point.inputs[rows.cases]
+        for place, case, instant in self._instants(rows):
+            run = runs[case]
+            x[place] = np.nan if run is None else run.x[instant]
+            inputs[place] = np.nan if run is None else run.inputs[instant]
+        return x, inputs, point.p
 
     def _sensitivities(
         self, point: Point, p_by_shared: FloatArray, inputs_by_shared: FloatArray, inputs_by_own: FloatArray
@@ -193,11 +203,27 @@ class Misfit:
             by_inputs = self.equilibria.by_inputs(point)
             by_shared += by_inputs @ inputs_by_shared
             by_own += by_inputs @ inputs_by_own
-        return -point.inverses @ by_shared, -point.inverses @ by_own
+        sought = self.equilibria.sought[:, None, None]
+        return np.where(sought, -point.inverses @ by_shared, 0.0), np.where(sought, -point.inverses @ by_own, 0.0)
 
-    def _residual(self, point: Point) -> FloatArray:
-        residuals = [rows.residual(point) for rows in self.measurements.values()]
+    def _residual(self, point: Point, runs: Mapping[int, Run | None]) -> FloatArray:
+        residuals = [rows.residual(*self._at_places(rows, point, runs)) for rows in self.measurements.values()]
         return np.concatenate(residuals)[self.order]
+
+
+def inputs_of(cases: Sequence[Case]) -> FloatArray:
+    """Inputs that columns set, and the scene's values of others, shape (cases, inputs)."""
+    return np.array([case.inputs for case in cases]).reshape(len(cases), -1)
+
+
+def moving(cases: Sequence[Case]) -> Flags:
+    """Which cases are motions, shape (cases,)."""
+    return np.array([case.moves for case in cases], dtype=bool)
+
+
+def _times(case: Case) -> FloatArray:
+    """Times at which a motion was measured, ascending, s."""
+    return np.unique([datum.time for data in case.data.values() for datum in data])
 
 
 def without_rounding(

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from cosserat_casadi.identification.found import Identification, LeftOut, Row
+from cosserat_casadi.identification.measured_modes import JointModes
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.statistics import Direction, Statistics
+from cosserat_casadi.identification.time_steps import STEP_ERROR
 from cosserat_casadi.identification.unknowns import UnknownLayout
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.arrow_least_squares import Fit, FitOutcome, Limits
@@ -32,6 +34,7 @@ class Ending:
         left_out: cases that took no part.
         unstable: cases whose equilibrium is unstable.
         unresolved: cases that the nodes do not resolve.
+        joint_modes: measured modes of one frequency.
         warnings: sentences on what looks wrong.
     """
 
@@ -40,6 +43,7 @@ class Ending:
     left_out: list[LeftOut] = field(default_factory=list)
     unstable: list[str] = field(default_factory=list)
     unresolved: list[str] = field(default_factory=list)
+    joint_modes: list[JointModes] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     def without_equilibrium(self, *, stopped: bool) -> Identification:
@@ -118,6 +122,17 @@ class Ending:
         )
         return replace(draft, warnings=(*self.warnings, *self._remarks(draft)))
 
+    def with_steps(self, found: Identification, step: float, error: float) -> Identification:
+        """The end of a search with the steps of its motions, and a warning where they are too long."""
+        warnings = found.warnings
+        if not error <= STEP_ERROR:
+            sentence = (
+                f"Steps of {step:.3g} s leave an error of {error:.2g} standard deviations in the motions: "
+                "give [simulation] a shorter step, or none."
+            )
+            warnings = (*warnings, sentence)
+        return replace(found, warnings=warnings, step=step, step_error=error)
+
     def _outcome(self, fit: Fit[MisfitState], known: Statistics) -> tuple[str, str]:
         """How it ended, in a word and in sentences."""
         if fit.outcome is not FitOutcome.CONVERGED:
@@ -151,8 +166,45 @@ class Ending:
             remarks.append(
                 f"The equilibrium is unstable in {named(self.unstable)}: what was measured there is hardly this one."
             )
+        remarks += self._on_own_unknowns(found)
+        remarks += self._on_joint_modes(found.cases)
         if self.left_out:
             remarks.append(f"Left out: {named([case.where for case in self.left_out])}. {self.left_out[0].reason}")
+        return remarks
+
+    def _on_own_unknowns(self, found: Identification) -> list[str]:
+        """Unknowns of single cases that their data leave open, and what they mean for cases that were held out."""
+        remarks = []
+        for label, deviations in zip(self.layout.own_labels, found.statistics.own.T, strict=True):
+            open_in = [where for where, sigma in zip(found.cases, deviations, strict=True) if np.isnan(sigma)]
+            if open_in:
+                remarks.append(f"The data do not determine {label} in {named(open_in)}: its value there means nothing.")
+        held_out = {row.case for row in found.rows if row.held_out}
+        if held_out and self.layout.own_labels:
+            numbers = sum(row.held_out for row in found.rows)
+            fitted = counted(len(held_out) * len(self.layout.own_labels), "unknown")
+            remarks.append(
+                f"{fitted} of the held-out cases themselves were found from their {counted(numbers, 'number')}: "
+                "only what these numbers leave is predicted."
+            )
+        return remarks
+
+    def _on_joint_modes(self, cases: Sequence[str]) -> list[str]:
+        """Measured modes of one frequency, and what would part them."""
+        remarks = []
+        for numbers in dict.fromkeys(joint.numbers for joint in self.joint_modes):
+            alike = [joint for joint in self.joint_modes if joint.numbers == numbers]
+            modes = " and ".join(str(number) for number in numbers)
+            where = named([cases[joint.case] for joint in alike])
+            sentence = (
+                f"Modes {modes} have one frequency in {where}: what was measured of them is compared with their mean."
+            )
+            parted = np.any([joint.parted for joint in alike], axis=0)
+            names = [label for label, is_so in zip(self.layout.shared_labels, parted, strict=True) if is_so]
+            if names:
+                verb = "parts" if len(names) == 1 else "part"
+                sentence += f" {', '.join(names)} {verb} them, which their mean does not see: begin elsewhere."
+            remarks.append(sentence)
         return remarks
 
 

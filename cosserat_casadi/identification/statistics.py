@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +26,14 @@ NORMAL_95 = 1.959963984540054
 
 SMALL_PART = 1e-3
 """Part of an unknown in a direction that is not told."""
+
+
+class NoiseFrom(Enum):
+    """What intervals take the noise of the data from."""
+
+    SIGMA = "what was stated"
+    RESIDUALS = "what the residuals are"
+    BOTH = "the larger of the two"
 
 
 @dataclass(frozen=True)
@@ -76,42 +85,46 @@ class Statistics:
 def statistics(
     arrow: Arrow,
     labels: tuple[str, ...],
-    scales: FloatArray,
+    scales: tuple[FloatArray, FloatArray],
     *,
     freedom: int,
     squares: float,
-    scaled_noise: bool,
+    noise_from: NoiseFrom,
 ) -> Statistics:
     """What the data say at the optimum.
 
     Args:
         arrow: the misfit there, linear in the unknowns.
         labels: names of the shared unknowns.
-        scales: sizes of them that changes are compared with, shape (n,).
+        scales: sizes that changes are compared with: of shared unknowns, shape (n,), and of those of each case, (k,).
         freedom: data more than unknowns.
         squares: sum of the squares of the residuals, or what stands for it under a robust loss.
-        scaled_noise: whether the standard deviations follow from the residuals.
+        noise_from: what the noise of the data follows from.
     """
     n, k = arrow.sizes
+    shared_scales, own_scales = scales
     left, eliminations = arrow.eliminated(np.zeros(k))
     free = ~arrow.shared_held
-    data = left[:, :n] * scales
-    prior = np.diag(np.where(free, arrow.shared_prior[0], 0.0) * scales)
+    data = left[:, :n] * shared_scales
+    prior = np.diag(np.where(free, arrow.shared_prior[0], 0.0) * shared_scales)
     by_data = _directions(data[:, free])
     by_both = _directions(np.vstack([data, prior])[:, free])
     free_labels = [label for label, is_free in zip(labels, free, strict=True) if is_free]
     unseen = tuple(by_data.told(free_labels))
     noise = 1.0
     quantile = NORMAL_95
-    if scaled_noise and freedom > 0:
+    if noise_from is not NoiseFrom.SIGMA and freedom > 0:
         noise = math.sqrt(squares / freedom)
         quantile = student_95(freedom)
+    if noise_from is NoiseFrom.BOTH and noise < 1.0:
+        noise = 1.0
+        quantile = NORMAL_95
     scaled = _with_noise(by_both.covariance(), prior[np.ix_(free, free)], noise)
     covariance = np.zeros((n, n))
-    covariance[np.ix_(free, free)] = scaled * np.outer(scales[free], scales[free])
+    covariance[np.ix_(free, free)] = scaled * np.outer(shared_scales[free], shared_scales[free])
     determined = free & np.isfinite(np.diagonal(covariance))
     settled = not np.any(by_both.open)
-    own = _own_deviations(arrow, eliminations, covariance, noise)
+    own = _own_deviations(arrow, eliminations, covariance, own_scales, noise)
     return Statistics(covariance, determined, unseen, settled, noise, quantile, own)
 
 
@@ -188,24 +201,27 @@ def _directions(rows: FloatArray) -> _Directions:
     return _Directions(singular[:count], vectors[:count])
 
 
-def _own_deviations(arrow: Arrow, eliminations: list[FloatArray], covariance: FloatArray, noise: float) -> FloatArray:
+def _own_deviations(
+    arrow: Arrow, eliminations: list[FloatArray], covariance: FloatArray, scales: FloatArray, noise: float
+) -> FloatArray:
     """Standard deviations of the unknowns of each case, with what the shared ones add; NaN where not determined."""
     n, k = arrow.sizes
     deviations = np.full((len(eliminations), k), np.nan)
     for block, elimination in enumerate(eliminations):
         held = arrow.own_held[block]
-        triangle = elimination[:, :k]
         rows = slice(arrow.offsets[block], arrow.offsets[block + 1])
         seen = np.any(arrow.by_own[rows] != 0.0, axis=0) | (arrow.own_prior[0] > 0.0)
         free = seen & ~held
-        diagonal = np.abs(np.diagonal(triangle))[free]
         deviations[block, held] = 0.0
-        if not diagonal.size or diagonal.min() <= BLIND * diagonal.max():
-            continue
-        inverse = np.linalg.pinv(triangle)
+        # Unknowns without a datum have a row of their own in the triangle, and a column that is zero elsewhere.
+        triangle = elimination[:, :k] * scales
+        known = _directions(triangle[:, free])
+        undetermined = np.isnan(np.diagonal(known.covariance()))
+        inverse = np.linalg.pinv(triangle[:, free], rcond=BLIND)
         by_shared = inverse @ elimination[:, k : k + n]
         spread = noise**2 * inverse @ inverse.T + by_shared @ covariance @ by_shared.T
-        deviations[block, free] = np.sqrt(np.diagonal(spread))[free]
+        sizes = np.sqrt(np.diagonal(spread)) * scales[free]
+        deviations[block, free] = np.where(undetermined, np.nan, sizes)
     return deviations
 
 

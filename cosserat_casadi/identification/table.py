@@ -68,6 +68,10 @@ class Table:
             return cell == value
         return finite_number(cell) == value
 
+    def holds_all(self, values: Mapping[str, str | float], row: int) -> bool:
+        """Whether the cells of a row are these, by column."""
+        return all(self.holds(column, row, value) for column, value in values.items())
+
 
 def read_table(path: Path) -> Table:
     """The rows of a CSV file with a header.

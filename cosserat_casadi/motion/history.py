@@ -41,21 +41,27 @@ AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
 
 
-def equations_of(model: Model, piece: Piece, frames: MeanFrames | None = None) -> MotionEquations:
+def equations_of(
+    model: Model, piece: Piece, p: FloatArray | None = None, frames: MeanFrames | None = None
+) -> MotionEquations:
     """The equations of motion of a model while its inputs follow one piece of their paths.
 
     Args:
         model: the model.
         piece: of its inputs.
+        p: stacked parameters; those of a model that has some.
         frames: the mean frames of a rod that flies free, which save iterations; None for none.
     """
     inverse_dynamics = RepeatedCall(model.inverse_dynamics)
+    parameters = [] if p is None else [p]
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        return inverse_dynamics(x, v, a, *piece.at(t))
+        value, rate, acceleration = piece.at(t)
+        return inverse_dynamics(x, v, a, value, *parameters, rate, acceleration)
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, *piece.at(t))
+        value, rate, acceleration = piece.at(t)
+        stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
         return stiffness.full(), damping.full(), mass.full()
 
     if frames is None:
@@ -180,6 +186,7 @@ def integrated(
     method: Collocation,
     settings: StepSettings,
     after_step: AfterStep | None = None,
+    p: FloatArray | None = None,
 ) -> History:
     """Integrate a model over all pieces of its inputs, or until one ends early.
 
@@ -191,6 +198,7 @@ def integrated(
         method: the collocation method.
         settings: how to step.
         after_step: told of every step.
+        p: stacked parameters; those of a model that has some.
 
     Raises:
         SceneError: the start contradicts the constraints.
@@ -203,7 +211,7 @@ def integrated(
     phases = cables.first_phases(x, pieces[0].at(at.time).value)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
-        plain = equations_of(model, piece, frames)
+        plain = equations_of(model, piece, p, frames)
         while at.time < piece.end:
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.

@@ -183,6 +183,7 @@ def small_motions(
     inputs: FloatArray,
     inputs_rate: FloatArray | None = None,
     inputs_acceleration: FloatArray | None = None,
+    p: FloatArray | None = None,
 ) -> SmallMotions:
     """The linear equations of small motions about unknowns that do not change.
 
@@ -192,12 +193,14 @@ def small_motions(
         inputs: stacked inputs.
         inputs_rate: their rate, as of a base that spins steadily; zero where it is left out.
         inputs_acceleration: their acceleration, likewise.
+        p: stacked parameters; those of a model that has some.
     """
     rest = np.zeros(model.size)
     held = np.zeros(model.inputs.size)
     rate = held if inputs_rate is None else inputs_rate
     acceleration = held if inputs_acceleration is None else inputs_acceleration
-    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, rate, acceleration)
+    parameters = [] if p is None else [p]
+    stiffness, damping, mass, _ = model.dynamics_jacobian(x, rest, rest, inputs, *parameters, rate, acceleration)
     unknowns = model.discrete.unknowns
     return SmallMotions(
         stiffness.full(),

@@ -21,6 +21,9 @@ MOST_PANELS = 4
 MOST_ELLIPSES = 6
 """Pairs of unknowns that have an ellipse: those with the strongest correlation."""
 
+WIDTH = 0.8
+"""Width of the rows of one motion among the residuals, where a case is 1 wide."""
+
 CHI_SQUARE_95 = 5.991464547107979
 """What the square of a normal distribution in the plane, in standard deviations, stays below in 95 % of all draws."""
 
@@ -66,9 +69,12 @@ def plot_identification(found: Identification) -> Any:
 
 
 def _draw_measurement(axes: Any, found: Identification, number: int) -> None:
-    """Modelled over measured; on the line they are equal."""
+    """Modelled over measured, where they are equal on the line; in motions both over time."""
     measurement = found.model.scene.measurements[number]
     rows = [row for row in found.rows if row.measurement == number]
+    if rows[0].time is not None:
+        _draw_path(axes, measurement, rows)
+        return
     for entry, name in enumerate(measurement.entries[: len(measurement.differences)]):
         for held_out in (False, True):
             chosen = [row for row in rows if row.entry == entry and row.held_out is held_out]
@@ -85,12 +91,29 @@ def _draw_measurement(axes: Any, found: Identification, number: int) -> None:
     axes.legend(fontsize=8)
 
 
+def _draw_path(axes: Any, measurement: Any, rows: list[Row]) -> None:
+    """Measured and modelled numbers over time."""
+    for entry, name in enumerate(measurement.entries[: len(measurement.differences)]):
+        chosen = [row for row in rows if row.entry == entry]
+        if not chosen:
+            continue
+        times = [row.time for row in chosen]
+        measured, modelled = _values(chosen).T
+        colour = COLOURS[entry % len(COLOURS)]
+        axes.scatter(times, measured, s=14, color=colour, alpha=0.6, label=f"{name}, measured")
+        axes.scatter(times, modelled, s=14, color=colour, marker="+", label=f"{name}, modelled")
+    units = ", ".join(dict.fromkeys(measurement.differences))
+    axes.set(xlabel="time, s", ylabel=units, title=measurement.title)
+    axes.legend(fontsize=8)
+
+
 def _values(rows: list[Row]) -> FloatArray:
     return np.array([[row.measured, row.modelled] for row in rows])
 
 
 def _draw_residuals(axes: Any, found: Identification) -> None:
     """Residuals of every measurement in standard deviations, case after case."""
+    latest = max((row.time or 0.0 for row in found.rows), default=0.0)
     for number, measurement in enumerate(found.model.scene.measurements):
         for held_out in (False, True):
             rows = [row for row in found.rows if row.measurement == number and row.held_out is held_out]
@@ -98,7 +121,12 @@ def _draw_residuals(axes: Any, found: Identification) -> None:
                 continue
             # Cases that were held out stand behind those that were fitted.
             shift = len(found.cases) if held_out else 0
-            places = [row.case + 1 + shift for row in rows]
+            # Rows of a motion stand side by side in the order of their times.
+            places = [row.case + 1.0 + shift for row in rows]
+            if rows[0].time is not None and latest > 0.0:
+                places = [
+                    place + WIDTH * ((row.time or 0.0) / latest - 0.5) for place, row in zip(places, rows, strict=True)
+                ]
             label = f"{measurement.title}, held out" if held_out else measurement.title
             style = {"marker": "x"} if held_out else {"marker": "o", "alpha": 0.6}
             axes.scatter(places, [row.residual for row in rows], s=12, label=label, color=COLOURS[number % 7], **style)

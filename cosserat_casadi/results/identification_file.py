@@ -45,6 +45,7 @@ def identification_result(found: Identification) -> dict[str, Any]:
         "unstable": list(found.unstable),
         "left_out": [{"where": case.where, "reason": case.reason} for case in found.left_out],
         "warnings": list(found.warnings),
+        **_steps(found),
         "discretisation": discretisation_entries(found.model),
     }
     plain_data: dict[str, Any] = plain(data)
@@ -89,6 +90,13 @@ def _own(found: Identification) -> dict[str, Any]:
         sigma = [_single(deviations[span]) for deviations in found.statistics.own]
         entries[entry.record.name] = {"value": values, "sigma": sigma, "cases": list(found.cases), "unit": entry.unit}
     return entries
+
+
+def _steps(found: Identification) -> dict[str, Any]:
+    """The steps of the motions that were measured, s, and their error in standard deviations; nothing without."""
+    if found.step is None:
+        return {}
+    return {"step": found.step, "step_error": found.step_error}
 
 
 def _single(values: npt.NDArray[Any]) -> Any:

@@ -36,14 +36,8 @@ from cosserat_casadi.scene.loads import (
     TipWrench,
 )
 from cosserat_casadi.scene.magnet import Dipole, Magnet
-from cosserat_casadi.scene.measurements import (
-    MEASUREMENTS,
-    Identification,
-    Measurement,
-    MeasurementRecord,
-    Prior,
-    Unknown,
-)
+from cosserat_casadi.scene.measurement_record import MEASUREMENTS, InputColumn, MeasurementRecord
+from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import OBSTACLES, Capsule, Lumen, Obstacle, ObstacleRecord, Plane, Sphere
 from cosserat_casadi.scene.parameters import NamedNumbers
@@ -63,6 +57,7 @@ from cosserat_casadi.scene.rods import (
 from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
+from cosserat_casadi.scene.unknowns import Identification, Prior, Unknown
 
 __all__ = [
     "ACTUATORS",
@@ -95,6 +90,7 @@ __all__ = [
     "Gravity",
     "Helix",
     "Identification",
+    "InputColumn",
     "InputField",
     "InputMotion",
     "Intrinsic",

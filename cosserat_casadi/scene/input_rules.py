@@ -161,6 +161,10 @@ def requested_fields(scene: SceneTables) -> dict[str, str]:
     for i, unknown in scene.tables("unknowns"):
         name = unknown.get("input")
         asked.append((name, f"unknowns[{i}] has the input {shown(name)}"))
+    if any("time" in measurement for _, measurement in scene.tables("measurements")):
+        for i, motion in scene.tables("motions"):
+            name = motion.get("input")
+            asked.append((name, f"motions[{i}] moves {shown(name)}"))
     for name, request in asked:
         named = input_field_of(name, owners) if isinstance(name, str) else None
         if named is not None:

@@ -102,15 +102,26 @@ def _title(key: str) -> str:
 
 def _kinds(family: Family[Any], level: int) -> Iterator[str]:
     """One section for each kind of a family."""
+    told: dict[str, object] = {}
     for word, record in family.records.items():
         title = f'`{family.key} = "{word}"`'
         yield _heading(level, title)
         # The word stands in the heading, and needs no line in the table.
-        yield from _record(record, path=family.table, level=level, without=family.key)
+        yield from _record(record, path=family.table, level=level, without=family.key, told=told)
 
 
-def _record(record: type[Record], path: str, level: int, without: str = "") -> Iterator[str]:
-    """The section of one record below its heading, then those of the tables in it."""
+def _record(
+    record: type[Record], path: str, level: int, without: str = "", told: dict[str, object] | None = None
+) -> Iterator[str]:
+    """The section of one record below its heading, then those of the tables in it.
+
+    Args:
+        record: the record.
+        path: of its table in the scene.
+        level: of its heading.
+        without: a key that stands in the heading.
+        told: tables that kinds of one family share, which have a section already; those that get one are added.
+    """
     yield f"{inspect.getdoc(record)}\n"
     if record.example:
         yield _example(record)
@@ -121,6 +132,10 @@ def _record(record: type[Record], path: str, level: int, without: str = "") -> I
     for key, kinds in contents_by_key(record).items():
         if kinds is None:
             continue
+        if told is not None:
+            if told.get(key) is kinds:
+                continue
+            told[key] = kinds
         yield _heading(level + 1, f"`{path}.{key}`")
         if isinstance(kinds, Family):
             yield f"{_sentence(record.model_fields[key].description)}\n"

@@ -17,7 +17,7 @@ from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.faults import Fault, Path, SceneTables, Table, listing, shown
 from cosserat_casadi.scene.input_rules import bounds_of_no_input, free_names, inputs_that_are_not, requested_fields
 from cosserat_casadi.scene.loads import LOADS
-from cosserat_casadi.scene.measurements import MEASUREMENTS, Unknown, overlap
+from cosserat_casadi.scene.measurement_record import MEASUREMENTS, overlap
 from cosserat_casadi.scene.motion_rules import motions_of_no_input
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import OBSTACLES
@@ -25,6 +25,7 @@ from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.rods import Rod, admitted_strains
 from cosserat_casadi.scene.targets import TARGETS, Bound
+from cosserat_casadi.scene.unknowns import Unknown
 
 Rule = Callable[[SceneTables], Iterator[Fault]]
 
@@ -43,6 +44,9 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "unknowns": Unknown,
 }
 """What the lists of a scene hold."""
+
+OF_ONE_COLUMN = ("name", "columns", "inputs", "scale", "shift", "sigma", "held_out")
+"""Keys of a measurement that do not say which number of which rows it is."""
 
 SINGULAR = {
     "loads": "load",
@@ -248,6 +252,23 @@ def parameters_that_are_not(scene: SceneTables) -> Iterator[Fault]:
     yield from parameter_faults(names, paths, holders, free_names(scene), requested_fields(scene))
 
 
+def measured_twice(scene: SceneTables) -> Iterator[Fault]:
+    """Two measurements read a column of the same rows as the same number: it would count twice."""
+    first: list[tuple[int, dict[str, Any], list[Any]]] = []
+    for i, table in scene.tables("measurements"):
+        columns = table.get("columns")
+        if not isinstance(columns, list):
+            continue
+        rows = {key: value for key, value in table.items() if key not in OF_ONE_COLUMN}
+        for earlier, earlier_rows, earlier_columns in first:
+            shared = [one for one, other in zip(columns, earlier_columns, strict=False) if one and one == other]
+            if rows == earlier_rows and shared:
+                problem = f"measurements[{earlier}] reads {shown(shared[0])} of these rows already"
+                yield Fault(("measurements", i, "columns"), problem, "read it once, or other rows, by where")
+                break
+        first.append((i, rows, columns))
+
+
 RULES: tuple[Rule, ...] = (
     repeated_names,
     shared_names,
@@ -261,6 +282,7 @@ RULES: tuple[Rule, ...] = (
     miscounted_modes,
     inputs_that_are_not,
     parameters_that_are_not,
+    measured_twice,
     bounds_of_no_input,
     motions_of_no_input,
 )

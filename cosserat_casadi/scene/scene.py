@@ -14,7 +14,7 @@ from cosserat_casadi.scene.constraints import Body, Joint, Support
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
-from cosserat_casadi.scene.measurements import Identification, Measurement, Unknown
+from cosserat_casadi.scene.measurements import Measurement
 from cosserat_casadi.scene.motions import InputMotion
 from cosserat_casadi.scene.obstacles import Obstacle
 from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, NamedNumbers, holders_of, named_numbers
@@ -23,6 +23,7 @@ from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
+from cosserat_casadi.scene.unknowns import Identification, Unknown
 from cosserat_casadi.scene.values import NotEmpty, without_repetition
 
 
@@ -166,7 +167,10 @@ inputs = ["push.force", "cable.tension"]
         return self._with_inputs(moving)
 
     def with_unknowns(self) -> Scene:
-        """The scene in which what its measurements set is an input, and what is unknown an input or a parameter."""
+        """The scene in which what its measurements set is an input, and what is unknown an input or a parameter.
+
+        Where something was measured over time, what moves is an input too.
+        """
         names = [name for measurement in self.measurements for name in measurement.set_inputs]
         names += [unknown.input for unknown in self.unknowns if unknown.input is not None]
         # The same owners as in the rules: inputs of a load or an actuator hide those of a rod of the same name.
@@ -178,10 +182,17 @@ inputs = ["push.force", "cable.tension"]
             fields.append(f"{owner}.{max(known, key=len)}")
         parameters = [unknown.parameter for unknown in self.unknowns if unknown.parameter is not None]
         further = [name for name in parameters if name not in self.parameters]
+        if self.measured_over_time:
+            fields += [motion.input for motion in self.motions]
         scene = self._with_inputs(dict.fromkeys(fields))
         if not further:
             return scene
         return scene.model_copy(update={"parameters": (*self.parameters, *further)})
+
+    @property
+    def measured_over_time(self) -> bool:
+        """Whether something was measured in the motion of the scene, and not in its equilibria alone."""
+        return any(getattr(measurement, "time", None) is not None for measurement in self.measurements)
 
     def _with_inputs(self, names: Iterable[str]) -> Scene:
         """The scene in which these inputs are free as well, behind what it leaves free already."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from cosserat_casadi import read_scene
+from cosserat_casadi import Identification, Problem, SceneError, read_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND, REFUSED
 from cosserat_casadi.cli.main import app, run
 from tests.conftest import ROOT
@@ -92,3 +92,18 @@ def test_a_scene_without_measurements_is_refused(capsys: pytest.CaptureFixture[s
     scene = str(ROOT / "examples" / "nitinol_wire.toml")
     assert run(lambda **keywords: app(["identify", scene], **keywords)) == REFUSED
     assert "unknowns: missing" in capsys.readouterr().err
+
+
+def test_what_was_found_and_is_no_scene_is_told(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refused(self: Identification, scene: object = None) -> None:
+        raise SceneError(Problem("rods[0].section.radius", "must be < 1, got 2", "look at the unit"))
+
+    monkeypatch.setattr(Identification, "fitted_scene", refused)
+    found, fitted = folder / "found.json", folder / "fitted.toml"
+    assert identify(folder, "--output", str(found), "--write", str(fitted)) == NOT_FOUND
+    assert written(found)["converged"]
+    assert not fitted.exists()
+    told = capsys.readouterr().err
+    assert "No scene was written: rods[0].section.radius: must be < 1, got 2 (look at the unit)" in told

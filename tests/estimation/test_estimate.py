@@ -154,12 +154,25 @@ def test_cells_that_are_empty_are_not_measured() -> None:
     assert found.sigma[1, 2] > found.sigma[0, 2]
 
 
+FREQUENCY = {"quantity": "frequency", "file": "shapes.csv", "columns": ["f"], "sigma": 0.1}
+OVER_TIME = {
+    "quantity": "position",
+    "file": "shapes.csv",
+    "time": "t",
+    "rod": "rod",
+    "columns": ["x", "y", "z"],
+    "sigma": 0.1,
+}
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
         ({"unknowns": [{"input": "push.force"}]}, "the same in all rows"),
         ({"unknowns": []}, "name what is to be felt"),
         ({"measurements": []}, "say what was measured"),
+        ({"measurements": [FREQUENCY]}, "none of their vibrations"),
+        ({"measurements": [OVER_TIME], "simulation": {"duration": 1.0}}, "and no motion"),
     ],
 )
 def test_scenes_that_ask_for_something_else_are_refused(changes: dict[str, Any], message: str) -> None:

@@ -10,7 +10,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Model, SceneError, build
-from cosserat_casadi.identification.cases import Case, read_cases
+from cosserat_casadi.identification.cases import Case, Datum, read_cases
+from cosserat_casadi.identification.measured_rows import by_instant
 from cosserat_casadi.scene import read_scene, scene_from_dict
 
 ROD: dict[str, Any] = {
@@ -138,3 +139,13 @@ def test_a_file_lies_beside_its_scene(tmp_path: Path) -> None:
         read_cases(scene, layout)
     assert "has the column 'x' twice" in str(refusal.value)
     assert "line 2: has 2 values for 3 columns" in str(refusal.value)
+
+
+def test_sections_of_one_equilibrium_or_instant_stand_together() -> None:
+    def row(time: float) -> Datum:
+        return Datum("somewhere", 0.5, np.zeros(3), time)
+
+    at_rest = by_instant([(0, [row(float("nan")), row(float("nan"))]), (1, [row(float("nan"))])])
+    assert [(case, len(data)) for case, data in at_rest] == [(0, 2), (1, 1)]
+    moving = by_instant([(0, [row(0.1), row(0.2), row(0.1)])])
+    assert [(case, len(data)) for case, data in moving] == [(0, 2), (0, 1)]

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.identification import batch
+from benchmarks.identification import one_try
 
-BATCHES = 20
+TRIES = 100
 
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth() -> None:
     """`benchmarks/identification.py` does the same a thousand times."""
-    tries = [one for seed in range(1000, 1000 + BATCHES) for one in batch(seed)]
+    tries = [one_try(seed) for seed in range(1000, 1000 + TRIES)]
     assert all(one.converged for one in tries)
     deviations = np.array([one.deviations for one in tries])
     # Of 400 normal numbers, four of a try correlated.

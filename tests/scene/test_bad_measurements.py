@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cosserat_casadi import SceneError, parse_scene
-from cosserat_casadi.scene.measurements import overlap
+from cosserat_casadi.scene.measurement_record import overlap
 from cosserat_casadi.scene.writing import scene_text
 
 ROD = """\

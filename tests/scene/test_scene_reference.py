@@ -15,7 +15,7 @@ import pytest
 from cosserat_casadi import scene_from_dict
 from cosserat_casadi.scene import Scene, reference
 from cosserat_casadi.scene.families import Family, contents_of
-from cosserat_casadi.scene.measurements import MeasurementRecord
+from cosserat_casadi.scene.measurement_record import MeasurementRecord
 from cosserat_casadi.scene.records import Record
 from cosserat_casadi.scene.rods import SectionRecord
 
@@ -77,16 +77,19 @@ def completed(example: str) -> dict[str, Any]:
     return tables
 
 
-def records(record: type[Record] = Scene) -> list[type[Record]]:
-    """Every record that a scene may hold."""
+def records(record: type[Record] = Scene, told: dict[str, Any] | None = None) -> list[type[Record]]:
+    """Every record that a scene may hold; a table that kinds of one family share is told once."""
     met = [record]
-    for field in record.model_fields.values():
+    for key, field in record.model_fields.items():
         contents = contents_of(field)
         if isinstance(contents, Family):
+            shared: dict[str, Any] = {}
             for kind in contents.records.values():
-                met += records(kind)
-        elif contents is not None:
+                met += records(kind, shared)
+        elif contents is not None and (told is None or told.get(key) is not contents):
             met += records(contents)
+            if told is not None:
+                told[key] = contents
     return met
 
 

@@ -11,7 +11,11 @@ from rich.console import Console
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import solve_display
-from cosserat_casadi.cli.reports.identification import print_identification, print_identification_warnings
+from cosserat_casadi.cli.reports.identification import (
+    print_identification,
+    print_identification_warnings,
+    print_refused_scene,
+)
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.identification import identify_scene
@@ -36,7 +40,7 @@ def identify(
 ) -> None:
     """Find numbers of a scene from measurements, and what these leave open.
 
-    Exit codes: 0 found, 2 refused, 3 not found, or not determined by the data.
+    Exit codes: 0 found, 2 refused, 3 not found, not determined by the data, or found and no scene with --write.
     """
     problems: list[Problem] = []
     with collect_problems(problems):
@@ -71,10 +75,18 @@ def identify(
         save_identification_plot(found, plot)
     written = given_files(output, plot)
     # A scene with numbers that were not found would look like one that was.
+    refusal: SceneError | None = None
     if write is not None and found.converged:
-        write_atomically(write, scene_text(beside(found.fitted_scene(checked_scene), write.parent)).encode())
-        written.append(write)
+        try:
+            fitted = found.fitted_scene(checked_scene)
+        except SceneError as error:
+            refusal = error
+        else:
+            write_atomically(write, scene_text(beside(fitted, write.parent)).encode())
+            written.append(write)
     print_identification(Console(), found, written)
     print_identification_warnings(Console(stderr=True), found)
-    if not found.converged:
+    if refusal is not None:
+        print_refused_scene(Console(stderr=True), refusal)
+    if not found.converged or refusal is not None:
         raise typer.Exit(NOT_FOUND)

@@ -17,6 +17,7 @@ from cosserat_casadi.cli.reports.format import (
     table_of,
     title_line,
 )
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification import Identification
 from cosserat_casadi.scene.spelling import counted
 
@@ -43,6 +44,12 @@ def print_identification_warnings(console: Console, found: Identification) -> No
     """Print what a user must know of what was found."""
     for warning in found.warnings:
         print_plain(console, f"[bold yellow]Warning:[/] {escape(warning)}", soft_wrap=True)
+
+
+def print_refused_scene(console: Console, refusal: SceneError) -> None:
+    """Print why what was found makes no scene: nothing was written."""
+    for problem in refusal.problems:
+        print_plain(console, f"[bold red]No scene was written:[/] {escape(str(problem))}", soft_wrap=True)
 
 
 def _unknowns(found: Identification) -> Table:
@@ -90,6 +97,8 @@ def _residuals(found: Identification) -> str:
     outliers = len(found.outliers)
     if outliers:
         sentence += f"; {counted(outliers, 'outlier')}"
+    if found.step is not None:
+        sentence += f"; steps of {found.step:.3g} s, which leave {found.step_error:.2g} σ"
     starts, ended_here = found.starts
     if starts > 1:
         sentence += f"; {ended_here} of {starts} starts ended here"

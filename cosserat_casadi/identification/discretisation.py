@@ -1,0 +1,137 @@
+"""Modes and nodes that serve what was measured: equilibria, vibrations and motions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.accuracy.refine import solve_scene
+from cosserat_casadi.accuracy.tune import common_discretisation, fixed, unfixed, union_of
+from cosserat_casadi.identification.cases import Case, Datum
+from cosserat_casadi.identification.fitted import with_inputs
+from cosserat_casadi.identification.misfit import inputs_of, moving
+from cosserat_casadi.identification.motions import StartInputs
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.modes import ModesOutcome, modes_of_scene
+from cosserat_casadi.motion.resolve import simulate_scene
+from cosserat_casadi.rod.discretisation import Discretisation
+from cosserat_casadi.scene.measurements import ModeMeasurement
+
+SAMPLES = 4
+"""Cases that a discretisation is chosen on."""
+
+SHARE_OF_SIGMA = 0.1
+"""Error of a motion, in standard deviations of its positions, that is small enough."""
+
+LEAST = 1e-6
+"""Tolerance of a motion, over the length, below which none is asked for where the scene does not."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A scene on modes and nodes that were chosen, and what is to be said of them.
+
+    Attributes:
+        scene: with fixed modes and nodes, unless no case has an equilibrium to choose them on.
+        warnings: sentences.
+    """
+
+    scene: scenes.Scene
+    warnings: tuple[str, ...] = ()
+
+
+def with_discretisation(scene: scenes.Scene, draft: Model, cases: Sequence[Case]) -> Choice:
+    """The scene on modes and nodes that serve those cases that lie farthest apart.
+
+    Args:
+        scene: with all that is unknown or set by columns free.
+        draft: a model of it.
+        cases: what was measured.
+    """
+    if scene.accuracy.fixed:
+        return Choice(scene)
+    baked = unfixed(scene.baked(), scene.accuracy.tolerance)
+    warnings: list[str] = []
+    chosen: list[Discretisation] = []
+    moves = moving(cases)
+    inputs = StartInputs(draft).of(inputs_of(cases), moves)
+    unloaded = scene.simulation is not None and scene.simulation.start == "unloaded"
+    at_rest = inputs[~moves] if unloaded else inputs
+    chosen += _for_equilibria(baked, draft, at_rest)
+    numbers = [int(datum.at) for case in cases for datum in _vibrations(scene, case)]
+    if numbers:
+        row = next(i for i, case in enumerate(cases) if _vibrations(scene, case))
+        modes = modes_of_scene(baked, draft.inputs.unpack(inputs[row]), count=max(numbers) + 1)
+        chosen += modes.model.discretisation.values()
+        if modes.outcome is not ModesOutcome.RESOLVED:
+            warnings.append(f"The discretisation for frequencies: {modes.message}")
+    if np.any(moves):
+        moved = _moving_scene(baked, draft, cases[int(np.flatnonzero(moves)[0])])
+        motion = simulate_scene(moved)
+        chosen += motion.model.discretisation.values()
+        if not motion.converged:
+            warnings.append(f"The discretisation for motions: {motion.message}")
+    if not chosen:
+        return Choice(scene)
+    return Choice(fixed(scene, union_of(chosen)), tuple(warnings))
+
+
+def _for_equilibria(baked: scenes.Scene, draft: Model, inputs: FloatArray) -> list[Discretisation]:
+    """One for the equilibria of some rows of inputs, shape (cases, size); none where none has an equilibrium."""
+    if not len(inputs):
+        return []
+    chosen = [(baked, draft.inputs.unpack(inputs[row])) for row in _far_apart(inputs, SAMPLES)]
+    alone = [solve_scene(one, values) for one, values in chosen]
+    used = [i for i, solution in enumerate(alone) if solution.converged]
+    if not used:
+        return []
+    discretisation, _ = common_discretisation(
+        [chosen[i] for i in used],
+        [alone[i] for i in used],
+        solve_scene,
+    )
+    return [discretisation]
+
+
+def _vibrations(scene: scenes.Scene, case: Case) -> list[Datum]:
+    """What was measured of vibrations in a case."""
+    data: list[Datum] = []
+    for number, rows in case.data.items():
+        if isinstance(scene.measurements[number], ModeMeasurement):
+            data += rows
+    return data
+
+
+def _moving_scene(scene: scenes.Scene, draft: Model, case: Case) -> scenes.Scene:
+    """The scene with the inputs of a case, and with a tolerance of its motion that serves what was measured."""
+    given = draft.inputs.unpack(case.inputs)
+    moved = {motion.input for motion in scene.motions if motion.is_table}
+    changed = with_inputs(scene, {name: value for name, value in given.items() if name not in moved})
+    simulation = changed.simulation
+    assert simulation is not None, "rules of the scene"
+    if simulation.tolerance is not None:
+        return changed
+    sigmas = [
+        float(np.min(scene.measurements[number].sigma))
+        for number in case.data
+        if scene.measurements[number].differences[0] == "m"
+    ]
+    length = sum(rod.length for rod in scene.rods)
+    tolerance = max([LEAST, *(SHARE_OF_SIGMA * sigma / length for sigma in sigmas)])
+    return changed.model_copy(update={"simulation": simulation.model_copy(update={"tolerance": min(tolerance, 1e-2)})})
+
+
+def _far_apart(points: FloatArray, count: int) -> list[int]:
+    """Rows of points that lie far from each other, each column over its range; the first is farthest from zero."""
+    width = np.ptp(points, axis=0)
+    scaled = points / np.where(width > 0, width, np.inf)
+    chosen = [int(np.argmax(np.linalg.norm(scaled, axis=1)))]
+    distance = np.linalg.norm(scaled - scaled[chosen[0]], axis=1)
+    while len(chosen) < count and distance.max() > 0:
+        chosen.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(scaled - scaled[chosen[-1]], axis=1))
+    return chosen

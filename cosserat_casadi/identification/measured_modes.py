@@ -1,0 +1,315 @@
+"""Measured frequencies and damping ratios of small vibrations about the equilibrium, with exact derivatives.
+
+A mode is λ with (λ² M + λ C + K) z = 0 = l (λ² M + λ C + K), and changes by dλ = −l (λ² dM + λ dC + dK) z where the
+vectors are scaled to l (2λ M + C) z = 1 (P. Lancaster, *Numerische Mathematik* 6 (1964) 377–387). Of r modes with one
+λ, such as the two bendings of a round rod, none has a derivative of its own. Their mean has one: the trace, over r, of
+the r×r matrix of these numbers. It is what all of them are compared with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.identification.cases import Datum
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.eigenproblem import ComplexArray, eigenpairs
+from cosserat_casadi.motion.modes import small_motions
+from cosserat_casadi.motion.simulate import immovable
+from cosserat_casadi.motion.small_motions import SmallMotions
+from cosserat_casadi.scene.measurements import ModeMeasurement
+
+Indices = npt.NDArray[np.int64]
+
+ONE_FREQUENCY = 1e-6
+"""Distance of two eigenvalues, relative to their size, at which they are one: rounding splits them by less."""
+
+PARTED = 1e-6
+"""Distance of eigenvalues, relative to their size, that an unknown makes of one where it changes by its own size."""
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Modes that have one eigenvalue.
+
+    Attributes:
+        value: λ, the mean of theirs, 1/s.
+        first: number of the first of them among those that swing, from 1 on.
+        right: their vectors z in all unknowns, one a column, shape (size, r).
+        left: vectors l of the same size, one a row, with l (2λ M + C) z = 1, shape (r, size).
+    """
+
+    value: complex
+    first: int
+    right: ComplexArray
+    left: ComplexArray
+
+    @property
+    def count(self) -> int:
+        """Number r of modes."""
+        return int(self.right.shape[1])
+
+    @property
+    def numbers(self) -> range:
+        """Their numbers among those that swing, from 1 on."""
+        return range(self.first, self.first + self.count)
+
+
+class Vibrations:
+    """The modes of a model about equilibria, and their derivatives.
+
+    Attributes:
+        model: with its parameters.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._slope: ca.Function | None = None
+
+    def clusters(self, x: FloatArray, inputs: FloatArray, p: FloatArray, numbers: Sequence[int]) -> dict[int, Cluster]:
+        """The modes of some numbers, each with those that have its eigenvalue; what does not swing is left out.
+
+        Args:
+            x: unknowns of an equilibrium, shape (size,).
+            inputs: stacked inputs.
+            p: stacked parameters.
+            numbers: of modes among those that swing, from 1 on.
+
+        Returns:
+            clusters by the numbers of their modes.
+        """
+        motions = small_motions(self.model, x, inputs, p=p if self.model.parameters.size else None)
+        if not np.any(motions.free_mass):
+            return {}
+        conservative = self.model.has_potential(inputs)
+        pairs = eigenpairs(motions.free_stiffness, motions.free_damping, motions.free_mass, conservative=conservative)
+        swinging = pairs.values[pairs.values.imag > 0.0]
+        found: dict[int, Cluster] = {}
+        for number in numbers:
+            if number in found or number > len(swinging):
+                continue
+            cluster = _cluster(motions, swinging, number - 1)
+            found.update(dict.fromkeys(cluster.numbers, cluster))
+        return found
+
+    def derivatives(self, cluster: Cluster, x: FloatArray, inputs: FloatArray, p: FloatArray) -> ComplexArray:
+        """The matrices −l_i (λ² dM + λ dC + dK) z_j by x, inputs and p, stacked, shape (r, r, arguments), 1/s."""
+        function = self._slope_function()
+        given = [x, inputs, p] if self.model.parameters.size else [x, inputs]
+        count = cluster.count
+        matrices = np.empty((count, count, self._arguments), dtype=complex)
+        for i, left in enumerate(cluster.left):
+            for j, right in enumerate(cluster.right.T):
+                by_rates = right * cluster.value
+                moved = np.concatenate([right, by_rates, by_rates * cluster.value])
+                parts = [left.real, left.imag, moved.real, moved.imag]
+                real, imaginary = (slope.full()[:, 0] for slope in function(*given, *parts))
+                matrices[i, j] = -(real + 1j * imaginary)
+        return matrices
+
+    @property
+    def _arguments(self) -> int:
+        return self.model.size + self.model.inputs.size + self.model.parameters.size
+
+    def _slope_function(self) -> ca.Function:
+        """(x, inputs, p, l, (z, λz, λ²z)) ↦ derivatives of l (λ² M + λ C + K) z by x, inputs and p.
+
+        Real and imaginary parts of l and of the motion stand side by side. The sum of matrices is the derivative of the
+        residual along the motion, so that no matrix is written.
+        """
+        if self._slope is not None:
+            return self._slope
+        model = self.model
+        size = model.size
+        x = ca.MX.sym("x", size)
+        inputs = ca.MX.sym("inputs", model.inputs.size)
+        given = [x, inputs]
+        between = []
+        if model.parameters.size:
+            between.append(ca.MX.sym("p", model.parameters.size))
+            given += between
+        state = ca.MX.sym("state", 3 * size)
+        still = ca.DM.zeros(model.inputs.size, 1)
+        split = ca.vertsplit(state, size)
+        residual = model.inverse_dynamics(*split, inputs, *between, still, still)
+        change = ca.MX.sym("change", 3 * size)
+        along = ca.Function("along", [state, *given[1:], change], [ca.jtimes(residual, state, change)])
+        at_rest = ca.vertcat(x, ca.DM.zeros(2 * size, 1))
+
+        left = [ca.MX.sym(f"left_{part}", size) for part in ("real", "imaginary")]
+        moved = [ca.MX.sym(f"moved_{part}", 3 * size) for part in ("real", "imaginary")]
+        real, imaginary = (along(at_rest, *given[1:], part) for part in moved)
+        products = [
+            ca.dot(left[0], real) - ca.dot(left[1], imaginary),
+            ca.dot(left[0], imaginary) + ca.dot(left[1], real),
+        ]
+        slopes = [ca.vertcat(*(ca.densify(ca.gradient(product, by)) for by in given)) for product in products]
+        self._slope = ca.Function("slope", [*given, *left, *moved], slopes)
+        return self._slope
+
+
+def _cluster(motions: SmallMotions, swinging: ComplexArray, index: int) -> Cluster:
+    """The modes that have the eigenvalue of one of them.
+
+    Args:
+        motions: the equations.
+        swinging: eigenvalues with positive imaginary part, by size.
+        index: of the one.
+    """
+    alike = np.abs(swinging - swinging[index]) <= ONE_FREQUENCY * abs(swinging[index])
+    chosen = np.flatnonzero(alike)
+    value = complex(np.mean(swinging[chosen]))
+    count = len(chosen)
+    free = _pencil(motions.free_stiffness, motions.free_damping, motions.free_mass, value)
+    left_free, _, right_free = np.linalg.svd(free)
+    moving = motions.moving
+    algebraic = motions.algebraic
+    whole = _pencil(motions.stiffness, motions.damping, motions.mass, value)
+    right = np.asarray(motions.displacement(right_free[-count:].conj().T), dtype=complex)
+    left = np.zeros_like(right)
+    left[moving] = motions.roots[:, None] * (motions.basis @ left_free[:, -count:].conj())
+    if algebraic.size:
+        # Multipliers and tensions follow from the rows of the coordinates, and the other way round on the left.
+        pull = whole[np.ix_(moving, algebraic)]
+        gradients = whole[np.ix_(algebraic, moving)].T
+        inside = whole[np.ix_(moving, moving)]
+        right[algebraic] = -np.linalg.lstsq(pull, inside @ right[moving], rcond=None)[0]
+        left[algebraic] = -np.linalg.lstsq(gradients, inside.T @ left[moving], rcond=None)[0]
+    slope = 2.0 * value * motions.mass + motions.damping
+    normalised = np.linalg.solve(left.T @ slope @ right, left.T)
+    return Cluster(value, int(chosen[0]) + 1, right, normalised)
+
+
+def _pencil(stiffness: FloatArray, damping: FloatArray, mass: FloatArray, value: complex) -> ComplexArray:
+    return np.asarray(value**2 * mass + value * damping + stiffness)
+
+
+@dataclass(frozen=True)
+class JointModes:
+    """Modes of one frequency, of which the mean is compared.
+
+    Attributes:
+        case: number of their case.
+        numbers: of the modes.
+        parted: which unknowns would part them, shape (n,).
+    """
+
+    case: int
+    numbers: range
+    parted: npt.NDArray[np.bool_]
+
+
+class MeasuredModes:
+    """All rows of one measurement of frequencies or damping ratios.
+
+    Attributes:
+        record: the measurement.
+        cases: the cases that have such rows, shape (count,).
+        data: these rows, in the order of the residuals, each with the number of its entry.
+        row_cases: the case of each.
+        places: where its case stands among those that have rows, shape (rows,).
+        sigma: standard deviation of each entry.
+    """
+
+    def __init__(self, vibrations: Vibrations, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
+        self.record = record
+        self.cases: Indices = np.array([case for case, _ in rows], dtype=np.int64)
+        self.data = [(datum, 0) for _, data in rows for datum in data]
+        self.row_cases = [case for case, data in rows for _ in data]
+        self.places: Indices = np.array([i for i, (_, data) in enumerate(rows) for _ in data], dtype=np.int64)
+        self.sigma = np.array([np.max(record.sigma)])
+        self._vibrations = vibrations
+        self._measured = np.array([datum.values[0] for datum, _ in self.data])
+        self._numbers = [[int(datum.at) for datum in data] for _, data in rows]
+
+    def residual(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
+        """Differences in standard deviations, shape (rows,); NaN of modes that do not swing.
+
+        Args:
+            x: unknowns of each case, shape (count, size).
+            inputs: theirs, shape (count, size of the inputs).
+            p: parameters.
+        """
+        modelled = []
+        for i, numbers in enumerate(self._numbers):
+            found = self._vibrations.clusters(x[i], inputs[i], p, numbers)
+            modelled += [self._quantity(found[number].value) if number in found else np.nan for number in numbers]
+        return np.asarray((np.array(modelled) - self._measured) / self.sigma)
+
+    def derivatives(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Derivatives of the residual with x, inputs and p of its case, (rows, …) each."""
+        rows = []
+        for i, numbers in enumerate(self._numbers):
+            found = self._vibrations.clusters(x[i], inputs[i], p, numbers)
+            slopes: dict[int, FloatArray] = {}
+            for number in numbers:
+                cluster = found[number]
+                if cluster.first not in slopes:
+                    matrices = self._vibrations.derivatives(cluster, x[i], inputs[i], p)
+                    of_mean = np.trace(matrices) / cluster.count
+                    slopes[cluster.first] = self._slope(cluster.value, of_mean)
+                rows.append(slopes[cluster.first])
+        stacked = np.array(rows) / self.sigma
+        ends = np.cumsum([x.shape[1], inputs.shape[1]])
+        by_x, by_inputs, by_p = np.split(stacked, ends, axis=1)
+        return by_x, by_inputs, by_p
+
+    def joint_modes(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray, by_unknowns: FloatArray, sizes: FloatArray
+    ) -> list[JointModes]:
+        """Measured modes that have one frequency, case after case.
+
+        Args:
+            x: unknowns of each case, shape (count, size).
+            inputs: theirs, shape (count, size of the inputs).
+            p: parameters.
+            by_unknowns: derivatives of (x, inputs, p) of each case with the unknowns, shape (count, arguments, n).
+            sizes: of the unknowns, shape (n,).
+        """
+        joint = []
+        for i, numbers in enumerate(self._numbers):
+            found = self._vibrations.clusters(x[i], inputs[i], p, numbers)
+            for cluster in {cluster.first: cluster for cluster in found.values()}.values():
+                if cluster.count == 1:
+                    continue
+                matrices = self._vibrations.derivatives(cluster, x[i], inputs[i], p) @ (by_unknowns[i] * sizes)
+                alike = np.trace(matrices) / cluster.count
+                parting = matrices - np.eye(cluster.count)[:, :, None] * alike
+                largest = np.abs(parting).max(axis=(0, 1))
+                joint.append(JointModes(int(self.cases[i]), cluster.numbers, largest > PARTED * abs(cluster.value)))
+        return joint
+
+    def _quantity(self, value: complex) -> float:
+        """The frequency |λ| / 2π, Hz, or the damping ratio −Re λ / |λ|."""
+        if self.record.quantity == "frequency":
+            return abs(value) / (2 * np.pi)
+        return -value.real / abs(value)
+
+    def _slope(self, value: complex, change: ComplexArray) -> FloatArray:
+        """Derivative of the quantity where λ has the derivative that is given."""
+        size = abs(value)
+        of_size = (np.conj(value) * change).real / size
+        if self.record.quantity == "frequency":
+            return np.asarray(of_size / (2 * np.pi))
+        return np.asarray(-change.real / size + value.real * of_size / size**2)
+
+
+def check_vibrations(model: Model) -> None:
+    """Refuse vibrations of what has no mass.
+
+    Raises:
+        SceneError: a measurement of them is of a scene in which a rod has none.
+    """
+    if any(isinstance(record, ModeMeasurement) for record in model.scene.measurements):
+        problems = immovable(model.at())
+        if problems:
+            raise SceneError(*problems)

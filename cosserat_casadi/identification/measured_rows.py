@@ -1,0 +1,106 @@
+"""Measured rows beside the model's numbers: the residuals of one measurement, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.identification.cases import Datum
+from cosserat_casadi.identification.equilibria import split
+from cosserat_casadi.identification.quantities import difference
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+Indices = npt.NDArray[np.int64]
+
+
+class MeasuredRows:
+    """All rows of one measurement of what follows from unknowns and inputs at one place: an equilibrium, or an instant.
+
+    Attributes:
+        record: the measurement.
+        cases: the case of each place, shape (count,).
+        times: of each place in the motion of its case, s, shape (count,); NaN of equilibria.
+        data: these rows, in the order of the residuals, each with the number of its entry.
+        row_cases: the case of each.
+        places: the place of each, shape (rows,).
+        sigma: standard deviations of the entries of all sections of a place, one after the other.
+    """
+
+    def __init__(self, model: Model, record: Any, rows: Sequence[tuple[int, list[Datum]]]) -> None:
+        self.record = record
+        self.cases: Indices = np.array([case for case, _ in rows], dtype=np.int64)
+        self.times = np.array([data[0].time for _, data in rows])
+        count = len(rows)
+        sections = max(len(data) for _, data in rows)
+        entries = len(record.entries)
+        differences = len(record.differences)
+        self._at = np.zeros((count, sections))
+        measured = np.zeros((count, entries, sections))
+        if record.quantity == "pose":
+            measured[:, 3] = 1.0
+        known = np.zeros((count, sections, differences), dtype=bool)
+        self.data: list[tuple[Datum, int]] = []
+        self.row_cases: list[int] = []
+        places = []
+        for i, (case, data) in enumerate(rows):
+            for k, datum in enumerate(data):
+                self._at[i, k] = 0.0 if np.isnan(datum.at) else datum.at
+                given = np.isfinite(datum.values)
+                measured[i, given, k] = datum.values[given]
+                known[i, k] = given[:differences]
+                for entry in np.flatnonzero(known[i, k]).tolist():
+                    self.data.append((datum, entry))
+                    self.row_cases.append(case)
+                    places.append(i)
+        self.places: Indices = np.array(places, dtype=np.int64)
+        self._measured = measured
+        self._known = known.reshape(count, sections * differences)
+        deviations = np.broadcast_to(np.asarray(record.sigma, dtype=float), differences)
+        self.sigma = np.tile(deviations, sections)
+        function = difference(model, record, sections)
+        arguments = function.mx_in()
+        value = ca.Function("value", arguments, function.call(arguments)[:1])
+        self._values = value.map("values", "serial", count, [2], [])
+        self._derivatives = function.map("derivatives", "serial", count, [2], [])
+
+    def _arguments(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> list[FloatArray]:
+        at = self._at.reshape(1, -1)
+        measured = self._measured.transpose(1, 0, 2).reshape(-1, at.size)
+        return [x.T, inputs.T, p, at, measured]
+
+    def residual(self, x: FloatArray, inputs: FloatArray, p: FloatArray) -> FloatArray:
+        """Differences in standard deviations, those measured, place after place, shape (rows,).
+
+        Args:
+            x: unknowns of each place, shape (count, size).
+            inputs: theirs, shape (count, size of the inputs).
+            p: parameters.
+        """
+        values = self._values(*self._arguments(x, inputs, p)).full().T
+        scaled = values / self.sigma
+        return np.asarray(scaled[self._known])
+
+    def derivatives(
+        self, x: FloatArray, inputs: FloatArray, p: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Derivatives of the residual with x, inputs and p of its place, (rows, …) each."""
+        count = len(self.cases)
+        _, *matrices = self._derivatives(*self._arguments(x, inputs, p))
+        by_x, by_inputs, by_p = ((split(matrix, count) / self.sigma[:, None])[self._known] for matrix in matrices)
+        return by_x, by_inputs, by_p
+
+
+def by_instant(rows: Sequence[tuple[int, list[Datum]]]) -> list[tuple[int, list[Datum]]]:
+    """Rows of cases as rows of instants: those of one time, or of one equilibrium, stand together."""
+    instants: dict[tuple[int, float | None], list[Datum]] = {}
+    for case, data in rows:
+        for datum in data:
+            # No number that is none equals another.
+            time = None if np.isnan(datum.time) else datum.time
+            instants.setdefault((case, time), []).append(datum)
+    return [(case, data) for (case, _), data in instants.items()]

@@ -1,0 +1,227 @@
+"""What the tables of measurements have in common: a file, its columns, and what each row was measured under.
+
+They do not act on the rods: a scene with measurements is solved like one without. A measured quantity is one record in
+scene/measurements.py, and one expression of the model in identification/quantities.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+
+from cosserat_casadi.scene.families import Family
+from cosserat_casadi.scene.faults import Fault, SceneTables, Table, shown
+from cosserat_casadi.scene.input_rules import input_part_faults
+from cosserat_casadi.scene.records import Entry, Record
+from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.scene.values import (
+    BY_LENGTH,
+    SEVERAL,
+    SINGLE,
+    Component,
+    NotEmpty,
+    Number,
+    Positive,
+    Share,
+    Whole,
+    numbers_of,
+)
+
+
+class InputColumn(Record):
+    """Where the values of an input, or the times, are: in a column, scaled and shifted, or one number for all rows."""
+
+    example: ClassVar[str] = """\
+[[measurements]]
+quantity = "position"
+file = "shapes.csv"
+inputs = { "push.force.z" = { column = "hung_grams", scale = -9.81e-3 } }
+rod = "finger"
+columns = ["x", "y", "z"]
+sigma = 1e-3
+"""
+
+    column: str | None = Field(None, description="name of the column; without one it is shift in every row")
+    scale: Number = Field(1.0, description="factor on the cells, such as 9.81e-3 for grams that hang, without unit")
+    shift: Number = Field(0.0, description="what is added to the scaled cells, in the unit of the input, or s")
+
+
+def _as_input_column(value: Any) -> Any:
+    """A text as the table of a column, a number as that of a constant."""
+    if isinstance(value, str):
+        return {"column": value}
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return {"shift": value}
+    return value
+
+
+MeasuredInput = Annotated[InputColumn, BeforeValidator(_as_input_column)]
+
+
+PositiveComponent = Annotated[
+    Annotated[Positive, SINGLE] | Annotated[tuple[Positive, ...], NotEmpty(), SEVERAL],
+    BY_LENGTH,
+]
+"""A number > 0, or several."""
+
+
+def _text_or_number(value: Any) -> str:
+    return TEXT.tag if isinstance(value, str) else NUMBER.tag
+
+
+TEXT = Tag("⟨text⟩")
+NUMBER = Tag("⟨number⟩")
+BY_TYPE = Discriminator(_text_or_number)
+"""Takes the choice marked `TEXT` for a text, the one marked `NUMBER` for anything else."""
+
+Abscissa = Annotated[Annotated[str, TEXT] | Annotated[Share, NUMBER], BY_TYPE]
+"""An abscissa X, or the column that has it."""
+
+MeasuredMode = Annotated[Annotated[str, TEXT] | Annotated[Annotated[Whole, Field(ge=1)], NUMBER], BY_TYPE]
+"""The number of a mode, or the column that has it."""
+
+Cell = Annotated[Annotated[str, TEXT] | Annotated[Number, NUMBER], BY_TYPE]
+"""What a cell of a table holds."""
+
+
+class HashedTable(dict[str, Any]):
+    """A table whose keys are the user's: frozen with its record, and so it has a hash."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(tuple(self.items()))
+
+
+class MeasurementRecord(Entry):
+    """Columns of a table that hold one measured quantity.
+
+    Attributes:
+        entries: what each of the columns holds.
+        differences: units of the numbers by which model and measurement differ: those that sigma is for.
+    """
+
+    entries: ClassVar[tuple[str, ...]] = ()
+    differences: ClassVar[tuple[str, ...]] = ()
+
+    if TYPE_CHECKING:
+        quantity: str  # each member declares its own word, where it stands among its keys
+    name: str | None = Field(None, description="what results call it; the file and the quantity when left out")
+    file: str = Field(description="CSV file with a header, a row for each measured case, relative to the scene's file")
+    # The class attribute `inputs` says which fields of an entry may stay free: none.
+    set_inputs: Annotated[dict[str, MeasuredInput], AfterValidator(HashedTable)] = Field(
+        default_factory=HashedTable,
+        alias="inputs",
+        description="by input, such as 'push.force.z': the column that sets it, a number, or a table of column, scale "
+        "and shift",
+    )
+    columns: Annotated[tuple[str, ...], NotEmpty()] = Field(
+        description="names of the columns of the quantity in their order; '' for what was not measured"
+    )
+    scale: Component = Field(
+        1.0, description="factor on the cells, such as 1e-3 for mm, without unit; a number, or one for each column"
+    )
+    shift: Component = Field(
+        0.0,
+        description="what is added to the scaled cells, in the unit of the quantity; a number, or one for each column",
+    )
+    sigma: PositiveComponent = Field(
+        description="standard deviation of one entry, in the unit of the quantity; a number, or one for each entry"
+    )
+    case: str | None = Field(
+        None, description="column whose equal cells make rows, of all files, one case; else each row is a case"
+    )
+    where: Annotated[dict[str, Cell], AfterValidator(HashedTable)] = Field(
+        default_factory=HashedTable,
+        description="values that columns must have in the rows that are read; all when left out",
+    )
+    held_out: Annotated[dict[str, Cell], AfterValidator(HashedTable)] = Field(
+        default_factory=HashedTable,
+        description="values that columns have in rows whose cases are held out: predicted and not fitted",
+    )
+
+    @property
+    def title(self) -> str:
+        """What results call it, where it has no other of that name."""
+        return self.name or f"{PurePath(self.file).stem} {self.quantity}"
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """As many columns, factors and deviations as the quantity has numbers."""
+        count = len(cls.entries)
+        columns = given.get("columns")
+        if isinstance(columns, list) and columns:
+            if len(columns) != count:
+                problem = f"must have {counted(count, 'column')}, got {len(columns)}"
+                yield Fault(("columns",), problem, f"{', '.join(cls.entries)}; '' for what was not measured")
+            elif not any(columns):
+                yield Fault(("columns",), "names no column", "leave the measurement out")
+        for key, wanted in (("scale", count), ("shift", count), ("sigma", len(cls.differences))):
+            got = len(numbers_of(given.get(key)))
+            if got > 1 and got != wanted:
+                yield Fault((key,), f"must be 1 number or {wanted}, got {got}")
+        if 0 in numbers_of(given.get("scale")):
+            yield Fault(("scale",), "must not be 0", "'' in columns is for what was not measured")
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """What the columns set are inputs of the scene."""
+        inputs = given.get("inputs")
+        if not isinstance(inputs, Mapping):
+            return
+        for name in inputs:
+            if isinstance(name, str):
+                for fault in input_part_faults(name, scene):
+                    yield fault.below(("inputs", name))
+
+
+MEASUREMENTS: Family[MeasurementRecord] = Family("measurements", key="quantity")
+"""Measured quantities."""
+
+
+class MovingMeasurement(MeasurementRecord):
+    """Something that can be measured over time, in the motion of the scene."""
+
+    time: MeasuredInput | None = Field(
+        None,
+        description="times of the rows in the motion of the scene, s: a column, or a table of column, scale and "
+        "shift; left out where each case is an equilibrium",
+    )
+
+    @classmethod
+    def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
+        """What is measured over time is measured in a motion, whose inputs no column sets."""
+        yield from super().scene_conflicts(given, scene)
+        if "time" not in given:
+            return
+        if scene.get("simulation") is None:
+            remedy = "add a table [simulation] with duration = 1.0 (s), or leave time out"
+            yield Fault(("time",), "is of a motion, and the scene has none", remedy)
+        inputs = given.get("inputs")
+        for name in inputs if isinstance(inputs, Mapping) else ():
+            mover = table_that_moves(name, scene)
+            if mover is not None:
+                problem = f"motions[{mover}] has the values of {shown(name)} over time"
+                yield Fault(("inputs", name), problem, "leave it out here, or move it by a wave")
+
+
+def table_that_moves(name: Any, scene: SceneTables) -> int | None:
+    """Number of the motion whose table stands for an input, or for a part of it; None where there is none."""
+    for i, motion in scene.tables("motions"):
+        moved = motion.get("input")
+        is_wave = "amplitude" in motion
+        if isinstance(name, str) and isinstance(moved, str) and not is_wave and overlap(name, moved):
+            return i
+    return None
+
+
+def overlap(one: str, other: str) -> bool:
+    """Whether one name is the other, or names a part of it.
+
+    ``load.force.x.1`` is no part of ``load.force.x``, which names the constant beside that coefficient.
+    """
+    shorter, longer = sorted((one, other), key=len)
+    if longer == shorter:
+        return True
+    return longer.startswith(f"{shorter}.") and not longer.removeprefix(f"{shorter}.").isdigit()
