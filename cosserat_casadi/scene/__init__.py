@@ -63,6 +63,7 @@ from cosserat_casadi.scene.rods import (
 from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
+from cosserat_casadi.scene.tubes import Tube, TubeSection, TubeStiffness
 
 __all__ = [
     "ACTUATORS",
@@ -131,6 +132,9 @@ __all__ = [
     "Target",
     "Tendon",
     "TipWrench",
+    "Tube",
+    "TubeSection",
+    "TubeStiffness",
     "Unknown",
     "parse_scene",
     "read_scene",

@@ -1,0 +1,292 @@
+"""Equilibria of concentric tubes while one joint moves, through folds and back, and where the robot snaps to.
+
+Where the path turns the robot loses its hold: a joint that moves on makes it snap. It comes to rest at the next stable
+equilibrium that the path has at the same joints, which lies beyond the next fold. See docs/tubes.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve
+from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.events import DETERMINANT, Event
+from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
+from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.robot import Robot, robot_of
+from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
+from cosserat_casadi.tubes.solve import MOST_STEPS, solution_near, solve_at, solve_tubes
+
+TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
+"""Limits of a path over a rotation; the angles at the tips count in rad, the joint as the share of its way."""
+
+SLIDING = ArcSettings(longest=0.05, load_factor_change=0.02, min_cosine=0.0, max_distance=5.0)
+"""Limits of a path over a translation.
+
+It has a corner where the order of the tubes' ends changes: short steps, which may go round it.
+"""
+
+WORDS = {
+    PathOutcome.CONVERGED: "The path reached the joint's value.",
+    PathOutcome.NO_START: "No path: at the joints of the scene no equilibrium was found.",
+    PathOutcome.TURNED_BACK: "The path led back: the joint would have to move the other way.",
+    PathOutcome.UNRESOLVED: "The path was followed, but its error is above the tolerance: allow a larger one.",
+}
+"""Sentences of paths of tubes; those of other outcomes are their own."""
+
+
+@dataclass(frozen=True)
+class TubeEvent:
+    """A place of a path at which the robot snaps, or where branches meet.
+
+    Attributes:
+        kind: "limit" or "bifurcation".
+        value: of the joint there, rad or m.
+        solution: the equilibrium there, which is neutral.
+        position: index of the first point of the path that lies beyond it.
+        snaps_to: the stable equilibrium at the same joints that the robot snaps to; None where it does not lose its
+            hold here, or the path has none farther on.
+    """
+
+    kind: str
+    value: float
+    solution: TubeSolution
+    position: int
+    snaps_to: TubeSolution | None
+
+    @property
+    def released_energy(self) -> float | None:
+        """Elastic energy that the snap sets free, J."""
+        if self.snaps_to is None:
+            return None
+        return self.solution.energy - self.snaps_to.energy
+
+
+@dataclass(frozen=True)
+class TubePath:
+    """Equilibria of concentric tubes along one joint.
+
+    Attributes:
+        title: of the scene.
+        joint: name of the joint that moves.
+        unit: "rad" or "m".
+        outcome: how the path ended.
+        values: of the joint at k points in the order of travel, shape (k,).
+        solutions: the equilibria at these points.
+        events: limit points and bifurcations in the order of travel.
+        error_estimate: estimated error of the events' values, relative to the joint's way, and of the tips there and
+            at the end; None where it was not estimated.
+    """
+
+    title: str
+    joint: str
+    unit: str
+    outcome: PathOutcome
+    values: FloatArray
+    solutions: tuple[TubeSolution, ...]
+    events: tuple[TubeEvent, ...]
+    error_estimate: float | None
+
+    @property
+    def converged(self) -> bool:
+        """Whether the joint's value was reached within tolerance."""
+        return self.outcome is PathOutcome.CONVERGED
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        return WORDS.get(self.outcome, self.outcome.value)
+
+    @property
+    def stable(self) -> npt.NDArray[np.bool_]:
+        """Whether each point is stable, shape (k,)."""
+        return np.array([solution.stable for solution in self.solutions], dtype=np.bool_)
+
+    @property
+    def energy(self) -> FloatArray:
+        """Elastic energy at each point, shape (k,), J."""
+        return np.array([solution.energy for solution in self.solutions])
+
+    def tip(self, tube: str | None = None) -> FloatArray:
+        """Positions of a tube's tip at each point, shape (k, 3), m; as :meth:`TubeSolution.tip`."""
+        positions = [solution.tip(tube).position for solution in self.solutions]
+        return np.array(positions).reshape(-1, 3)
+
+
+def follow_tubes(
+    scene: scenes.Scene,
+    joint: str,
+    to: float,
+    joints: Mapping[str, float] | npt.ArrayLike | None = None,
+    *,
+    progress: Progress | None = None,
+) -> TubePath:
+    """Follow the equilibrium of concentric tubes while one joint moves from its value to another.
+
+    Args:
+        scene: a scene with tubes.
+        joint: the joint, such as "inner.rotation".
+        to: its value at the end, rad or m.
+        joints: where the path begins, as in :func:`solve_tubes`.
+        progress: receives the largest share of the way.
+
+    Raises:
+        SceneError: the scene has no tubes, a joint is unknown or out of its range, or does not move.
+    """
+    robot = robot_of(scene)
+    start = robot.packed(joints)
+    index = robot.joint_index(joint)
+    end = robot.packed({**dict(zip(robot.joint_names, start, strict=True)), joint: to})
+    if end[index] == start[index]:
+        raise SceneError(Problem(joint, f"is {to:g} where the path begins", "give another value to go to"))
+    way = _Way(robot, joint, start, end)
+    steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps)
+    rough = way.followed(steps, progress)
+    while True:
+        steps *= 2
+        fine = way.followed(steps, progress)
+        error = _difference(rough, fine)
+        if not fine.converged and fine.outcome is rough.outcome:
+            return fine
+        if error is not None and error <= robot.tolerance:
+            return _with_error(fine, fine.outcome, error)
+        if steps >= MOST_STEPS:
+            return _with_error(fine, PathOutcome.UNRESOLVED, error)
+        rough = fine
+
+
+def _with_error(path: TubePath, outcome: PathOutcome, error: float | None) -> TubePath:
+    return replace(path, outcome=outcome, error_estimate=error)
+
+
+def _difference(rough: TubePath, fine: TubePath) -> float | None:
+    """Largest error of events and end of a path beside a finer one; None where they do not correspond."""
+    if not (rough.converged and fine.converged) or len(rough.events) != len(fine.events):
+        return None
+    errors = [tip_error(rough.solutions[-1], fine.solutions[-1])]
+    way = abs(fine.values[-1] - fine.values[0])
+    for event, exact in zip(rough.events, fine.events, strict=True):
+        if event.kind != exact.kind:
+            return None
+        errors += [abs(event.value - exact.value) / way, tip_error(event.solution, exact.solution)]
+    return float(max(errors))
+
+
+@dataclass(frozen=True)
+class _Way:
+    """One joint of a robot that moves.
+
+    Attributes:
+        robot: the tubes.
+        joint: name of the joint.
+        start: joints at factor 0, shape (2 n,).
+        end: joints at factor 1, shape (2 n,).
+    """
+
+    robot: Robot
+    joint: str
+    start: FloatArray
+    end: FloatArray
+
+    @property
+    def unit(self) -> str:
+        """Unit of the joint."""
+        if self.joint.endswith(".rotation"):
+            return "rad"
+        return "m"
+
+    def joints(self, factor: float) -> FloatArray:
+        """Joints at a factor."""
+        return self.start + factor * (self.end - self.start)
+
+    def value(self, factor: float) -> float:
+        """The moving joint at a factor."""
+        return float(self.joints(factor)[self.robot.joint_index(self.joint)])
+
+    def followed(self, steps: int, progress: Progress | None) -> TubePath:
+        """The path of the model with a number of steps."""
+        model = TubeModel(self.robot, steps)
+        first = solve_at(model, self.start)
+        if not first.converged:
+            return self._path(model, Trace([], outcome=PathOutcome.NO_START))
+        change = self.end - self.start
+        path = Path(
+            residual=lambda x, t: np.ravel(model.residual(x, self.joints(t), 1.0).full()),
+            jacobian=lambda x, t: model.jacobian(x, self.joints(t), 1.0)[0].full(),
+            rate=lambda x, t: model.rates(x, self.joints(t), 1.0)[0].full() @ change,
+            start=first.x,
+        )
+        settings = TURNING
+        if self.unit == "m":
+            settings = SLIDING
+        traced = trace(Curve(path, DETERMINANT, settings), progress=progress)
+        return self._path(model, traced)
+
+    def _path(self, model: TubeModel, traced: Trace) -> TubePath:
+        factors = [point.load_factor for point in traced.points]
+        solutions = [self._solution(model, point.x, point.load_factor) for point in traced.points]
+        lengths = [point.length for point in traced.points]
+        events = []
+        for event in traced.events:
+            position = int(np.searchsorted(lengths, event.point.length, side="right"))
+            events.append(self._event(model, event, position, factors, solutions))
+        return TubePath(
+            title=self.robot.title,
+            joint=self.joint,
+            unit=self.unit,
+            outcome=traced.outcome or PathOutcome.MAX_STEPS,
+            values=np.array([self.value(factor) for factor in factors]),
+            solutions=tuple(solutions),
+            events=tuple(events),
+            error_estimate=None,
+        )
+
+    def _solution(self, model: TubeModel, x: FloatArray, factor: float) -> TubeSolution:
+        joints = self.joints(factor)
+        missed = float(np.abs(model.residual(x, joints, 1.0).full()).max())
+        return TubeSolution(model, joints, x, TubeOutcome.CONVERGED, missed, None)
+
+    def _event(
+        self, model: TubeModel, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]
+    ) -> TubeEvent:
+        factor = event.point.load_factor
+        at_event = self._solution(model, event.point.x, factor)
+        snaps_to = None
+        if event.kind == "limit" and solutions[position - 1].stable:
+            snaps_to = _next_stable(model, at_event.joints, factor, factors[position:], solutions[position:])
+        return TubeEvent(event.kind, self.value(factor), at_event, position, snaps_to)
+
+
+def _next_stable(
+    model: TubeModel, joints: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
+) -> TubeSolution | None:
+    """The first stable equilibrium that a path comes to at a factor.
+
+    Args:
+        model: the robot.
+        joints: at the factor, shape (2 n,).
+        factor: the factor.
+        factors: of the points of the path from there on.
+        solutions: the equilibria at these points.
+    """
+    for index in range(1, len(factors)):
+        before = factors[index - 1] - factor
+        after = factors[index] - factor
+        if before * after > 0.0 or not solutions[index].stable:
+            continue
+        share = 0.0
+        if after != before:
+            share = -before / (after - before)
+        start = solutions[index - 1].x + share * (solutions[index].x - solutions[index - 1].x)
+        reached = solution_near(model, joints, start)
+        if reached.converged and reached.stable:
+            return reached
+    return None

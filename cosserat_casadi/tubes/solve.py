@@ -1,0 +1,97 @@
+"""Solve concentric tubes: one equilibrium at given joints, with as many steps as its tolerance needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.continuation import Path, follow
+from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
+
+FEWEST_STEPS = 2
+"""Steps of a piece that the search begins with."""
+
+MOST_STEPS = 256
+"""Steps of a piece beyond which it gives up."""
+
+
+def solve_tubes(scene: scenes.Scene, joints: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeSolution:
+    """Find the equilibrium that the tubes have when they are bent, at these joints, from straight ones.
+
+    It is stable unless the joints are beyond where the robot snaps from every equilibrium near it. Others may exist:
+    :func:`all_equilibria` finds them.
+
+    Args:
+        scene: a scene with tubes.
+        joints: joints by name, such as "inner.rotation", where those left out keep the scene's value; or all of them,
+            rotation and translation of each tube, rad and m.
+
+    Raises:
+        SceneError: the scene has no tubes, or a joint is unknown or out of its range.
+    """
+    robot = robot_of(scene)
+    at = robot.packed(joints)
+    steps = FEWEST_STEPS
+    found = solve_at(TubeModel(robot, steps), at)
+    while True:
+        steps *= 2
+        finer = solve_at(TubeModel(robot, steps), at)
+        error = None
+        if found.converged and finer.converged:
+            error = tip_error(found, finer)
+        resolved = error is not None and error <= robot.tolerance
+        if resolved or steps >= MOST_STEPS:
+            return judged(finer, error)
+        found = finer
+
+
+def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
+    """A solution with the estimate of its error, and its outcome by that."""
+    outcome = solution.outcome
+    if solution.converged and (error is None or error > solution.robot.tolerance):
+        outcome = TubeOutcome.UNRESOLVED
+    return replace(solution, outcome=outcome, error_estimate=error)
+
+
+def solve_at(model: TubeModel, joints: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that straight tubes lead to, while their curvature grows."""
+    path = Path(
+        residual=lambda x, t: np.ravel(model.residual(x, joints, t).full()),
+        jacobian=lambda x, t: model.jacobian(x, joints, t)[0].full(),
+        rate=lambda x, t: np.ravel(model.rates(x, joints, t)[1].full()),
+        # Straight tubes do not twist.
+        start=joints[::2].copy(),
+    )
+    end = follow(path)
+    outcome = TubeOutcome.NOT_FOUND
+    if end.outcome is Outcome.CONVERGED:
+        outcome = TubeOutcome.CONVERGED
+    return TubeSolution(model, joints, end.x, outcome, _missed(model, end.x, joints), None)
+
+
+def solution_near(model: TubeModel, joints: FloatArray, start: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that Newton's method leads to from a start."""
+    equations = Equations(
+        residual=lambda x: np.ravel(model.residual(x, joints, 1.0).full()),
+        jacobian=lambda x: model.jacobian(x, joints, 1.0)[0].full(),
+    )
+    end = newton(equations, start, NewtonSettings())
+    outcome = TubeOutcome.NOT_FOUND
+    if end.outcome is Outcome.CONVERGED:
+        outcome = TubeOutcome.CONVERGED
+    return TubeSolution(model, joints, end.x, outcome, _missed(model, end.x, joints), None)
+
+
+def _missed(model: TubeModel, x: FloatArray, joints: FloatArray) -> float:
+    """Largest angle that the tubes miss their drives by, rad."""
+    residual = model.residual(x, joints, 1.0).full()
+    return float(np.abs(residual).max())
