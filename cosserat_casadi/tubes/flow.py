@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Self
 
 import casadi as ca
@@ -26,7 +27,7 @@ import casadi as ca
 from cosserat_casadi.maths.composition import SHARES
 from cosserat_casadi.maths.magnus import increment
 from cosserat_casadi.maths.pose import Pose
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 
 
 @dataclass(frozen=True)
@@ -65,20 +66,20 @@ class Section:
     """What is the same all along a piece of the robot.
 
     Attributes:
-        torsion: GJ of every tube, shape (n,), N m².
+        torsion: GJ of every tube, n×1, N m².
         moments: EI κ of the tubes that are curved here, zero of the others, n×1, N m.
         bending: EI of all tubes that are here, 1×1, N m².
         own: Σ EI κ²/2 of the tubes that are curved here, 1×1, N.
     """
 
-    torsion: FloatArray
+    torsion: Matrix
     moments: Matrix
     bending: Matrix
     own: Matrix
 
     def turned(self, state: State, length: Matrix) -> State:
         """Along a length the torques turn the tubes."""
-        rates = state.torques / ca.DM(self.torsion)
+        rates = state.torques / self.torsion
         angles = state.angles + length * rates
         energy = state.energy + length * ca.dot(state.torques, rates) / 2
         return State(angles, state.torques, state.pose, energy)
@@ -112,3 +113,37 @@ class Section:
         before = [nothing, *stages]
         after = [*stages, nothing]
         return [((one + other) / 2, other) for one, other in zip(before, after, strict=True)]
+
+
+@cache
+def whole_step(size: int) -> ca.Function:
+    """(state, length, section) ↦ state: one step of a number of tubes with the frame and the energy.
+
+    The section is stacked: torsion of every tube, moments of every tube, bending and own energy, (2 n + 2)×1.
+    """
+    state = ca.SX.sym("state", 2 * size + 8)
+    length = ca.SX.sym("length")
+    section = ca.SX.sym("section", 2 * size + 2)
+    after = _section(section).step(State.of(state), length)
+    return ca.Function("whole_step", [state, length, section], [after.stacked])
+
+
+@cache
+def twist_step(size: int) -> ca.Function:
+    """(angles and torques, length, section) ↦ angles and torques: the part of a step that the frame has none in."""
+    twist = ca.SX.sym("twist", 2 * size)
+    length = ca.SX.sym("length")
+    section = ca.SX.sym("section", 2 * size + 2)
+    state = State.of(ca.vertcat(twist, START))
+    after = _section(section).step(state, length)
+    return ca.Function("twist_step", [twist, length, section], [ca.vertcat(after.angles, after.torques)])
+
+
+START = ca.DM([0, 0, 0, 1, 0, 0, 0, 0])
+"""Position, quaternion and energy at the tip of the robot."""
+
+
+def _section(stacked: ca.SX) -> Section:
+    size = (stacked.size1() - 2) // 2
+    torsion, moments, bending, own = ca.vertsplit(stacked, [0, size, 2 * size, 2 * size + 1, 2 * size + 2])
+    return Section(torsion, moments, bending, own)

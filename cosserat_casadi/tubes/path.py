@@ -148,7 +148,8 @@ def follow_tubes(
     if end[index] == start[index]:
         raise SceneError(Problem(joint, f"is {to:g} where the path begins", "give another value to go to"))
     way = _Way(robot, joint, start, end)
-    steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps)
+    # What a solve ends with has been found to be enough by half of its steps.
+    steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)
     while True:
         steps *= 2
@@ -221,7 +222,7 @@ class _Way:
         path = Path(
             residual=lambda x, t: np.ravel(model.residual(x, self.joints(t), 1.0).full()),
             jacobian=lambda x, t: model.jacobian(x, self.joints(t), 1.0)[0].full(),
-            rate=lambda x, t: model.rates(x, self.joints(t), 1.0)[0].full() @ change,
+            rate=lambda x, t: model.joint_jacobian(x, self.joints(t), 1.0).full() @ change,
             start=first.x,
         )
         settings = TURNING

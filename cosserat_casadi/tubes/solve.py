@@ -67,7 +67,7 @@ def solve_at(model: TubeModel, joints: FloatArray) -> TubeSolution:
     path = Path(
         residual=lambda x, t: np.ravel(model.residual(x, joints, t).full()),
         jacobian=lambda x, t: model.jacobian(x, joints, t)[0].full(),
-        rate=lambda x, t: np.ravel(model.rates(x, joints, t)[1].full()),
+        rate=lambda x, t: np.ravel(model.load_rate(x, joints, t).full()),
         # Straight tubes do not twist.
         start=joints[::2].copy(),
     )
