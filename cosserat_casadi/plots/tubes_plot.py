@@ -27,7 +27,7 @@ WIDEST = 6.0
 
 
 def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None:
-    """Draw equilibria of one joint vector into a file, whole or not at all; the same give the same bytes.
+    """Draw equilibria of one inputs into a file, whole or not at all; the same give the same bytes.
 
     Raises:
         SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
@@ -37,7 +37,7 @@ def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None
 
 
 def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
-    """Figure of equilibria of one joint vector: left in space, right the angles of the tubes along the centre line.
+    """Figure of equilibria of one inputs: left in space, right the angles of the tubes along the centre line.
 
     Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
 
@@ -95,7 +95,7 @@ def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
     """The centre line, as thick as there are tubes in it."""
     shape = solution.shape
-    reaches = solution.joints[1::2]
+    reaches = solution.inputs[1::2]
     colour = rod_colour(number)
     stroke = STROKES[solution.stable]
     label: str | None = _name(solution, number, several=several)
@@ -111,9 +111,9 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
 def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:
     """Angles of the tubes up to their tips, less that of the first drive."""
     shape = solution.shape
-    first = solution.joints[0]
+    first = solution.inputs[0]
     for index, name in enumerate(solution.robot.names):
-        here = shape.distance <= solution.joints[2 * index + 1]
+        here = shape.distance <= solution.inputs[2 * index + 1]
         if several:
             colour = rod_colour(number)
             label = f"{name}, {number + 1}"
@@ -135,7 +135,7 @@ def save_tube_path_plot(path: TubePath, file: str | Path) -> None:
 
 
 def plot_tube_path(path: TubePath) -> Any:
-    """Figure of a path: over the joint, left the angles of the tips, right the energy; snaps as arrows.
+    """Figure of a path: over the input, left the angles of the tips, right the energy; snaps as arrows.
 
     Returns:
         matplotlib.figure.Figure.
@@ -157,7 +157,7 @@ def plot_tube_path(path: TubePath) -> Any:
             _draw_event(right, event, event.solution.energy, snap_energy)
         _draw_curve(right, path, path.energy, rod_colour(len(names)), "energy")
     for axes, words in ((left, "angle at the tip, rad"), (right, "elastic energy, J")):
-        axes.set_xlabel(f"{path.joint}, {path.unit}")
+        axes.set_xlabel(f"{path.name}, {path.unit}")
         axes.set_ylabel(words)
         axes.grid(alpha=0.3)
         for stable, verdict in ((True, "stable"), (False, "unstable")):

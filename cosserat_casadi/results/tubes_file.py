@@ -17,7 +17,7 @@ def tubes_result(solution: TubeSolution) -> dict[str, Any]:
 
 
 def equilibria_result(equilibria: TubeEquilibria) -> dict[str, Any]:
-    """All equilibria of a joint vector as the plain data of a file, by their energy."""
+    """All equilibria of a inputs as the plain data of a file, by their energy."""
     first = equilibria.solutions[0]
     data: dict[str, Any] = plain(
         {
@@ -41,7 +41,7 @@ def tube_path_result(path: TubePath) -> dict[str, Any]:
             "outcome": path.outcome.label,
             "message": path.message,
             "error_estimate": path.error_estimate,
-            "joint": path.joint,
+            "input": path.name,
             "unit": path.unit,
             "points": [
                 {"value": value, **_point(solution)}
@@ -59,9 +59,9 @@ def tubes_text(data: dict[str, Any]) -> str:
 
 
 def tube_path_table(path: TubePath) -> str:
-    """The points of a path as CSV: the joint, stability, energy, and the tips of all tubes."""
+    """The points of a path as CSV: the input, stability, energy, and the tips of all tubes."""
     names = () if not path.solutions else path.solutions[0].robot.names
-    columns = [path.joint, "stable", "energy"]
+    columns = [path.name, "stable", "energy"]
     columns += [f"{name}.tip.{axis}" for name in names for axis in "xyz"]
     lines = [",".join(columns)]
     for value, solution in zip(path.values, path.solutions, strict=True):
@@ -94,7 +94,7 @@ def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
         "determinant": solution.stability.determinant,
         "energy": solution.energy,
         "steps": solution.model.steps,
-        "joints": dict(zip(robot.joint_names, solution.joints.tolist(), strict=True)),
+        "inputs": dict(zip(robot.input_names, solution.inputs.tolist(), strict=True)),
         "tip_angles": solution.x,
         "centre_line": {"distance": shape.distance, "position": shape.position, "quaternion": shape.quaternion},
         "tubes": entries,

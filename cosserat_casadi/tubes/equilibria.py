@@ -1,8 +1,8 @@
-"""All equilibria of concentric tubes at given joints.
+"""All equilibria of concentric tubes at given inputs.
 
 The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. What is left are the
 n − 1 angles between the tips, on a torus, which the robot carries to the n − 1 angles between the drives. This map has
-the degree one, that of tubes that do not twist: at every joint vector the signs of its determinant add up to one over
+the degree one, that of tubes that do not twist: at all inputs the signs of its determinant add up to one over
 all equilibria. A drive that is turned once round is where it was. So equilibria that are twisted by a full turn more
 count too: each point of the torus belongs to one of them.
 
@@ -56,7 +56,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class TubeEquilibria:
-    """The equilibria of concentric tubes at one joint vector.
+    """The equilibria of concentric tubes at the same inputs.
 
     Attributes:
         solutions: the equilibria, by their energy, the least first.
@@ -76,25 +76,25 @@ class TubeEquilibria:
     def message(self) -> str:
         """A sentence for the user."""
         if self.complete:
-            return "All equilibria of these joints were found: the signs of their determinants add up to one."
+            return "All equilibria of these inputs were found: the signs of their determinants add up to one."
         return (
             "Equilibria were found, but others may be missing: the search ended before the signs of their determinants "
             "added up to one within tolerance."
         )
 
 
-def all_equilibria(scene: scenes.Scene, joints: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeEquilibria:
+def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeEquilibria:
     """Find every equilibrium of concentric tubes.
 
     Args:
         scene: a scene with tubes.
-        joints: as in :func:`solve_tubes`.
+        values: as in :func:`solve_tubes`.
 
     Raises:
-        SceneError: the scene has no tubes or too many, or a joint is unknown or out of its range.
+        SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.
     """
     robot = robot_of(scene)
-    at = robot.packed(joints)
+    at = robot.packed(values)
     if robot.size > MOST_TUBES:
         problem = f"all equilibria are looked for of at most {MOST_TUBES} tubes, the scene has {robot.size}"
         raise SceneError(Problem("tubes", problem, "solve it without --all"))
@@ -111,10 +111,10 @@ def all_equilibria(scene: scenes.Scene, joints: Mapping[str, float] | npt.ArrayL
         model = finer
 
 
-def _refined(model: TubeModel, finer: TubeModel, joints: FloatArray, x: FloatArray) -> TubeSolution:
+def _refined(model: TubeModel, finer: TubeModel, inputs: FloatArray, x: FloatArray) -> TubeSolution:
     """An equilibrium of the finer model near one of a model, with the estimate of its error."""
-    rough = solution_near(model, joints, x)
-    fine = solution_near(finer, joints, x)
+    rough = solution_near(model, inputs, x)
+    fine = solution_near(finer, inputs, x)
     error = None
     if rough.converged and fine.converged:
         error = tip_error(rough, fine)
@@ -135,14 +135,14 @@ def _degree(determinants: Iterator[float]) -> int:
     return int(sum(np.sign(determinant) for determinant in determinants))
 
 
-def _angles(model: TubeModel, joints: FloatArray) -> list[FloatArray]:
+def _angles(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
     """Angles at the tips of every equilibrium of a model, rad."""
     if model.size == 1:
         # One tube does not twist.
-        return [joints[::2].copy()]
+        return [inputs[::2].copy()]
     if model.size == PAIR:
-        return _of_two_tubes(model, joints)
-    return _of_more_tubes(model, joints)
+        return _of_two_tubes(model, inputs)
+    return _of_more_tubes(model, inputs)
 
 
 # Two tubes
@@ -154,7 +154,7 @@ class _Reading:
 
     Attributes:
         angle: between the tips, rad.
-        missed: by how much the angle between the drives differs from that of the joints, rad.
+        missed: by how much the angle between the drives differs from that of the inputs, rad.
         slope: of that over the angle.
     """
 
@@ -165,14 +165,14 @@ class _Reading:
 
 @dataclass(frozen=True)
 class _Pair:
-    """Two tubes at given joints."""
+    """Two tubes at given inputs."""
 
     model: TubeModel
-    joints: FloatArray
+    inputs: FloatArray
 
     def read(self, angle: float) -> _Reading:
         """The drives where the tips are at an angle."""
-        jacobian, residual = self.model.jacobian([0.0, angle], self.joints, 1.0)
+        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs, 1.0)
         missed = float(residual[1] - residual[0])
         slope = float(jacobian[1, 1] - jacobian[0, 1])
         return _Reading(angle, missed, slope)
@@ -180,12 +180,12 @@ class _Pair:
     def tips(self, angle: float) -> FloatArray:
         """Angles at both tips, turned together until the first drive is met."""
         together = np.array([0.0, angle])
-        residual = np.ravel(self.model.residual(together, self.joints, 1.0).full())
+        residual = np.ravel(self.model.residual(together, self.inputs, 1.0).full())
         return np.asarray(together - residual[0])
 
 
-def _of_two_tubes(model: TubeModel, joints: FloatArray) -> list[FloatArray]:
-    pair = _Pair(model, joints)
+def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+    pair = _Pair(model, inputs)
     found = []
     for before, after in itertools.pairwise(_readings(pair)):
         found += [pair.tips(angle) for angle in _roots(pair, before, after)]
@@ -250,25 +250,25 @@ def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> floa
 # More tubes
 
 
-def _of_more_tubes(model: TubeModel, joints: FloatArray) -> list[FloatArray]:
+def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
     found: list[FloatArray] = []
     for points in GRIDS[model.size]:
         before = len(found)
-        for start in _starts(model, joints, points):
-            end = solution_near(model, joints, start)
+        for start in _starts(model, inputs, points):
+            end = solution_near(model, inputs, start)
             if end.converged and all(np.abs(end.x - known).max() > SAME for known in found):
                 found.append(end.x)
-        determinants = (float(np.linalg.det(model.jacobian(x, joints, 1.0)[0].full())) for x in found)
+        determinants = (float(np.linalg.det(model.jacobian(x, inputs, 1.0)[0].full())) for x in found)
         if len(found) == before and _degree(determinants) == 1:
             break
     return found
 
 
-def _starts(model: TubeModel, joints: FloatArray, points: int) -> Iterator[FloatArray]:
+def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
     """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
     angles = FIRST_ANGLE + TURN / points * np.arange(points)
     for between in itertools.product(angles, repeat=model.size - 1):
         tips = np.array([0.0, *between])
-        missed = np.ravel(model.residual(tips, joints, 1.0).full())
+        missed = np.ravel(model.residual(tips, inputs, 1.0).full())
         tips -= missed[0]
         yield tips - TURN * np.round((missed - missed[0]) / TURN)

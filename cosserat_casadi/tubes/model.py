@@ -1,7 +1,7 @@
-"""The model of concentric tubes: named CasADi functions of the angles at their tips and of the joints.
+"""The model of concentric tubes: named CasADi functions of the angles at their tips and of the inputs.
 
 Every tube's tip bears no torque. So the angles there, the unknowns x, determine the whole robot: it is integrated from
-the tips to the base plate, and through the housing to the drives, where the angles must be the rotations of the joints.
+the tips to the base plate, and through the housing to the drives, where the angles must be the rotations of the inputs.
 That is one small equation a tube. See docs/tubes.md.
 """
 
@@ -37,7 +37,7 @@ class _March:
 class TubeModel:
     """A robot of concentric tubes with a number of steps.
 
-    Functions take the angles x at the tips of the tubes (n), the joints (2 n: rotation and translation of each tube),
+    Functions take the angles x at the tips of the tubes (n), the inputs (2 n: rotation and translation of each tube),
     and the load factor, on all curvatures, which is 1 but on the way from straight tubes.
 
     Attributes:
@@ -58,31 +58,31 @@ class TubeModel:
 
     @cached_property
     def residual(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ angles at the drives less the rotations of the joints, n×1, rad."""
+        """(x, inputs, load_factor) ↦ angles at the drives less the rotations of the inputs, n×1, rad."""
         return self._function("residual", {"residual": self._residual})
 
     @cached_property
     def jacobian(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ derivative of the residual with x, n×n, and the residual."""
+        """(x, inputs, load_factor) ↦ derivative of the residual with x, n×n, and the residual."""
         x, _, _ = self._arguments
         jacobian = ca.jacobian(self._residual, x)
         return self._function("jacobian", {"jacobian": jacobian, "residual": self._residual})
 
     @cached_property
-    def joint_jacobian(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ derivative of the residual with the joints, n×2n."""
-        _, joints, _ = self._arguments
-        return self._function("joint_jacobian", {"joint_jacobian": ca.jacobian(self._residual, joints)})
+    def input_jacobian(self) -> ca.Function:
+        """(x, inputs, load_factor) ↦ derivative of the residual with the inputs, n×2n."""
+        _, inputs, _ = self._arguments
+        return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
     def load_rate(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ derivative of the residual with the load factor, n×1."""
+        """(x, inputs, load_factor) ↦ derivative of the residual with the load factor, n×1."""
         _, _, load_factor = self._arguments
         return self._function("load_rate", {"load_rate": ca.jacobian(self._residual, load_factor)})
 
     @cached_property
     def energy(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ elastic energy of what stands out, and of torsion in the housing, J."""
+        """(x, inputs, load_factor) ↦ elastic energy of what stands out, and of torsion in the housing, J."""
         last = State.of(self._whole.ends[-1])
         twisting = ca.sum1(last.torques**2 * self._compliance) / 2
         # Integrated towards the base, lengths are negative.
@@ -90,22 +90,22 @@ class TubeModel:
 
     @cached_property
     def tips(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ positions, 3×n, m, and quaternions, 4×n, of the tubes' tips, in base axes."""
+        """(x, inputs, load_factor) ↦ positions, 3×n, m, and quaternions, 4×n, of the tubes' tips, in base axes."""
         position = ca.horzcat(*[tip.position for tip in self._tips])
         quaternion = ca.horzcat(*[tip.quaternion for tip in self._tips])
         return self._function("tips", {"position": position, "quaternion": quaternion})
 
     @cached_property
     def tip_jacobian(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ derivatives of the poses of all tips with the joints in equilibrium, (6 n)×(2 n).
+        """(x, inputs, load_factor) ↦ derivatives of the poses of all tips with the inputs in equilibrium, (6 n)×(2 n).
 
         Six rows a tube, angular first: its turn [δθ; δr] in base axes, in rad and m, per rad and per m. The unknowns
-        follow the joints, δx = −(∂g/∂x)⁻¹ ∂g/∂joints δjoints; it is not finite where the robot snaps.
+        follow the inputs, δx = −(∂g/∂x)⁻¹ ∂g/∂inputs δinputs; it is not finite where the robot snaps.
         """
-        x, joints, _ = self._arguments
-        following = -ca.solve(ca.jacobian(self._residual, x), ca.jacobian(self._residual, joints))
+        x, inputs, _ = self._arguments
+        following = -ca.solve(ca.jacobian(self._residual, x), ca.jacobian(self._residual, inputs))
         tips = ca.vertcat(*[ca.vertcat(tip.position, tip.quaternion) for tip in self._tips])
-        changes = ca.jacobian(tips, joints) + ca.jacobian(tips, x) @ following
+        changes = ca.jacobian(tips, inputs) + ca.jacobian(tips, x) @ following
         rows: list[Matrix] = []
         for tip, change in zip(self._tips, ca.vertsplit(changes, 7), strict=True):
             back = quaternion_conjugate(tip.quaternion)
@@ -116,7 +116,7 @@ class TubeModel:
 
     @cached_property
     def stations(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ the robot at all ends of steps from the plate to its tip, a column each.
+        """(x, inputs, load_factor) ↦ the robot at all ends of steps from the plate to its tip, a column each.
 
         Distances from the plate along the centre line, 1×k, m; positions, 3×k, m, and quaternions, 4×k, of the frame
         that does not turn about the centre line, in base axes; angles of the tubes against it, n×k, rad; torques in
@@ -135,7 +135,7 @@ class TubeModel:
 
     @cached_property
     def variations(self) -> ca.Function:
-        """(x, joints, load_factor) ↦ how the angles and torques at all ends of steps change.
+        """(x, inputs, load_factor) ↦ how the angles and torques at all ends of steps change.
 
         With the angles at the tips, (2 n k)×n, column after column of the stations from the tip to the plate; and, for
         each step, the angles at its end with the torques at its start, n×(n (k − 1)).
@@ -161,8 +161,8 @@ class TubeModel:
 
     @cached_property
     def _arguments(self) -> tuple[ca.MX, ca.MX, ca.MX]:
-        """Unknowns, joints and load factor, of which all functions are."""
-        return ca.MX.sym("x", self.size), ca.MX.sym("joints", 2 * self.size), ca.MX.sym("load_factor")
+        """Unknowns, inputs and load factor, of which all functions are."""
+        return ca.MX.sym("x", self.size), ca.MX.sym("inputs", 2 * self.size), ca.MX.sym("load_factor")
 
     @cached_property
     def _twist(self) -> _March:
@@ -209,7 +209,7 @@ class TubeModel:
     def _places(self) -> list[ca.MX]:
         """Where tubes end and where they begin to bend, from the tip of the robot to the plate, then the plate.
 
-        The order is found as the function is evaluated: joints may change it, and pieces between places that coincide,
+        The order is found as the function is evaluated: inputs may change it, and pieces between places that coincide,
         or lie in the housing, have no length.
         """
         places: list[ca.MX] = []
@@ -226,10 +226,10 @@ class TubeModel:
     @cached_property
     def _ends(self) -> list[tuple[ca.MX, ca.MX]]:
         """Of every tube how far its tip, and the beginning of its curved part, stand out of the plate, m."""
-        _, joints, _ = self._arguments
+        _, inputs, _ = self._arguments
         ends = []
         for index in range(self.size):
-            tip = joints[2 * index + 1]
+            tip = inputs[2 * index + 1]
             bend = ca.fmax(tip - self.robot.curved[index], 0.0)
             ends.append((tip, bend))
         return ends
@@ -258,16 +258,16 @@ class TubeModel:
     @property
     def _compliance(self) -> ca.MX:
         """Angle that a torque of one turns the drive end of every tube against the plate, n×1, rad/(N m)."""
-        _, joints, _ = self._arguments
-        inside = ca.DM(self.robot.length) - joints[1::2]
+        _, inputs, _ = self._arguments
+        inside = ca.DM(self.robot.length) - inputs[1::2]
         return inside / ca.DM(self.robot.torsion)
 
     @cached_property
     def _residual(self) -> ca.MX:
-        """Angles at the drives less the rotations of the joints, n×1."""
-        _, joints, _ = self._arguments
+        """Angles at the drives less the rotations of the inputs, n×1."""
+        _, inputs, _ = self._arguments
         angles, torques = ca.vertsplit(self._twist.ends[-1], [0, self.size, 2 * self.size])
-        return angles - self._compliance * torques - joints[::2]
+        return angles - self._compliance * torques - inputs[::2]
 
     def _in_base(self, pose: Pose) -> Pose:
         """A pose in base axes, where it is given in those of the tip's frame."""
@@ -291,12 +291,12 @@ class TubeModel:
         return tips
 
     def _function(self, name: str, outputs: Mapping[str, Matrix]) -> ca.Function:
-        """A function of unknowns, joints and load factor."""
+        """A function of unknowns, inputs and load factor."""
         return ca.Function(
             name,
             [*self._arguments],
             list(outputs.values()),
-            ["x", "joints", "load_factor"],
+            ["x", "inputs", "load_factor"],
             list(outputs),
         )
 

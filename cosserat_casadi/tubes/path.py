@@ -1,7 +1,7 @@
-"""Equilibria of concentric tubes while one joint moves, through folds and back, and where the robot snaps to.
+"""Equilibria of concentric tubes while one input moves, through folds and back, and where the robot snaps to.
 
-Where the path turns the robot loses its hold: a joint that moves on makes it snap. It comes to rest at the next stable
-equilibrium that the path has at the same joints, which lies beyond the next fold. See docs/tubes.md.
+Where the path turns the robot loses its hold: an input that moves on makes it snap. It comes to rest at the next stable
+equilibrium that the path has at the same inputs, which lies beyond the next fold. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
 from cosserat_casadi.tubes.solve import MOST_STEPS, solution_near, solve_at, solve_tubes
 
 TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
-"""Limits of a path over a rotation; the angles at the tips count in rad, the joint as the share of its way."""
+"""Limits of a path over a rotation; the angles at the tips count in rad, the input as the share of its way."""
 
 SLIDING = ArcSettings(longest=0.05, load_factor_change=0.02, min_cosine=0.0, max_distance=5.0)
 """Limits of a path over a translation.
@@ -35,9 +35,9 @@ It has a corner where the order of the tubes' ends changes: short steps, which m
 """
 
 WORDS = {
-    PathOutcome.CONVERGED: "The path reached the joint's value.",
-    PathOutcome.NO_START: "No path: at the joints of the scene no equilibrium was found.",
-    PathOutcome.TURNED_BACK: "The path led back: the joint would have to move the other way.",
+    PathOutcome.CONVERGED: "The path reached the input's value.",
+    PathOutcome.NO_START: "No path: at the inputs of the scene no equilibrium was found.",
+    PathOutcome.TURNED_BACK: "The path led back: the input would have to move the other way.",
     PathOutcome.UNRESOLVED: "The path was followed, but its error is above the tolerance: allow a larger one.",
 }
 """Sentences of paths of tubes; those of other outcomes are their own."""
@@ -49,10 +49,10 @@ class TubeEvent:
 
     Attributes:
         kind: "limit" or "bifurcation".
-        value: of the joint there, rad or m.
+        value: of the input there, rad or m.
         solution: the equilibrium there, which is neutral.
         position: index of the first point of the path that lies beyond it.
-        snaps_to: the stable equilibrium at the same joints that the robot snaps to; None where it does not lose its
+        snaps_to: the stable equilibrium at the same inputs that the robot snaps to; None where it does not lose its
             hold here, or the path has none farther on.
     """
 
@@ -72,22 +72,22 @@ class TubeEvent:
 
 @dataclass(frozen=True)
 class TubePath:
-    """Equilibria of concentric tubes along one joint.
+    """Equilibria of concentric tubes along one input.
 
     Attributes:
         title: of the scene.
-        joint: name of the joint that moves.
+        name: of the input that moves.
         unit: "rad" or "m".
         outcome: how the path ended.
-        values: of the joint at k points in the order of travel, shape (k,).
+        values: of the input at k points in the order of travel, shape (k,).
         solutions: the equilibria at these points.
         events: limit points and bifurcations in the order of travel.
-        error_estimate: estimated error of the events' values, relative to the joint's way, and of the tips there and
+        error_estimate: estimated error of the events' values, relative to the input's way, and of the tips there and
             at the end; None where it was not estimated.
     """
 
     title: str
-    joint: str
+    name: str
     unit: str
     outcome: PathOutcome
     values: FloatArray
@@ -97,7 +97,7 @@ class TubePath:
 
     @property
     def converged(self) -> bool:
-        """Whether the joint's value was reached within tolerance."""
+        """Whether the input's value was reached within tolerance."""
         return self.outcome is PathOutcome.CONVERGED
 
     @property
@@ -123,31 +123,31 @@ class TubePath:
 
 def follow_tubes(
     scene: scenes.Scene,
-    joint: str,
+    name: str,
     to: float,
-    joints: Mapping[str, float] | npt.ArrayLike | None = None,
+    values: Mapping[str, float] | npt.ArrayLike | None = None,
     *,
     progress: Progress | None = None,
 ) -> TubePath:
-    """Follow the equilibrium of concentric tubes while one joint moves from its value to another.
+    """Follow the equilibrium of concentric tubes while one input moves from its value to another.
 
     Args:
         scene: a scene with tubes.
-        joint: the joint, such as "inner.rotation".
+        name: of the input, such as "inner.rotation".
         to: its value at the end, rad or m.
-        joints: where the path begins, as in :func:`solve_tubes`.
+        values: where the path begins, as in :func:`solve_tubes`.
         progress: receives the largest share of the way.
 
     Raises:
-        SceneError: the scene has no tubes, a joint is unknown or out of its range, or does not move.
+        SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move.
     """
     robot = robot_of(scene)
-    start = robot.packed(joints)
-    index = robot.joint_index(joint)
-    end = robot.packed({**dict(zip(robot.joint_names, start, strict=True)), joint: to})
+    start = robot.packed(values)
+    index = robot.input_index(name)
+    end = robot.packed({**dict(zip(robot.input_names, start, strict=True)), name: to})
     if end[index] == start[index]:
-        raise SceneError(Problem(joint, f"is {to:g} where the path begins", "give another value to go to"))
-    way = _Way(robot, joint, start, end)
+        raise SceneError(Problem(name, f"is {to:g} where the path begins", "give another value to go to"))
+    way = _Way(robot, name, start, end)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)
@@ -158,14 +158,13 @@ def follow_tubes(
         if not fine.converged and fine.outcome is rough.outcome:
             return fine
         if error is not None and error <= robot.tolerance:
-            return _with_error(fine, fine.outcome, error)
+            return replace(fine, error_estimate=error)
         if steps >= MOST_STEPS:
-            return _with_error(fine, PathOutcome.UNRESOLVED, error)
+            outcome = fine.outcome
+            if fine.converged:
+                outcome = PathOutcome.UNRESOLVED
+            return replace(fine, outcome=outcome, error_estimate=error)
         rough = fine
-
-
-def _with_error(path: TubePath, outcome: PathOutcome, error: float | None) -> TubePath:
-    return replace(path, outcome=outcome, error_estimate=error)
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
@@ -183,34 +182,34 @@ def _difference(rough: TubePath, fine: TubePath) -> float | None:
 
 @dataclass(frozen=True)
 class _Way:
-    """One joint of a robot that moves.
+    """One input of a robot that moves.
 
     Attributes:
         robot: the tubes.
-        joint: name of the joint.
-        start: joints at factor 0, shape (2 n,).
-        end: joints at factor 1, shape (2 n,).
+        name: of the input.
+        start: inputs at factor 0, shape (2 n,).
+        end: inputs at factor 1, shape (2 n,).
     """
 
     robot: Robot
-    joint: str
+    name: str
     start: FloatArray
     end: FloatArray
 
     @property
     def unit(self) -> str:
-        """Unit of the joint."""
-        if self.joint.endswith(".rotation"):
+        """Unit of the input."""
+        if self.name.endswith(".rotation"):
             return "rad"
         return "m"
 
-    def joints(self, factor: float) -> FloatArray:
+    def inputs(self, factor: float) -> FloatArray:
         """Joints at a factor."""
         return self.start + factor * (self.end - self.start)
 
     def value(self, factor: float) -> float:
-        """The moving joint at a factor."""
-        return float(self.joints(factor)[self.robot.joint_index(self.joint)])
+        """The moving input at a factor."""
+        return float(self.inputs(factor)[self.robot.input_index(self.name)])
 
     def followed(self, steps: int, progress: Progress | None) -> TubePath:
         """The path of the model with a number of steps."""
@@ -220,9 +219,9 @@ class _Way:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
         change = self.end - self.start
         path = Path(
-            residual=lambda x, t: np.ravel(model.residual(x, self.joints(t), 1.0).full()),
-            jacobian=lambda x, t: model.jacobian(x, self.joints(t), 1.0)[0].full(),
-            rate=lambda x, t: model.joint_jacobian(x, self.joints(t), 1.0).full() @ change,
+            residual=lambda x, t: np.ravel(model.residual(x, self.inputs(t), 1.0).full()),
+            jacobian=lambda x, t: model.jacobian(x, self.inputs(t), 1.0)[0].full(),
+            rate=lambda x, t: model.input_jacobian(x, self.inputs(t), 1.0).full() @ change,
             start=first.x,
         )
         settings = TURNING
@@ -241,7 +240,7 @@ class _Way:
             events.append(self._event(model, event, position, factors, solutions))
         return TubePath(
             title=self.robot.title,
-            joint=self.joint,
+            name=self.name,
             unit=self.unit,
             outcome=traced.outcome or PathOutcome.MAX_STEPS,
             values=np.array([self.value(factor) for factor in factors]),
@@ -251,9 +250,9 @@ class _Way:
         )
 
     def _solution(self, model: TubeModel, x: FloatArray, factor: float) -> TubeSolution:
-        joints = self.joints(factor)
-        missed = float(np.abs(model.residual(x, joints, 1.0).full()).max())
-        return TubeSolution(model, joints, x, TubeOutcome.CONVERGED, missed, None)
+        inputs = self.inputs(factor)
+        missed = float(np.abs(model.residual(x, inputs, 1.0).full()).max())
+        return TubeSolution(model, inputs, x, TubeOutcome.CONVERGED, missed, None)
 
     def _event(
         self, model: TubeModel, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]
@@ -262,18 +261,18 @@ class _Way:
         at_event = self._solution(model, event.point.x, factor)
         snaps_to = None
         if event.kind == "limit" and solutions[position - 1].stable:
-            snaps_to = _next_stable(model, at_event.joints, factor, factors[position:], solutions[position:])
+            snaps_to = _next_stable(model, at_event.inputs, factor, factors[position:], solutions[position:])
         return TubeEvent(event.kind, self.value(factor), at_event, position, snaps_to)
 
 
 def _next_stable(
-    model: TubeModel, joints: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
+    model: TubeModel, inputs: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
 ) -> TubeSolution | None:
     """The first stable equilibrium that a path comes to at a factor.
 
     Args:
         model: the robot.
-        joints: at the factor, shape (2 n,).
+        inputs: at the factor, shape (2 n,).
         factor: the factor.
         factors: of the points of the path from there on.
         solutions: the equilibria at these points.
@@ -287,7 +286,7 @@ def _next_stable(
         if after != before:
             share = -before / (after - before)
         start = solutions[index - 1].x + share * (solutions[index].x - solutions[index - 1].x)
-        reached = solution_near(model, joints, start)
+        reached = solution_near(model, inputs, start)
         if reached.converged and reached.stable:
             return reached
     return None

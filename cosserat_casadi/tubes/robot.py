@@ -1,4 +1,4 @@
-"""The tubes of a scene as numbers, and the vector of their joints."""
+"""The tubes of a scene as numbers, and the vector of their inputs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cosserat_casadi.rod.section import annulus, hooke
 from cosserat_casadi.scene.spelling import closest
 
 FIELDS = ("rotation", "translation")
-"""Joints of each tube, rad and m, in the order of the joint vector."""
+"""Inputs of each tube, rad and m, in the order of the inputs."""
 
 SLACK = 1e-12
 """By how much, relative to a length, a translation may leave its range: what rounding does to it."""
@@ -35,7 +35,7 @@ class Robot:
         curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
         straight: length of the straight part, shape (n,), m.
         curved: length of the curved part behind it, shape (n,), m.
-        joints: rotation and translation of each tube in the scene, shape (2 n,), rad and m.
+        inputs: rotation and translation of each tube in the scene, shape (2 n,), rad and m.
         tolerance: wanted pose error of the tips, distances relative to the length that stands out.
     """
 
@@ -46,7 +46,7 @@ class Robot:
     curvature: FloatArray
     straight: FloatArray
     curved: FloatArray
-    joints: FloatArray
+    inputs: FloatArray
     tolerance: float
 
     @property
@@ -60,70 +60,70 @@ class Robot:
         return self.straight + self.curved
 
     @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names ``tube.rotation`` and ``tube.translation`` of the entries of the joint vector."""
+    def input_names(self) -> tuple[str, ...]:
+        """Names ``tube.rotation`` and ``tube.translation`` of the entries of the inputs."""
         return tuple(f"{name}.{field}" for name in self.names for field in FIELDS)
 
-    def joint_index(self, name: str) -> int:
-        """Place of a joint in the joint vector.
+    def input_index(self, name: str) -> int:
+        """Place of an input in the inputs.
 
         Raises:
-            SceneError: there is no such joint.
+            SceneError: there is no such input.
         """
-        if name not in self.joint_names:
-            raise SceneError(Problem(name, "is no joint of the tubes", closest(name, self.joint_names)))
-        return self.joint_names.index(name)
+        if name not in self.input_names:
+            raise SceneError(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
+        return self.input_names.index(name)
 
     def packed(self, values: Mapping[str, float] | npt.ArrayLike | None) -> FloatArray:
-        """The joint vector, shape (2 n,).
+        """The inputs, shape (2 n,).
 
         Args:
-            values: joints by name, where those not named keep the scene's value; or all of them in order; None for
+            values: inputs by name, where those not named keep the scene's value; or all of them in order; None for
                 those of the scene.
 
         Raises:
-            SceneError: with every joint that is unknown, no finite number, or out of its range.
+            SceneError: with every input that is unknown, no finite number, or out of its range.
         """
         if values is None:
-            return self.joints.copy()
+            return self.inputs.copy()
         if isinstance(values, Mapping):
-            joints = self._named(values)
+            inputs = self._named(values)
         else:
-            joints = np.array(values, dtype=float)
-            if joints.shape != self.joints.shape:
-                problem = f"must have {self.joints.size} entries, got the shape {joints.shape}"
-                raise SceneError(Problem("joints", problem, ", ".join(self.joint_names)))
-        problems = [*self._out_of_range(joints)]
+            inputs = np.array(values, dtype=float)
+            if inputs.shape != self.inputs.shape:
+                problem = f"must have {self.inputs.size} entries, got the shape {inputs.shape}"
+                raise SceneError(Problem("inputs", problem, ", ".join(self.input_names)))
+        problems = [*self._out_of_range(inputs)]
         if problems:
             raise SceneError(*problems)
-        return joints
+        return inputs
 
     def _named(self, values: Mapping[str, float]) -> FloatArray:
-        joints = self.joints.copy()
+        inputs = self.inputs.copy()
         problems = []
         for name, value in values.items():
             number = np.asarray(value, dtype=float)
-            if name not in self.joint_names:
-                problems.append(Problem(name, "is no joint of the tubes", closest(name, self.joint_names)))
+            if name not in self.input_names:
+                problems.append(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
             elif number.size != 1:
                 problems.append(Problem(name, f"must be a number, got the shape {number.shape}"))
             else:
-                joints[self.joint_names.index(name)] = number.item()
+                inputs[self.input_names.index(name)] = number.item()
         if problems:
             raise SceneError(*problems)
-        return joints
+        return inputs
 
-    def _out_of_range(self, joints: FloatArray) -> list[Problem]:
+    def _out_of_range(self, inputs: FloatArray) -> list[Problem]:
         problems = []
-        for name, value in zip(self.joint_names, joints, strict=True):
+        for name, value in zip(self.input_names, inputs, strict=True):
             if not np.isfinite(value):
                 problems.append(Problem(name, f"must be finite, got {value}"))
-        for name, translation, length in zip(self.names, joints[1::2], self.length, strict=True):
+        for name, translation, length in zip(self.names, inputs[1::2], self.length, strict=True):
             if translation < -SLACK * length or translation > (1 + SLACK) * length:
                 problem = f"must be from 0 to the length of the tube, {length:g} m, got {translation:g}"
                 remedy = "it is how far the tip stands out of the plate"
                 problems.append(Problem(f"{name}.translation", problem, remedy))
-        if not problems and not np.any(joints[1::2] > 0.0):
+        if not problems and not np.any(inputs[1::2] > 0.0):
             problems.append(Problem("tubes", "no tube stands out of the plate", "push one out: translation > 0"))
         return problems
 
@@ -137,7 +137,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
     if not scene.tubes:
         raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve_scene"))
     stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
-    joints = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
+    inputs = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
     return Robot(
         title=scene.title,
         names=tuple(tube.name for tube in scene.tubes),
@@ -146,7 +146,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
         curvature=np.array([tube.curvature for tube in scene.tubes]),
         straight=np.array([tube.straight for tube in scene.tubes]),
         curved=np.array([tube.curved for tube in scene.tubes]),
-        joints=np.array(joints, dtype=float),
+        inputs=np.array(inputs, dtype=float),
         tolerance=scene.accuracy.tolerance,
     )
 

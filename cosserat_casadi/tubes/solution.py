@@ -24,7 +24,7 @@ class TubeOutcome(Enum):
     CONVERGED = "Equilibrium found: the tubes meet the rotations of their drives."
     NOT_FOUND = (
         "No equilibrium found: the way from straight tubes to the curved ones could not be followed to its end; "
-        "the equilibria of these joints may be found one by one."
+        "the equilibria of these inputs may be found one by one."
     )
     UNRESOLVED = "An equilibrium was found, but its error is above the tolerance: allow a larger one."
 
@@ -59,7 +59,7 @@ class TubeSolution:
 
     Attributes:
         model: the robot with its steps.
-        joints: rotation and translation of each tube, shape (2 n,), rad and m.
+        inputs: rotation and translation of each tube, shape (2 n,), rad and m.
         x: angles at the tips against the frame of the centre line, shape (n,), rad.
         outcome: how the solve ended.
         residual_norm: largest angle that the tubes miss their drives by, rad.
@@ -68,7 +68,7 @@ class TubeSolution:
     """
 
     model: TubeModel
-    joints: FloatArray
+    inputs: FloatArray
     x: FloatArray
     outcome: TubeOutcome
     residual_norm: float
@@ -92,7 +92,7 @@ class TubeSolution:
     @cached_property
     def stability(self) -> Stability:
         """What the second variation of the energy says."""
-        return stability_of(self.model, self.x, self.joints)
+        return stability_of(self.model, self.x, self.inputs)
 
     @property
     def stable(self) -> bool:
@@ -102,12 +102,12 @@ class TubeSolution:
     @cached_property
     def energy(self) -> float:
         """Elastic energy of what stands out of the plate, and of torsion in the housing, J."""
-        return float(self.model.energy(self.x, self.joints, 1.0))
+        return float(self.model.energy(self.x, self.inputs, 1.0))
 
     @cached_property
     def shape(self) -> Shape:
         """The robot at the ends of all steps."""
-        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.joints, 1.0)
+        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs, 1.0)
         return Shape(
             distance=np.ravel(distance.full()),
             position=position.full().T,
@@ -119,7 +119,7 @@ class TubeSolution:
     @cached_property
     def tips(self) -> dict[str, NumericPose]:
         """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
-        position, quaternion = self.model.tips(self.x, self.joints, 1.0)
+        position, quaternion = self.model.tips(self.x, self.inputs, 1.0)
         return {
             name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
             for index, name in enumerate(self.robot.names)
@@ -133,21 +133,21 @@ class TubeSolution:
         """
         name = tube
         if name is None:
-            name = self.robot.names[int(np.argmax(self.joints[1::2]))]
+            name = self.robot.names[int(np.argmax(self.inputs[1::2]))]
         if name not in self.tips:
             raise SceneError(Problem(name, "is no tube", closest(name, self.tips)))
         return self.tips[name]
 
     @cached_property
     def tip_jacobian(self) -> FloatArray:
-        """Derivatives of the poses of all tips with the joints, shape (n, 6, 2 n), angular first, rad and m."""
-        jacobian = self.model.tip_jacobian(self.x, self.joints, 1.0).full()
+        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n), angular first, rad and m."""
+        jacobian = self.model.tip_jacobian(self.x, self.inputs, 1.0).full()
         return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
 
 
 def tip_error(found: TubeSolution, finer: TubeSolution) -> float:
     """Largest pose error of the tips of one solution beside a finer one, distances relative to the length outside."""
-    length = float(finer.joints[1::2].max())
+    length = float(finer.inputs[1::2].max())
     rough = found.tips.values()
     exact = finer.tips.values()
     displacements = np.array([tip.position for tip in rough]) - [tip.position for tip in exact]

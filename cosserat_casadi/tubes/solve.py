@@ -1,4 +1,4 @@
-"""Solve concentric tubes: one equilibrium at given joints, with as many steps as its tolerance needs."""
+"""Solve concentric tubes: one equilibrium at given inputs, with as many steps as its tolerance needs."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ MOST_STEPS = 256
 """Steps of a piece beyond which it gives up."""
 
 
-def solve_tubes(scene: scenes.Scene, joints: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeSolution:
-    """Find the equilibrium that the tubes have when they are bent, at these joints, from straight ones.
+def solve_tubes(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeSolution:
+    """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones.
 
-    It is stable unless the joints are beyond where the robot snaps from every equilibrium near it. Others may exist:
-    :func:`all_equilibria` finds them.
+    It is the one that a robot has which was curved where it is; one that was turned there may be in another. Whether it
+    is stable it says itself; :func:`all_equilibria` finds the others.
 
     Args:
         scene: a scene with tubes.
-        joints: joints by name, such as "inner.rotation", where those left out keep the scene's value; or all of them,
+        values: inputs by name, such as "inner.rotation", where those left out keep the scene's value; or all of them,
             rotation and translation of each tube, rad and m.
 
     Raises:
-        SceneError: the scene has no tubes, or a joint is unknown or out of its range.
+        SceneError: the scene has no tubes, or an input is unknown or out of its range.
     """
     robot = robot_of(scene)
-    at = robot.packed(joints)
+    at = robot.packed(values)
     steps = FEWEST_STEPS
     found = solve_at(TubeModel(robot, steps), at)
     while True:
@@ -62,36 +62,36 @@ def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
     return replace(solution, outcome=outcome, error_estimate=error)
 
 
-def solve_at(model: TubeModel, joints: FloatArray) -> TubeSolution:
+def solve_at(model: TubeModel, inputs: FloatArray) -> TubeSolution:
     """The equilibrium of a model that straight tubes lead to, while their curvature grows."""
     path = Path(
-        residual=lambda x, t: np.ravel(model.residual(x, joints, t).full()),
-        jacobian=lambda x, t: model.jacobian(x, joints, t)[0].full(),
-        rate=lambda x, t: np.ravel(model.load_rate(x, joints, t).full()),
+        residual=lambda x, t: np.ravel(model.residual(x, inputs, t).full()),
+        jacobian=lambda x, t: model.jacobian(x, inputs, t)[0].full(),
+        rate=lambda x, t: np.ravel(model.load_rate(x, inputs, t).full()),
         # Straight tubes do not twist.
-        start=joints[::2].copy(),
+        start=inputs[::2].copy(),
     )
     end = follow(path)
     outcome = TubeOutcome.NOT_FOUND
     if end.outcome is Outcome.CONVERGED:
         outcome = TubeOutcome.CONVERGED
-    return TubeSolution(model, joints, end.x, outcome, _missed(model, end.x, joints), None)
+    return TubeSolution(model, inputs, end.x, outcome, _missed(model, end.x, inputs), None)
 
 
-def solution_near(model: TubeModel, joints: FloatArray, start: FloatArray) -> TubeSolution:
+def solution_near(model: TubeModel, inputs: FloatArray, start: FloatArray) -> TubeSolution:
     """The equilibrium of a model that Newton's method leads to from a start."""
     equations = Equations(
-        residual=lambda x: np.ravel(model.residual(x, joints, 1.0).full()),
-        jacobian=lambda x: model.jacobian(x, joints, 1.0)[0].full(),
+        residual=lambda x: np.ravel(model.residual(x, inputs, 1.0).full()),
+        jacobian=lambda x: model.jacobian(x, inputs, 1.0)[0].full(),
     )
     end = newton(equations, start, NewtonSettings())
     outcome = TubeOutcome.NOT_FOUND
     if end.outcome is Outcome.CONVERGED:
         outcome = TubeOutcome.CONVERGED
-    return TubeSolution(model, joints, end.x, outcome, _missed(model, end.x, joints), None)
+    return TubeSolution(model, inputs, end.x, outcome, _missed(model, end.x, inputs), None)
 
 
-def _missed(model: TubeModel, x: FloatArray, joints: FloatArray) -> float:
+def _missed(model: TubeModel, x: FloatArray, inputs: FloatArray) -> float:
     """Largest angle that the tubes miss their drives by, rad."""
-    residual = model.residual(x, joints, 1.0).full()
+    residual = model.residual(x, inputs, 1.0).full()
     return float(np.abs(residual).max())

@@ -47,32 +47,32 @@ class Stability:
         return self.falling == 0 and not self.neutral
 
 
-def stability_of(model: TubeModel, x: FloatArray, joints: FloatArray) -> Stability:
+def stability_of(model: TubeModel, x: FloatArray, inputs: FloatArray) -> Stability:
     """Judge an equilibrium.
 
     Args:
         model: the robot.
         x: angles at the tips, shape (n,), rad.
-        joints: shape (2 n,).
+        inputs: shape (2 n,).
     """
     size = model.size
-    along, of_steps = model.variations(x, joints, 1.0)
+    along, of_steps = model.variations(x, inputs, 1.0)
     # Stations from the tip to the plate; of each the changes of angles, then those of torques.
     changes = along.full().reshape(-1, 2 * size, size)
     angles = changes[:, :size]
     last_torques = changes[-1, size:]
     from_torques = of_steps.full().reshape(size, -1, size).transpose(1, 0, 2)
-    jacobian = model.jacobian(x, joints, 1.0)[0].full()
+    jacobian = model.jacobian(x, inputs, 1.0)[0].full()
     singular = np.linalg.svd(jacobian, compute_uv=False)
 
     falling = 0
-    outermost = float(joints[1::2].max())
+    outermost = float(inputs[1::2].max())
     negligible = NO_LENGTH * outermost / float(model.robot.torsion.min())
     for before, after, step in zip(angles[:-1], angles[1:], from_torques, strict=True):
         # A piece without length changes nothing.
         if np.abs(step).max() > negligible:
             falling += _negative(np.linalg.solve(-step, _divided(after, before)))
-    falling += _negative(_held(model, joints, angles[-1], last_torques))
+    falling += _negative(_held(model, inputs, angles[-1], last_torques))
     return Stability(
         falling=falling,
         neutral=bool(singular[-1] <= NEUTRAL * singular[0]),
@@ -80,14 +80,14 @@ def stability_of(model: TubeModel, x: FloatArray, joints: FloatArray) -> Stabili
     )
 
 
-def _held(model: TubeModel, joints: FloatArray, angles: FloatArray, torques: FloatArray) -> FloatArray:
+def _held(model: TubeModel, inputs: FloatArray, angles: FloatArray, torques: FloatArray) -> FloatArray:
     """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, n×n, scaled.
 
     With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no compliance, and C⁻¹ no value:
     1 + √C A √C has the same signs, and exists.
     """
     robot = model.robot
-    root = np.sqrt((robot.length - joints[1::2]).clip(min=0.0) / robot.torsion)
+    root = np.sqrt((robot.length - inputs[1::2]).clip(min=0.0) / robot.torsion)
     at_plate = -_divided(torques, angles)
     return np.eye(model.size) + root[:, None] * at_plate * root
 

@@ -70,7 +70,7 @@ DIFFERENCE = 1e-6
 def integrated(found: TubeSolution) -> tuple[np.ndarray, np.ndarray, float]:
     """Angles, position and energy at the tip, from the plate on, by DOP853: K u = Σ Kᵢ R(αᵢ) uᵢ* with matrices."""
     robot = found.robot
-    reach = found.joints[1::2]
+    reach = found.inputs[1::2]
     bends = reach - robot.curved
     size = robot.size
 
@@ -103,7 +103,7 @@ def integrated(found: TubeSolution) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 @pytest.mark.parametrize(
-    "joints",
+    "inputs",
     [
         {},
         {"innermost.translation": 0.1},
@@ -111,8 +111,8 @@ def integrated(found: TubeSolution) -> tuple[np.ndarray, np.ndarray, float]:
         {"outer.translation": 0.0, "inner.rotation": 4.0},
     ],
 )
-def test_three_tubes_whatever_the_order_of_their_ends(joints: dict[str, float]) -> None:
-    found = solve_tubes(parse_scene(THREE), joints)
+def test_three_tubes_whatever_the_order_of_their_ends(inputs: dict[str, float]) -> None:
+    found = solve_tubes(parse_scene(THREE), inputs)
     assert found.converged
     assert found.error_estimate is not None
     assert found.error_estimate <= 1e-8
@@ -122,9 +122,9 @@ def test_three_tubes_whatever_the_order_of_their_ends(joints: dict[str, float]) 
     assert_allclose(position, found.tip().position, rtol=0, atol=1e-7)
     assert_allclose(energy, found.energy, rtol=1e-7, atol=0)
     # At the drives.
-    inside = robot_of(parse_scene(THREE)).length - found.joints[1::2]
+    inside = robot_of(parse_scene(THREE)).length - found.inputs[1::2]
     at_drives = found.shape.angles[0] - inside / found.robot.torsion * found.shape.torques[0]
-    assert_allclose(at_drives, found.joints[::2], rtol=0, atol=1e-10)
+    assert_allclose(at_drives, found.inputs[::2], rtol=0, atol=1e-10)
     # No moment leaves the robot.
     assert_allclose(found.shape.torques.sum(axis=1), 0.0, rtol=0, atol=1e-14)
 
@@ -134,7 +134,7 @@ def test_tips_of_shorter_tubes_lie_on_the_centre_line() -> None:
     shape = found.shape
     assert_allclose(shape.distance[0], 0.0, rtol=0, atol=0)
     assert_allclose(shape.distance[-1], 0.3, rtol=0, atol=1e-15)
-    for name, reach in zip(found.robot.names, found.joints[1::2], strict=True):
+    for name, reach in zip(found.robot.names, found.inputs[1::2], strict=True):
         station = int(np.argmin(np.abs(shape.distance - reach)))
         assert_allclose(found.tip(name).position, shape.position[station], rtol=0, atol=1e-12)
 
@@ -162,20 +162,20 @@ def test_aligned_tubes_are_arcs() -> None:
     assert_allclose(tangent, [np.sin(angle) * np.cos(0.7), np.sin(angle) * np.sin(0.7), np.cos(angle)], atol=1e-12)
 
 
-def moved(found: TubeSolution, joint: int, by: float) -> TubeSolution:
-    joints = found.joints.copy()
-    joints[joint] += by
-    return solution_near(found.model, joints, found.x)
+def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
+    inputs = found.inputs.copy()
+    inputs[index] += by
+    return solution_near(found.model, inputs, found.x)
 
 
-@pytest.mark.parametrize("joints", [{}, {"innermost.translation": 0.1}])
-def test_tip_jacobian_vs_differences(joints: dict[str, float]) -> None:
-    found = solve_tubes(parse_scene(THREE), joints)
-    for joint in range(found.joints.size):
-        ahead = moved(found, joint, DIFFERENCE)
-        behind = moved(found, joint, -DIFFERENCE)
+@pytest.mark.parametrize("inputs", [{}, {"innermost.translation": 0.1}])
+def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
+    found = solve_tubes(parse_scene(THREE), inputs)
+    for index in range(found.inputs.size):
+        ahead = moved(found, index, DIFFERENCE)
+        behind = moved(found, index, -DIFFERENCE)
         for tube, name in enumerate(found.robot.names):
-            column = found.tip_jacobian[tube, :, joint]
+            column = found.tip_jacobian[tube, :, index]
             position = (ahead.tip(name).position - behind.tip(name).position) / (2 * DIFFERENCE)
             turn = (ahead.tip(name).rotation - behind.tip(name).rotation) / (2 * DIFFERENCE)
             spin = turn @ found.tip(name).rotation.T
@@ -194,11 +194,11 @@ def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
 
 def test_a_straight_third_tube_only_stiffens() -> None:
     scene = parse_scene(THREE, ["innermost.curvature=0.0", "innermost.translation=0.2", "accuracy.tolerance=1e-6"])
-    joints = {"inner.rotation": 3.4}
-    found = all_equilibria(scene, joints)
+    inputs = {"inner.rotation": 3.4}
+    found = all_equilibria(scene, inputs)
     assert found.complete
     # It turns freely: the other two have as many equilibria as without it, a little stiffer.
-    alone = all_equilibria(parse_scene(TWO, ["accuracy.tolerance=1e-6"]), joints)
+    alone = all_equilibria(parse_scene(TWO, ["accuracy.tolerance=1e-6"]), inputs)
     assert alone.complete
     assert len(found.solutions) == len(alone.solutions) == 3
     assert [solution.stable for solution in found.solutions] == [True, True, False]
@@ -209,7 +209,7 @@ def test_a_straight_third_tube_only_stiffens() -> None:
 def test_a_common_turn_turns_the_robot() -> None:
     scene = parse_scene(TWO)
     found = solve_tubes(scene)
-    turned = solve_tubes(scene, found.joints + np.array([0.5, 0, 0.5, 0]))
+    turned = solve_tubes(scene, found.inputs + np.array([0.5, 0, 0.5, 0]))
     c, s = np.cos(0.5), np.sin(0.5)
     about_z = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     assert_allclose(turned.tip().position, about_z @ found.tip().position, rtol=0, atol=1e-12)
@@ -291,19 +291,19 @@ def test_refused_scenes(text: str, where: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("joints", "problem"),
+    ("inputs", "problem"),
     [
         ({"inner.rotation": np.nan}, "inner.rotation: must be finite"),
         ({"inner.translation": 0.31}, "inner.translation: must be from 0 to the length"),
-        ({"inner.turn": 1.0}, "inner.turn: is no joint"),
+        ({"inner.turn": 1.0}, "inner.turn: is no input"),
         ({"inner.rotation": [1.0, 2.0]}, "inner.rotation: must be a number"),
-        ([0.0, 0.1, 0.0], "joints: must have 4 entries"),
+        ([0.0, 0.1, 0.0], "inputs: must have 4 entries"),
         ({"inner.translation": 0.0, "outer.translation": 0.0}, "no tube stands out"),
     ],
 )
-def test_refused_joints(joints: dict[str, float], problem: str) -> None:
+def test_refused_inputs(inputs: dict[str, float], problem: str) -> None:
     with pytest.raises(SceneError, match=problem):
-        solve_tubes(parse_scene(TWO), joints)
+        solve_tubes(parse_scene(TWO), inputs)
 
 
 def test_what_works_on_rods_refuses_tubes() -> None:

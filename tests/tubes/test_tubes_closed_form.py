@@ -20,8 +20,8 @@ HOUSED = Pendulum(2.0, housing=(0.1, 0.25))
 
 
 def between_drives(model: TubeModel, between_tips: float) -> float:
-    joints = model.robot.joints
-    missed = model.residual([0.0, between_tips], joints, 1.0).full()[:, 0] + joints[::2]
+    inputs = model.robot.inputs
+    missed = model.residual([0.0, between_tips], inputs, 1.0).full()[:, 0] + inputs[::2]
     return float(missed[1] - missed[0])
 
 
@@ -50,9 +50,9 @@ def test_stability_of_opposed_tubes(reach: float, falling: int, housing: tuple[f
     scene = tubes.scene(np.pi)
     model = TubeModel(robot_of(scene), 32)
     # The half turn is kept all along: both curvatures are opposed, and twist would release energy.
-    x = model.robot.joints[::2]
-    assert_allclose(model.residual(x, model.robot.joints, 1.0).full(), 0.0, rtol=0, atol=1e-14)
-    stability = stability_of(model, x, model.robot.joints)
+    x = model.robot.inputs[::2]
+    assert_allclose(model.residual(x, model.robot.inputs, 1.0).full(), 0.0, rtol=0, atol=1e-14)
+    stability = stability_of(model, x, model.robot.inputs)
     assert_allclose(stability.determinant, tubes.opposed_determinant(), rtol=0, atol=1e-8)
     if housing == (0.0, 0.0):
         # cos √c (L − s) has as many zeros: conjugate points.
@@ -118,10 +118,10 @@ def test_snap_where_the_closed_form_turns() -> None:
     assert_allclose(snap.value, 0.4 - turning.fun, rtol=0, atol=1e-7)
     assert snap.kind == "limit"
     assert snap.solution.stability.neutral
-    # It comes to rest at another stable equilibrium of the same joints.
+    # It comes to rest at another stable equilibrium of the same inputs.
     assert snap.snaps_to is not None
     assert snap.snaps_to.stable
-    assert_allclose(snap.snaps_to.joints, snap.solution.joints, rtol=0, atol=0)
+    assert_allclose(snap.snaps_to.inputs, snap.solution.inputs, rtol=0, atol=0)
     exact = closed_form_tips(tubes, -turning.fun - 1e-9)
     between = snap.snaps_to.x[1] - snap.snaps_to.x[0]
     assert min(abs(between - angle) for angle in exact) < 1e-6

@@ -127,9 +127,9 @@ def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> N
         value: its value; None where it is refused already, and the name alone is left to check.
     """
     if scene.tubes:
-        robot_of(scene).joint_index(name)
+        robot_of(scene).input_index(name)
         return
-    # Building also refuses what reading cannot see: joints that over-constrain.
+    # Building also refuses what reading cannot see: inputs that over-constrain.
     layout = build(scene).inputs
     if value is None:
         defaults = dict(zip(layout.names, layout.defaults, strict=True))

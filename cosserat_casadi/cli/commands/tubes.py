@@ -105,17 +105,19 @@ def solve_all_of_tubes(scene: Scene, outputs: Outputs) -> None:
         raise typer.Exit(NOT_FOUND)
 
 
-def follow_tube_scene(scene: Scene, joint: str, value: FloatArray, outputs: Outputs) -> None:
-    """``cosserat path`` of tubes: from the scene's value of a joint to another.
+def follow_tube_scene(scene: Scene, name: str, value: FloatArray, outputs: Outputs) -> None:
+    """``cosserat path`` of tubes: from the scene's value of an input to another.
 
     Raises:
-        SceneError: the joint or its value is refused.
+        SceneError: the input or its value is refused.
         Exit: the value was not reached.
     """
     if value.size != 1:
-        raise SceneError(Problem("--to", f"must be one number, got {value.size}", "a joint is an angle or a length"))
+        raise SceneError(
+            Problem("--to", f"must be one number, got {value.size}", "an input of tubes is an angle or a length")
+        )
     with solve_display("Following the path") as display:
-        path = follow_tubes(scene, joint, value.item(), progress=display.show_share)
+        path = follow_tubes(scene, name, value.item(), progress=display.show_share)
     outputs.write(tube_path_result(path))
     if outputs.table is not None:
         write_atomically(outputs.table, tube_path_table(path).encode())

@@ -22,7 +22,7 @@ def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path
     _print_message(console, solution.robot.title, solution.message, good=solution.converged)
     table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
     for index, (name, tip) in enumerate(solution.tips.items()):
-        rotation, translation = solution.joints[2 * index : 2 * index + 2]
+        rotation, translation = solution.inputs[2 * index : 2 * index + 2]
         position = ", ".join(digits(tip.position))
         table.add_row(escape(name), f"{rotation:.6g}", f"{translation:.6g}", position, f"{solution.x[index]:.6g}")
     console.print(table)
@@ -49,7 +49,7 @@ def print_tubes_unstable(console: Console) -> None:
 
 
 def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
-    """Print all equilibria of a joint vector, and the files that were written."""
+    """Print all equilibria of a inputs, and the files that were written."""
     robot = equilibria.solutions[0].robot
     _print_message(console, robot.title, equilibria.message, good=equilibria.complete)
     farthest = "tip position, m"
@@ -89,7 +89,7 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
-    print_plain(console, f"{counted(robot.size, 'unknown')}; joints: {', '.join(robot.joint_names)}")
+    print_plain(console, f"{counted(robot.size, 'unknown')}; inputs: {', '.join(robot.input_names)}")
 
 
 def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:
@@ -101,7 +101,7 @@ def _print_message(console: Console, title: str, message: str, *, good: bool) ->
 
 
 def _path_table(path: TubePath) -> Table:
-    table = table_of("point", f"{escape(path.joint)}, {path.unit}", "beyond it", "snaps to, m", "energy released, J")
+    table = table_of("point", f"{escape(path.name)}, {path.unit}", "beyond it", "snaps to, m", "energy released, J")
     last = len(path.solutions) - 1
     table.add_row("start", f"{path.values[0]:.10g}", _verdict(path.solutions[0]), "", "")
     for event in path.events:
