@@ -25,7 +25,14 @@ class TubeSection(Record):
     """The wall of a tube."""
 
     example: ClassVar[str] = """\
-section = { outer_radius = 1.2e-3, inner_radius = 1.0e-3 }
+[[tubes]]
+name = "wire"
+material = { youngs_modulus = 6.0e10, poisson_ratio = 0.33 }
+section = { outer_radius = 0.4e-3, inner_radius = 0 }
+straight = 0.3
+curved = 0.05
+curvature = 25.0
+translation = 0.2
 """
 
     outer_radius: Positive = Field(description="outer radius, m")
@@ -45,7 +52,13 @@ class TubeStiffness(Record):
     """Stiffnesses of a tube."""
 
     example: ClassVar[str] = """\
-stiffness = { bending = 0.06, torsion = 0.045 }
+[[tubes]]
+name = "inner"
+stiffness = { bending = 0.025, torsion = 0.019 }
+straight = 0.2
+curved = 0.1
+curvature = 12.0
+translation = 0.25
 """
 
     bending: Positive = Field(description="bending stiffness EI, N m²")
