@@ -20,6 +20,12 @@ from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.tubes.flow import START, State, twist_step, whole_step
 from cosserat_casadi.tubes.robot import Robot
 
+NEWTON_TOLERANCE = 1e-12
+"""Angle missed, rad, at which the steps of `equilibrium` end."""
+
+NEWTON_STEPS = 30
+"""Most steps of `equilibrium`."""
+
 
 @dataclass(frozen=True)
 class _March:
@@ -79,6 +85,26 @@ class TubeModel:
         """(x, inputs, load_factor) ↦ derivative of the residual with the load factor, n×1."""
         _, _, load_factor = self._arguments
         return self._function("load_rate", {"load_rate": ca.jacobian(self._residual, load_factor)})
+
+    @cached_property
+    def equilibrium(self) -> ca.Function:
+        """(start, inputs) ↦ angles at the tips, n×1, rad, by Newton's method, and the sum of angles missed, 1×1, rad.
+
+        It is an expression like any other: CasADi differentiates it exactly, by the implicit function theorem, and
+        writes it in C. Full steps from the start, at most NEWTON_STEPS. Where the angle missed is not small, or no
+        number, nothing was found: whoever calls it has to look.
+        """
+        x, inputs, _ = self._arguments
+        missed = ca.Function("missed", [x, inputs], [self.residual(x, inputs, 1.0)])
+        options = {"abstol": NEWTON_TOLERANCE, "max_iter": NEWTON_STEPS}
+        found = ca.rootfinder("newton", "fast_newton", missed, options)(x, inputs)
+        return ca.Function(
+            "equilibrium",
+            [x, inputs],
+            [found, ca.sum1(ca.fabs(missed(found, inputs)))],
+            ["start", "inputs"],
+            ["x", "missed"],
+        )
 
     @cached_property
     def energy(self) -> ca.Function:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
+import subprocess
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -181,6 +184,40 @@ def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
             spin = turn @ found.tip(name).rotation.T
             assert_allclose(column[3:], position, rtol=0, atol=1e-7)
             assert_allclose(column[:3], [spin[2, 1], spin[0, 2], spin[1, 0]], rtol=0, atol=1e-6)
+
+
+def test_equilibrium_is_an_expression() -> None:
+    found = solve_tubes(parse_scene(TWO))
+    model = found.model
+    start, inputs = ca.MX.sym("start", 2), ca.MX.sym("inputs", 4)
+    x, _ = model.equilibrium(start, inputs)
+    position, _ = model.tips(x, inputs, 1.0)
+    derivative = ca.Function("derivative", [start, inputs], [ca.jacobian(ca.vec(position), inputs)])
+    by_casadi = derivative(found.x + 0.05, found.inputs).full().reshape(2, 3, 4)
+    assert_allclose(by_casadi, found.tip_jacobian[:, 3:], rtol=0, atol=1e-11)
+    x, missed = model.equilibrium(found.x + 0.05, found.inputs)
+    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
+    assert float(missed) < 1e-11
+    # What was not found says so.
+    _, missed = model.equilibrium(found.x, [np.nan, 0.1, 0.0, 0.2])
+    assert np.isnan(float(missed))
+
+
+@pytest.mark.usefixtures("quick_compiler")
+def test_functions_in_c(tmp_path: Path) -> None:
+    found = solve_tubes(parse_scene(TWO))
+    generator = ca.CodeGenerator("tubes.c")
+    generator.add(found.model.equilibrium)
+    generator.add(found.model.tip_jacobian)
+    (tmp_path / "tubes.c").write_text(generator.dump())
+    command = [os.environ["CC"], "-shared", "-fPIC", "-o", "tubes.so", "tubes.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = str(tmp_path / "tubes.so")
+    x, missed = ca.external("equilibrium", library)(found.x + 0.05, found.inputs)
+    assert float(missed) < 1e-11
+    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
+    jacobian = ca.external("tip_jacobian", library)(x, found.inputs, 1.0)
+    assert_allclose(jacobian.full().reshape(2, 6, 4), found.tip_jacobian, rtol=0, atol=1e-10)
 
 
 def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
