@@ -28,6 +28,7 @@ from cosserat_casadi import (
     tubes_result,
 )
 from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solution import tip_error
 from cosserat_casadi.tubes.solve import solution_near
 from tests.commands import cosserat
 
@@ -241,6 +242,37 @@ def test_a_straight_third_tube_only_stiffens() -> None:
     assert [solution.stable for solution in found.solutions] == [True, True, False]
     for solution in found.solutions:
         assert_allclose(solution.x[2], -1.0, rtol=0, atol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_no_start_leads_to_an_equilibrium_that_was_not_found(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    scene = parse_scene(THREE, ["accuracy.tolerance=1e-6"])
+    rotations = generator.uniform(-np.pi, np.pi, 3)
+    inputs = robot_of(scene).inputs.copy()
+    inputs[::2] = rotations
+    found = all_equilibria(scene, inputs)
+    assert found.complete
+    assert len(found.solutions) % 2 == 1
+    model = found.solutions[0].model
+    known = np.array([solution.x for solution in found.solutions])
+    reached = 0
+    for _ in range(300):
+        end = solution_near(model, inputs, rotations + generator.uniform(-4.0, 4.0, 3))
+        if end.converged:
+            reached += 1
+            assert np.abs(known - end.x).max(axis=1).min() < 1e-6
+    assert reached > 60
+
+
+def test_error_of_the_tips_is_relative_to_the_length_outside() -> None:
+    scene = parse_scene(TWO.partition('[[tubes]]\nname = "inner"')[0], ["outer.curvature=0.0"])
+    exact = solve_tubes(scene, {"outer.translation": 0.2})
+    found = solve_tubes(scene, {"outer.translation": 0.18})
+    assert_allclose(tip_error(found, exact), 0.02 / 0.2, rtol=1e-12, atol=0)
+    turned = solve_tubes(scene, {"outer.translation": 0.2, "outer.rotation": 0.35})
+    assert_allclose(tip_error(turned, exact), 0.05, rtol=1e-12, atol=0)
 
 
 def test_a_common_turn_turns_the_robot() -> None:

@@ -127,3 +127,21 @@ def test_snap_where_the_closed_form_turns() -> None:
     assert min(abs(between - angle) for angle in exact) < 1e-6
     assert snap.released_energy is not None
     assert snap.released_energy > 0.0
+
+
+@pytest.mark.slow
+def test_a_soft_robot_snaps_to_the_next_of_many() -> None:
+    tubes = Pendulum(3.0, (0.3, 0.6))
+    scene = tubes.scene(0.7, tolerance=1e-5)
+    path = follow_tubes(scene, "inner.rotation", 18.0)
+    assert path.converged
+    snap = path.events[0]
+    assert snap.snaps_to is not None
+    landing = snap.snaps_to.x[1] - snap.snaps_to.x[0]
+    found = all_equilibria(scene, {"inner.rotation": snap.value + 1e-4})
+    assert found.complete
+    stable = sorted(solution.x[1] - solution.x[0] for solution in found.stable)
+    # The tips go on turning as the drive does: to the first of five.
+    assert len(stable) == 5
+    assert_allclose(landing, stable[0], rtol=0, atol=1e-4)
+    assert landing > snap.solution.x[1] - snap.solution.x[0]
