@@ -22,8 +22,8 @@ from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.robot import Robot, robot_of
-from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
-from cosserat_casadi.tubes.solve import MOST_STEPS, solution_near, solve_at, solve_tubes
+from cosserat_casadi.tubes.solution import TubeSolution, tip_error
+from cosserat_casadi.tubes.solve import MOST_STEPS, solution_at, solution_near, solve_at, solve_tubes
 
 TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
 """Limits of a path over a rotation; the angles at the tips count in rad, the input as the share of its way."""
@@ -250,9 +250,8 @@ class _Way:
         )
 
     def _solution(self, model: TubeModel, x: FloatArray, factor: float) -> TubeSolution:
-        inputs = self.inputs(factor)
-        missed = float(np.abs(model.residual(x, inputs, 1.0).full()).max())
-        return TubeSolution(model, inputs, x, TubeOutcome.CONVERGED, missed, None)
+        # The path is corrected at each of its points.
+        return solution_at(model, self.inputs(factor), x, found=True)
 
     def _event(
         self, model: TubeModel, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]

@@ -72,10 +72,7 @@ def solve_at(model: TubeModel, inputs: FloatArray) -> TubeSolution:
         start=inputs[::2].copy(),
     )
     end = follow(path)
-    outcome = TubeOutcome.NOT_FOUND
-    if end.outcome is Outcome.CONVERGED:
-        outcome = TubeOutcome.CONVERGED
-    return TubeSolution(model, inputs, end.x, outcome, _missed(model, end.x, inputs), None)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
 
 
 def solution_near(model: TubeModel, inputs: FloatArray, start: FloatArray) -> TubeSolution:
@@ -85,13 +82,21 @@ def solution_near(model: TubeModel, inputs: FloatArray, start: FloatArray) -> Tu
         jacobian=lambda x: model.jacobian(x, inputs, 1.0)[0].full(),
     )
     end = newton(equations, start, NewtonSettings())
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
+
+
+def solution_at(model: TubeModel, inputs: FloatArray, x: FloatArray, *, found: bool) -> TubeSolution:
+    """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
+
+    Args:
+        model: the robot.
+        inputs: shape (2 n,).
+        x: angles at the tips, shape (n,), rad.
+        found: whether they are an equilibrium.
+    """
     outcome = TubeOutcome.NOT_FOUND
-    if end.outcome is Outcome.CONVERGED:
+    if found:
         outcome = TubeOutcome.CONVERGED
-    return TubeSolution(model, inputs, end.x, outcome, _missed(model, end.x, inputs), None)
-
-
-def _missed(model: TubeModel, x: FloatArray, inputs: FloatArray) -> float:
-    """Largest angle that the tubes miss their drives by, rad."""
     residual = model.residual(x, inputs, 1.0).full()
-    return float(np.abs(residual).max())
+    missed = float(np.abs(residual).max())
+    return TubeSolution(model, inputs, x, outcome, missed, None)
