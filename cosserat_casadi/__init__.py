@@ -47,9 +47,15 @@ from cosserat_casadi.results.modes_file import modes_result
 from cosserat_casadi.results.motion_file import motion_result, write_motion
 from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
+from cosserat_casadi.results.tubes_file import equilibria_result, tube_path_result, tubes_result
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
 from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
+from cosserat_casadi.tubes.equilibria import TubeEquilibria, all_equilibria
+from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.path import TubeEvent, TubePath, follow_tubes
+from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution
+from cosserat_casadi.tubes.solve import solve_tubes
 
 __version__ = version("cosserat-casadi")
 
@@ -85,16 +91,25 @@ __all__ = [
     "StepSensitivity",
     "StepState",
     "Sweep",
+    "TubeEquilibria",
+    "TubeEvent",
+    "TubeModel",
+    "TubeOutcome",
+    "TubePath",
+    "TubeSolution",
     "Tuning",
     "acados_expressions",
+    "all_equilibria",
     "build",
     "compiled_motion_stage",
     "compiled_stage",
     "discretise",
+    "equilibria_result",
     "export",
     "export_page",
     "follow_path",
     "follow_scene_path",
+    "follow_tubes",
     "identification_result",
     "identify",
     "identify_scene",
@@ -119,7 +134,10 @@ __all__ = [
     "sobol_table",
     "solve",
     "solve_scene",
+    "solve_tubes",
     "sweep_scene",
+    "tube_path_result",
+    "tubes_result",
     "tune",
     "write_acados",
     "write_fmu",

@@ -92,6 +92,22 @@ CONCEPTS = (
         ("follow_scene_path", "follow_path", "EquilibriumPath", "PathEvent", "PathOutcome"),
     ),
     Concept(
+        "tubes",
+        "Concentric tubes",
+        "Nested pre-curved tubes that turn and slide; see [concentric tubes](../tubes.md).",
+        (
+            "solve_tubes",
+            "all_equilibria",
+            "follow_tubes",
+            "TubeSolution",
+            "TubeOutcome",
+            "TubeEquilibria",
+            "TubePath",
+            "TubeEvent",
+            "TubeModel",
+        ),
+    ),
+    Concept(
         "sweeps",
         "Sweeps",
         "A scene solved for every row of a table; see [sweeps](../sweeps.md).",
@@ -182,6 +198,9 @@ CONCEPTS = (
             "path_result",
             "inverse_result",
             "identification_result",
+            "tubes_result",
+            "equilibria_result",
+            "tube_path_result",
         ),
     ),
 )

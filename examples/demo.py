@@ -38,6 +38,7 @@ SCENES = (
     "rod_over_bar",
     "wire_in_vessel",
     "felt_loads",
+    "concentric_tubes",
 )
 
 WITH_TARGETS = ("finger_to_point",)

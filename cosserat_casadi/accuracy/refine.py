@@ -49,6 +49,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.model.rods import rod_properties
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.continuation import ContinuationSettings
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -107,6 +108,7 @@ def solve_scene(
     Raises:
         SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
     """
+    refuse_tubes(scene)
     if stable:
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))

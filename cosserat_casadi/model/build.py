@@ -25,6 +25,7 @@ from cosserat_casadi.model.obstacle_checks import check_obstacles, refuse_obstac
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
 
 
@@ -188,6 +189,7 @@ def build(
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
             where it is; or a scene with obstacles is to move.
     """
+    refuse_tubes(scene)
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     nominal = discrete_scene(scene, input_layout(scene), chosen)

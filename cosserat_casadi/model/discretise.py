@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.model.places import element_ends
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.rod.discretisation import Discretisation
 
 DEFAULT_MODES = 6
@@ -34,6 +35,7 @@ def discretise(
         nodes: Chebyshev intervals per element.
         transport: integration method of the rotation.
     """
+    refuse_tubes(scene)
     if modes is None:
         modes = scene.accuracy.modes
     if modes is None:

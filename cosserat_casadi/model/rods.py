@@ -157,14 +157,14 @@ def _hooke(rod: scenes.Rod) -> Field:
     assert rod.material is not None
     assert rod.section is not None
     youngs_modulus = rod.material.youngs_modulus
-    shear_modulus = _shear_modulus(rod.material)
+    shear = shear_modulus(rod.material)
     correction = rod.section.shear_correction
     shape = _section_shape(rod.section)
-    hooke: Field = lambda X: section.hooke(shape(X), youngs_modulus, shear_modulus, correction)  # noqa: E731
+    hooke: Field = lambda X: section.hooke(shape(X), youngs_modulus, shear, correction)  # noqa: E731
     return _shared(hooke, *_sizes(rod.section))
 
 
-def _shear_modulus(material: scenes.Material) -> Scalar:
+def shear_modulus(material: scenes.Material) -> Scalar:
     """G of an isotropic material, E / (2 (1 + ν)) where Poisson's ratio is given."""
     if material.shear_modulus is not None:
         return material.shear_modulus

@@ -57,6 +57,7 @@ from cosserat_casadi.scene.rods import (
 from cosserat_casadi.scene.scene import FreeInput, Scene
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, CurveTarget, PoseTarget, PositionTarget, Target
+from cosserat_casadi.scene.tubes import Tube, TubeSection, TubeStiffness
 from cosserat_casadi.scene.unknowns import Identification, Prior, Unknown
 
 __all__ = [
@@ -127,6 +128,9 @@ __all__ = [
     "Target",
     "Tendon",
     "TipWrench",
+    "Tube",
+    "TubeSection",
+    "TubeStiffness",
     "Unknown",
     "parse_scene",
     "read_scene",

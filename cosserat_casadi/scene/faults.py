@@ -46,6 +46,11 @@ class SceneTables:
         self.tables = cache(self._tables)
         self.named = cache(self._named)
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """All keys of the scene, known or not."""
+        return tuple(self._given)
+
     def get(self, key: str) -> Any:
         """The value of a key; None where it is left out."""
         return self._given.get(key)

@@ -25,6 +25,7 @@ from cosserat_casadi.scene.parameters import PARAMETER_LISTS, Holder, holders_of
 from cosserat_casadi.scene.records import Entry, sound
 from cosserat_casadi.scene.rods import Rod, admitted_strains
 from cosserat_casadi.scene.targets import TARGETS, Bound
+from cosserat_casadi.scene.tubes import Tube, tube_faults
 from cosserat_casadi.scene.unknowns import Unknown
 
 Rule = Callable[[SceneTables], Iterator[Fault]]
@@ -37,6 +38,7 @@ LISTS: dict[str, Family[Any] | type[Entry]] = {
     "rods": Rod,
     "bodies": Body,
     "obstacles": OBSTACLES,
+    "tubes": Tube,
     "targets": TARGETS,
     "bounds": Bound,
     "motions": InputMotion,
@@ -56,6 +58,7 @@ SINGULAR = {
     "rods": "rod",
     "bodies": "body",
     "obstacles": "obstacle",
+    "tubes": "tube",
 }
 """One of what a list holds, in the words of an error."""
 
@@ -85,7 +88,7 @@ def _entries(scene: SceneTables) -> Iterator[tuple[Path, type[Entry], Table]]:
 
 def repeated_names(scene: SceneTables) -> Iterator[Fault]:
     """Two entries of one list have the same name."""
-    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles", "measurements"):
+    for key in ("rods", "loads", "supports", "actuators", "bodies", "joints", "obstacles", "tubes", "measurements"):
         named = scene.named(key)
         for i, table in scene.tables(key):
             name = table.get("name")
@@ -280,6 +283,7 @@ RULES: tuple[Rule, ...] = (
     overlapping_supports,
     own_rules,
     miscounted_modes,
+    tube_faults,
     inputs_that_are_not,
     parameters_that_are_not,
     measured_twice,

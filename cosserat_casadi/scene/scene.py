@@ -23,6 +23,7 @@ from cosserat_casadi.scene.rods import Rod
 from cosserat_casadi.scene.rules import scene_faults
 from cosserat_casadi.scene.simulation import Simulation
 from cosserat_casadi.scene.targets import Bound, Target
+from cosserat_casadi.scene.tubes import Tube
 from cosserat_casadi.scene.unknowns import Identification, Unknown
 from cosserat_casadi.scene.values import NotEmpty, without_repetition
 
@@ -82,13 +83,16 @@ inputs = ["push.force", "cable.tension"]
         "'finger.material.youngs_modulus'",
     )
     accuracy: Accuracy = Field(Accuracy(), description="wanted accuracy, or a fixed discretisation")
-    rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field(description="the rods, at least one")
+    rods: Annotated[tuple[Rod, ...], NotEmpty()] = Field((), description="the rods, at least one, unless it has tubes")
     loads: tuple[Load, ...] = Field((), description="what acts on the rods")
     supports: tuple[Support, ...] = Field((), description="tips that are held; a tip without support is free")
     actuators: tuple[Actuator, ...] = Field((), description="tendons and pressurised chambers")
     bodies: tuple[Body, ...] = Field((), description="rigid bodies that rods carry")
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
+    tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
+        (), description="concentric tubes, instead of rods and of all that acts on them"
+    )
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")
     measurements: tuple[Measurement, ...] = Field((), description="what was measured; for `cosserat identify` alone")

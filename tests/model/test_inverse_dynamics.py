@@ -50,7 +50,11 @@ def test_residual_at_rest_is_that_of_statics_to_the_last_bit(family: str) -> Non
         np.testing.assert_array_equal(at_rest(model, x), model.residual(x, model.pack()).full())
 
 
-@pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "examples").glob("*.toml")))
+# Concentric tubes have no rods to build.
+OF_RODS = [path for path in (ROOT / "examples").glob("*.toml") if "[[tubes]]" not in path.read_text()]
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in OF_RODS))
 def test_examples_at_rest_are_static_to_the_last_bit(name: str) -> None:
     tables = read_scene(ROOT / "examples" / name)
     model = build(tables)

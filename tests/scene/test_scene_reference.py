@@ -60,7 +60,11 @@ offset = [1.5e-3, 0.0]
 def completed(example: str) -> dict[str, Any]:
     """The scene of an example: its tables stand beside those of the context, inner tables in their owners."""
     tables = copy.deepcopy(CONTEXT)
-    for key, value in tomllib.loads(example).items():
+    own = tomllib.loads(example)
+    if "tubes" in own:
+        # Tubes stand alone.
+        return {"schema": 1, **own}
+    for key, value in own.items():
         if key == "helix":
             del tables["actuators"][0]["offset"]
             tables["actuators"][0][key] = value

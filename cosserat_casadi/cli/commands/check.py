@@ -10,10 +10,12 @@ from rich.console import Console
 from cosserat_casadi.bench.effects import effect_times
 from cosserat_casadi.bench.motion_times import motion_times
 from cosserat_casadi.bench.table import print_effects, print_motion_times
+from cosserat_casadi.cli.commands.tubes import check_tube_scene
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import count_reporter, progress_bar
 from cosserat_casadi.cli.reports.model import print_check
 from cosserat_casadi.codegen.compiler import find_compiler
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import price, price_of_motion
 from cosserat_casadi.motion.simulate import check_simulation
@@ -33,6 +35,11 @@ def check(
     """Validate a scene, say which effects were chosen and what the model and each effect will cost."""
     overrides = tuple(settings or ())
     checked_scene = read_scene(scene, overrides)
+    if checked_scene.tubes:
+        if timed:
+            raise SceneError(Problem("--time", "prices the effects of rods, and the scene has tubes", "leave it out"))
+        check_tube_scene(checked_scene)
+        return
     if timed:
         # A compiler that is missing is reported before anything is printed.
         find_compiler()

@@ -10,6 +10,7 @@ import numpy as np
 import typer
 from rich.console import Console
 
+from cosserat_casadi.cli.commands.tubes import Outputs, follow_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.progress import solve_display
@@ -24,6 +25,7 @@ from cosserat_casadi.paths.follow import EquilibriumPath
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.results.path_file import path_table, path_text
 from cosserat_casadi.scene import Scene, read_scene
+from cosserat_casadi.tubes.robot import robot_of
 
 
 def path(
@@ -45,6 +47,12 @@ def path(
     _check_bifurcation(bifurcation, problems)
     _check_files({"--output": output, "--csv": table}, plot, problems)
     checked_scene, value = _check_input(scene, tuple(settings or ()), name, to, problems)
+    if checked_scene.tubes:
+        if branch:
+            problem = "is for rods: a path of tubes goes straight on"
+            raise SceneError(Problem("--branch", problem, "leave it out"))
+        follow_tube_scene(checked_scene, name, value, Outputs(output, plot, table))
+        return
 
     # The branch that follow_scene_path leaves along is a number; 0 stays on the path.
     branch_number = bifurcation if branch else 0
@@ -118,7 +126,10 @@ def _check_name_and_size(scene: Scene, name: str, value: FloatArray | None) -> N
         name: the input.
         value: its value; None where it is refused already, and the name alone is left to check.
     """
-    # Building also refuses what reading cannot see: joints that over-constrain.
+    if scene.tubes:
+        robot_of(scene).input_index(name)
+        return
+    # Building also refuses what reading cannot see: inputs that over-constrain.
     layout = build(scene).inputs
     if value is None:
         defaults = dict(zip(layout.names, layout.defaults, strict=True))

@@ -10,9 +10,11 @@ import typer
 from rich.console import Console
 
 from cosserat_casadi.cli.commands.solving import draw_solution, solve_with_progress
+from cosserat_casadi.cli.commands.tubes import Outputs, solve_all_of_tubes, solve_tube_scene
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
-from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, given_files
+from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, collect_problems, given_files
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
 from cosserat_casadi.scene import read_scene
@@ -27,11 +29,29 @@ def solve(
     stable: Annotated[
         bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
     ] = False,
+    every: Annotated[
+        bool, typer.Option("--all", help="Of concentric tubes: find all equilibria, each called stable or not.")
+    ] = False,
 ) -> None:
     """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
     # A file that cannot be written is refused before the solve, not after it.
-    check_outputs(output, plot)
-    solution = solve_with_progress(read_scene(scene, tuple(settings or ())), stable=stable)
+    problems: list[Problem] = []
+    with collect_problems(problems):
+        check_outputs(output, plot)
+    with collect_problems(problems):
+        read = read_scene(scene, tuple(settings or ()))
+        if every and not read.tubes:
+            raise SceneError(Problem("--all", "is for concentric tubes", "leave it out"))
+    if problems:
+        raise SceneError(*problems)
+    if read.tubes:
+        outputs = Outputs(output, plot, as_json=as_json)
+        if every:
+            solve_all_of_tubes(read, outputs)
+        else:
+            solve_tube_scene(read, outputs, stable=stable)
+        return
+    solution = solve_with_progress(read, stable=stable)
     if output is not None:
         write_atomically(output, result_text(solution).encode())
     if plot is not None:

@@ -1,0 +1,122 @@
+"""What commands print of concentric tubes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, table_of, title_line
+from cosserat_casadi.scene.spelling import counted
+from cosserat_casadi.tubes.equilibria import TubeEquilibria
+from cosserat_casadi.tubes.path import TubePath
+from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.solution import TubeSolution
+
+
+def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path]) -> None:
+    """Print the outcome, the tubes, the figures of merit, and the files that were written."""
+    _print_message(console, solution.robot.title, solution.message, good=solution.converged)
+    table = table_of("tube", "rotation, rad", "translation, m", "tip position, m", "angle at the tip, rad")
+    for index, (name, tip) in enumerate(solution.tips.items()):
+        rotation, translation = solution.inputs[2 * index : 2 * index + 2]
+        position = ", ".join(digits(tip.position))
+        table.add_row(escape(name), f"{rotation:.6g}", f"{translation:.6g}", position, f"{solution.x[index]:.6g}")
+    console.print(table)
+    parts = [f"residual {solution.residual_norm:.1e} rad"]
+    if solution.error_estimate is not None:
+        parts.append(f"estimated error of the tips {solution.error_estimate:.1e}")
+    parts += [
+        _verdict(solution),
+        f"determinant {solution.stability.determinant:.6g}",
+        f"energy {solution.energy:.6g} J",
+    ]
+    print_plain(console, "; ".join(parts))
+    print_written(console, written)
+
+
+def print_tubes_unstable(console: Console) -> None:
+    """Warn of an unstable equilibrium, and say what to do about it."""
+    print_plain(
+        console,
+        "[bold yellow]Warning:[/] this equilibrium is not stable: a real robot leaves it. "
+        "Add --stable for the stable one of least energy, or --all for all equilibria.",
+        soft_wrap=True,
+    )
+
+
+def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
+    """Print all equilibria of a inputs, and the files that were written."""
+    robot = equilibria.solutions[0].robot
+    _print_message(console, robot.title, equilibria.message, good=equilibria.complete)
+    farthest = "tip position, m"
+    table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", farthest)
+    for number, solution in enumerate(equilibria.solutions, 1):
+        table.add_row(
+            str(number),
+            _verdict(solution),
+            f"{solution.energy:.6g}",
+            f"{solution.stability.determinant:.6g}",
+            ", ".join(digits(solution.x)),
+            ", ".join(digits(solution.tip().position)),
+        )
+    console.print(table)
+    count = counted(len(equilibria.solutions), "equilibrium").replace("equilibriums", "equilibria")
+    print_plain(console, f"{count}, {len(equilibria.stable)} of them stable")
+    print_written(console, written)
+
+
+def print_tube_path(console: Console, path: TubePath, written: Sequence[Path]) -> None:
+    """Print the outcome, the events and the end of a path, and the files that were written."""
+    _print_message(console, path.title, path.message, good=path.converged)
+    if path.solutions:
+        console.print(_path_table(path))
+    parts = [counted(len(path.values), "point"), counted(len(path.events), "event")]
+    if path.error_estimate is not None:
+        parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
+    print_plain(console, "; ".join(parts))
+    print_written(console, written)
+
+
+def print_tubes_check(console: Console, robot: Robot) -> None:
+    """Print what a valid scene of tubes holds."""
+    print_plain(console, f"{title_line(robot.title)}: the scene is valid.")
+    table = table_of("tube", "EI, N m²", "GJ, N m²", "curvature, 1/m", "straight, m", "curved, m")
+    for index, name in enumerate(robot.names):
+        columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
+        table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
+    console.print(table)
+    print_plain(console, f"{counted(robot.size, 'unknown')}; inputs: {', '.join(robot.input_names)}")
+
+
+def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:
+    colour = "red"
+    if good:
+        colour = "green"
+    print_plain(console, title_line(title))
+    print_plain(console, f"[bold {colour}]{escape(message)}[/]")
+
+
+def _path_table(path: TubePath) -> Table:
+    table = table_of("point", f"{escape(path.name)}, {path.unit}", "beyond it", "snaps to, m", "energy released, J")
+    last = len(path.solutions) - 1
+    table.add_row("start", f"{path.values[0]:.10g}", _verdict(path.solutions[0]), "", "")
+    for event in path.events:
+        beyond = path.solutions[min(event.position, last)]
+        cells = ["", ""]
+        if event.snaps_to is not None:
+            cells = [", ".join(digits(event.snaps_to.tip().position)), f"{event.released_energy:.6g}"]
+        table.add_row(event.kind, f"{event.value:.10g}", _verdict(beyond), *cells)
+    table.add_row("end", f"{path.values[-1]:.10g}", _verdict(path.solutions[-1]), "", "")
+    return table
+
+
+def _verdict(solution: TubeSolution) -> str:
+    if solution.stability.neutral:
+        return "neutral"
+    if solution.stable:
+        return "stable"
+    return "unstable"

@@ -1,0 +1,203 @@
+"""Figures of concentric tubes: equilibria in space with the angles along them, and a path with its snaps.
+
+matplotlib is an extra and is imported inside functions only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.canvas import Canvas
+from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
+from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.tubes.path import TubeEvent, TubePath
+from cosserat_casadi.tubes.solution import TubeSolution
+
+STROKES = {True: "-", False: "--"}
+"""Stroke of what is stable, and of what is not."""
+
+WIDEST = 6.0
+"""Width of the innermost reach of the tubes, in points; a tube that ends leaves a thinner line."""
+
+
+def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None:
+    """Draw equilibria of one inputs into a file, whole or not at all; the same give the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_tubes(solutions), file)
+
+
+def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
+    """Figure of equilibria of one inputs: left in space, right the angles of the tubes along the centre line.
+
+    Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    figure = figure_class()(figsize=(13.0, 6.6), layout="constrained")
+    grid = figure.add_gridspec(1, 2, width_ratios=(1.3, 1.0))
+    points = np.concatenate([solution.shape.position for solution in solutions])
+    size = float(np.ptp(points, axis=0).max())
+    canvas = Canvas(figure.add_subplot(grid[0, 0], projection="3d"), None, size)
+    panel = figure.add_subplot(grid[0, 1])
+    for number, solution in enumerate(solutions):
+        _draw_robot(canvas, solution, number, several=len(solutions) > 1)
+        _draw_angles(panel, solution, number, several=len(solutions) > 1)
+    canvas.label_axes()
+    canvas.equalise(points)
+    panel.set_xlabel("distance from the plate along the centre line, m")
+    panel.set_ylabel("angle of the tube, rad")
+    panel.grid(alpha=0.3)
+    panel.legend(fontsize=9)
+    figure.legend(*canvas.axes.get_legend_handles_labels(), loc="outside lower left", ncols=5, fontsize=9)
+    first = solutions[0]
+    add_title(figure, first.robot.title)
+    _draw_subtitle(canvas.axes, solutions)
+    return figure
+
+
+def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
+    first = solutions[0]
+    colour = PLAIN_TEXT
+    if len(solutions) > 1:
+        stable = sum(solution.stable for solution in solutions)
+        words = f"{len(solutions)} equilibria, {stable} of them stable"
+    elif first.converged:
+        verdict = {True: "stable", False: "unstable"}[first.stable]
+        words = f"energy {first.energy:.6g} J; {verdict}"
+    else:
+        words = first.message
+        colour = FAILURE
+    axes.set_title(words, fontsize=10, color=colour, wrap=True)
+
+
+def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
+    """What a legend calls an equilibrium."""
+    verdict = {True: "stable", False: "unstable"}[solution.stable]
+    if several:
+        return f"{number + 1}: {verdict}, {solution.energy:.4g} J"
+    return verdict
+
+
+def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
+    """The centre line, as thick as there are tubes in it."""
+    shape = solution.shape
+    reaches = solution.inputs[1::2]
+    colour = rod_colour(number)
+    stroke = STROKES[solution.stable]
+    label: str | None = _name(solution, number, several=several)
+    ends = sorted({0.0, *(float(reach) for reach in reaches)})
+    for start, end in pairwise(ends):
+        here = (shape.distance >= start) & (shape.distance <= end)
+        tubes = int(np.sum(reaches >= end))
+        width = WIDEST * tubes / len(reaches)
+        canvas.line(shape.position[here], color=colour, linestyle=stroke, linewidth=width, label=label)
+        label = None
+
+
+def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:
+    """Angles of the tubes up to their tips, less that of the first drive."""
+    shape = solution.shape
+    first = solution.inputs[0]
+    for index, name in enumerate(solution.robot.names):
+        here = shape.distance <= solution.inputs[2 * index + 1]
+        if several:
+            colour = rod_colour(number)
+            label = f"{name}, {number + 1}"
+        else:
+            colour = rod_colour(index)
+            label = name
+        style = {**category_style(index), "color": colour, "linestyle": STROKES[solution.stable], "markevery": 0.15}
+        panel.plot(shape.distance[here], shape.angles[here, index] - first, label=label, **style)
+
+
+def save_tube_path_plot(path: TubePath, file: str | Path) -> None:
+    """Draw a path into a file, whole or not at all; the same path gives the same bytes.
+
+    Raises:
+        SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    save_figure(lambda: plot_tube_path(path), file)
+
+
+def plot_tube_path(path: TubePath) -> Any:
+    """Figure of a path: over the input, left the angles of the tips, right the energy; snaps as arrows.
+
+    Returns:
+        matplotlib.figure.Figure.
+
+    Raises:
+        PlotUnavailableError: matplotlib is not installed.
+    """
+    figure = figure_class()(figsize=(13.0, 5.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    if path.solutions:
+        names = path.solutions[0].robot.names
+        angles = np.array([solution.x for solution in path.solutions])
+        for index, name in enumerate(names):
+            _draw_curve(left, path, angles[:, index], rod_colour(index), name)
+        for event in path.events:
+            for index in range(len(names)):
+                _draw_event(left, event, event.solution.x[index], _landing(event, index))
+            snap_energy = None if event.snaps_to is None else event.snaps_to.energy
+            _draw_event(right, event, event.solution.energy, snap_energy)
+        _draw_curve(right, path, path.energy, rod_colour(len(names)), "energy")
+    for axes, words in ((left, "angle at the tip, rad"), (right, "elastic energy, J")):
+        axes.set_xlabel(f"{path.name}, {path.unit}")
+        axes.set_ylabel(words)
+        axes.grid(alpha=0.3)
+        for stable, verdict in ((True, "stable"), (False, "unstable")):
+            axes.plot([], [], color="0.3", linestyle=STROKES[stable], label=verdict)
+        axes.legend(fontsize=9)
+    colour = PLAIN_TEXT if path.converged else FAILURE
+    left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
+    add_title(figure, path.title)
+    return figure
+
+
+def _subtitle(path: TubePath) -> str:
+    if not path.converged:
+        return path.message
+    snaps = [event for event in path.events if event.snaps_to is not None]
+    if not snaps:
+        return "no snap"
+    return "; ".join(f"snaps at {event.value:.6g} {path.unit}" for event in snaps)
+
+
+def _landing(event: TubeEvent, tube: int) -> float | None:
+    """Angle at a tube's tip that a snap ends at; None where there is no snap."""
+    if event.snaps_to is None:
+        return None
+    return float(event.snaps_to.x[tube])
+
+
+def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, label: str) -> None:
+    """A quantity along the path, dashed where it is unstable."""
+    stable = path.stable
+    cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(stable)]
+    for start, stop in pairwise(cuts):
+        part = slice(start, min(stop + 1, len(stable)))
+        axes.plot(path.values[part], heights[part], color=colour, linestyle=STROKES[bool(stable[start])])
+    axes.plot([], [], color=colour, label=label)
+
+
+def _draw_event(axes: Any, event: TubeEvent, height: float, landing: float | None) -> None:
+    """A mark at an event, and the snap from it as an arrow."""
+    axes.plot(event.value, height, marker="o", color="0.1", linestyle="none", markersize=6, zorder=5)
+    if landing is not None:
+        arrow = {"arrowstyle": "-|>", "color": "0.1", "mutation_scale": 14}
+        axes.annotate("", xy=(event.value, landing), xytext=(event.value, height), arrowprops=arrow)

@@ -1,0 +1,126 @@
+"""Files of concentric tubes: an equilibrium, all equilibria, and a path, as JSON; a path as a table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
+from cosserat_casadi.tubes.equilibria import TubeEquilibria
+from cosserat_casadi.tubes.path import TubeEvent, TubePath
+from cosserat_casadi.tubes.solution import TubeSolution
+
+
+def tubes_result(solution: TubeSolution) -> dict[str, Any]:
+    """An equilibrium as the plain data of a file; a number that is not finite becomes null."""
+    data: dict[str, Any] = plain({"schema": SCHEMA, "title": solution.robot.title, **_equilibrium(solution)})
+    return data
+
+
+def equilibria_result(equilibria: TubeEquilibria) -> dict[str, Any]:
+    """All equilibria of a inputs as the plain data of a file, by their energy."""
+    first = equilibria.solutions[0]
+    data: dict[str, Any] = plain(
+        {
+            "schema": SCHEMA,
+            "title": first.robot.title,
+            "complete": equilibria.complete,
+            "message": equilibria.message,
+            "equilibria": [_equilibrium(solution) for solution in equilibria.solutions],
+        }
+    )
+    return data
+
+
+def tube_path_result(path: TubePath) -> dict[str, Any]:
+    """A path as the plain data of a file."""
+    data: dict[str, Any] = plain(
+        {
+            "schema": SCHEMA,
+            "title": path.title,
+            "converged": path.converged,
+            "outcome": path.outcome.label,
+            "message": path.message,
+            "error_estimate": path.error_estimate,
+            "input": path.name,
+            "unit": path.unit,
+            "points": [
+                {"value": value, **_point(solution)}
+                for value, solution in zip(path.values, path.solutions, strict=True)
+            ],
+            "events": [_event(event) for event in path.events],
+        }
+    )
+    return data
+
+
+def tubes_text(data: dict[str, Any]) -> str:
+    """Plain data of tubes as the text of a file."""
+    return json_text(data)
+
+
+def tube_path_table(path: TubePath) -> str:
+    """The points of a path as CSV: the input, stability, energy, and the tips of all tubes."""
+    names = () if not path.solutions else path.solutions[0].robot.names
+    columns = [path.name, "stable", "energy"]
+    columns += [f"{name}.tip.{axis}" for name in names for axis in "xyz"]
+    lines = [",".join(columns)]
+    for value, solution in zip(path.values, path.solutions, strict=True):
+        cells = [repr(float(value)), str(solution.stable).lower(), repr(solution.energy)]
+        cells += [repr(float(entry)) for tip in solution.tips.values() for entry in tip.position]
+        lines.append(",".join(cells))
+    return "\n".join(lines) + "\n"
+
+
+def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
+    """What a file says of one equilibrium."""
+    robot = solution.robot
+    shape = solution.shape
+    entries = {}
+    for index, (name, tip) in enumerate(solution.tips.items()):
+        entries[name] = {
+            "tip": {"position": tip.position, "rotation": tip.rotation, "quaternion": tip.quaternion},
+            "angle": shape.angles[:, index],
+            "torque": shape.torques[:, index],
+        }
+    return {
+        "converged": solution.converged,
+        "outcome": solution.outcome.label,
+        "message": solution.message,
+        "residual_norm": solution.residual_norm,
+        "error_estimate": solution.error_estimate,
+        "stable": solution.stable,
+        "falling_directions": solution.stability.falling,
+        "neutral": solution.stability.neutral,
+        "determinant": solution.stability.determinant,
+        "energy": solution.energy,
+        "steps": solution.model.steps,
+        "inputs": dict(zip(robot.input_names, solution.inputs.tolist(), strict=True)),
+        "tip_angles": solution.x,
+        "centre_line": {"distance": shape.distance, "position": shape.position, "quaternion": shape.quaternion},
+        "tubes": entries,
+    }
+
+
+def _point(solution: TubeSolution) -> dict[str, Any]:
+    """What a file says of a point of a path."""
+    return {
+        "stable": solution.stable,
+        "energy": solution.energy,
+        "tip_angles": solution.x,
+        "tips": {name: tip.position for name, tip in solution.tips.items()},
+    }
+
+
+def _event(event: TubeEvent) -> dict[str, Any]:
+    """What a file says of an event of a path."""
+    snaps_to = None
+    if event.snaps_to is not None:
+        snaps_to = _point(event.snaps_to)
+    return {
+        "kind": event.kind,
+        "value": event.value,
+        "before": event.position,
+        **_point(event.solution),
+        "snaps_to": snaps_to,
+        "released_energy": event.released_energy,
+    }

@@ -1,0 +1,274 @@
+"""All equilibria of concentric tubes at given inputs.
+
+The angles at the tips determine the robot, and a common turn of all of them turns it as a whole. What is left are the
+n − 1 angles between the tips, on a torus, which the robot carries to the n − 1 angles between the drives. This map has
+the degree one, that of tubes that do not twist: at all inputs the signs of its determinant add up to one over
+all equilibria. A drive that is turned once round is where it was. So equilibria that are twisted by a full turn more
+count too: each point of the torus belongs to one of them.
+
+Of two tubes the map is a function of one angle, whose rises and falls are told apart by an adaptive scan. Of more tubes
+Newton's method starts from the points of finer and finer grids until a grid finds nothing new and the signs add up.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solution import TubeSolution, tip_error
+from cosserat_casadi.tubes.solve import MOST_STEPS, judged, solution_near, solve_tubes
+
+MOST_TUBES = 4
+"""Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
+
+PAIR = 2
+
+TURN = 2 * np.pi
+
+FIRST_ANGLE = 0.1234
+"""Where scans and grids begin, rad: no angle at which symmetric robots have an equilibrium."""
+
+FIRST_INTERVALS = 48
+"""Intervals of a turn that the scan of two tubes begins with."""
+
+AGREES = 0.01
+"""Angle, rad, by which the cubic through the ends of an interval may miss the drives in its middle."""
+
+MOST_EVALUATIONS = 20_000
+"""Angles that the scan of two tubes looks at before it gives up."""
+
+GRIDS = {3: (8, 16, 32), 4: (6, 9, 12)}
+"""Points along each angle of the grids of starts, by the number of tubes."""
+
+SAME = 1e-6
+"""Angles at the tips, rad, that differ by less are those of one equilibrium."""
+
+
+@dataclass(frozen=True)
+class TubeEquilibria:
+    """The equilibria of concentric tubes at the same inputs.
+
+    Attributes:
+        solutions: the equilibria, by their energy, the least first.
+        complete: whether the search ended as it should: all are within tolerance, and the signs of their determinants
+            add up to one.
+    """
+
+    solutions: tuple[TubeSolution, ...]
+    complete: bool
+
+    @property
+    def stable(self) -> tuple[TubeSolution, ...]:
+        """Those of them that are stable."""
+        return tuple(solution for solution in self.solutions if solution.stable)
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        if self.complete:
+            return "All equilibria of these inputs were found: the signs of their determinants add up to one."
+        return (
+            "Equilibria were found, but others may be missing: the search ended before the signs of their determinants "
+            "added up to one within tolerance."
+        )
+
+
+def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeEquilibria:
+    """Find every equilibrium of concentric tubes.
+
+    Args:
+        scene: a scene with tubes.
+        values: as in :func:`solve_tubes`.
+
+    Raises:
+        SceneError: the scene has no tubes or too many, or an input is unknown or out of its range.
+    """
+    robot = robot_of(scene)
+    at = robot.packed(values)
+    if robot.size > MOST_TUBES:
+        problem = f"all equilibria are looked for of at most {MOST_TUBES} tubes, the scene has {robot.size}"
+        raise SceneError(Problem("tubes", problem, "solve it without --all"))
+    # As many steps as one of them needs are a beginning for the others.
+    model = solve_tubes(scene, at).model
+    while True:
+        angles = _angles(model, at)
+        finer = TubeModel(robot, 2 * model.steps)
+        solutions = [_refined(model, finer, at, x) for x in angles]
+        complete = _is_whole(solutions)
+        if complete or finer.steps >= MOST_STEPS:
+            by_energy = sorted(solutions, key=lambda solution: solution.energy)
+            return TubeEquilibria(tuple(by_energy), complete)
+        model = finer
+
+
+def _refined(model: TubeModel, finer: TubeModel, inputs: FloatArray, x: FloatArray) -> TubeSolution:
+    """An equilibrium of the finer model near one of a model, with the estimate of its error."""
+    rough = solution_near(model, inputs, x)
+    fine = solution_near(finer, inputs, x)
+    error = None
+    if rough.converged and fine.converged:
+        error = tip_error(rough, fine)
+    return judged(fine, error)
+
+
+def _is_whole(solutions: list[TubeSolution]) -> bool:
+    """Whether equilibria are within tolerance, differ, and have the signs that all equilibria have."""
+    if not all(solution.converged for solution in solutions):
+        return False
+    for one, other in itertools.combinations(solutions, 2):
+        if np.abs(one.x - other.x).max() < SAME:
+            return False
+    return _degree(solution.stability.determinant for solution in solutions) == 1
+
+
+def _degree(determinants: Iterator[float]) -> int:
+    return int(sum(np.sign(determinant) for determinant in determinants))
+
+
+def _angles(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+    """Angles at the tips of every equilibrium of a model, rad."""
+    if model.size == 1:
+        # One tube does not twist.
+        return [inputs[::2].copy()]
+    if model.size == PAIR:
+        return _of_two_tubes(model, inputs)
+    return _of_more_tubes(model, inputs)
+
+
+# Two tubes
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """What the scan of two tubes reads at one angle between the tips.
+
+    Attributes:
+        angle: between the tips, rad.
+        missed: by how much the angle between the drives differs from that of the inputs, rad.
+        slope: of that over the angle.
+    """
+
+    angle: float
+    missed: float
+    slope: float
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two tubes at given inputs."""
+
+    model: TubeModel
+    inputs: FloatArray
+
+    def read(self, angle: float) -> _Reading:
+        """The drives where the tips are at an angle."""
+        jacobian, residual = self.model.jacobian([0.0, angle], self.inputs, 1.0)
+        missed = float(residual[1] - residual[0])
+        slope = float(jacobian[1, 1] - jacobian[0, 1])
+        return _Reading(angle, missed, slope)
+
+    def tips(self, angle: float) -> FloatArray:
+        """Angles at both tips, turned together until the first drive is met."""
+        together = np.array([0.0, angle])
+        residual = np.ravel(self.model.residual(together, self.inputs, 1.0).full())
+        return np.asarray(together - residual[0])
+
+
+def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+    pair = _Pair(model, inputs)
+    found = []
+    for before, after in itertools.pairwise(_readings(pair)):
+        found += [pair.tips(angle) for angle in _roots(pair, before, after)]
+    return found
+
+
+def _readings(pair: _Pair) -> list[_Reading]:
+    """Readings over one turn of the tips, so close that a cubic between neighbours tells what is between them."""
+    angles = FIRST_ANGLE + np.linspace(0.0, TURN, FIRST_INTERVALS + 1)
+    first, *later = [pair.read(float(angle)) for angle in angles]
+    kept = [first]
+    pending = list(reversed(later))
+    evaluations = len(angles)
+    while pending:
+        before = kept[-1]
+        after = pending[-1]
+        middle = pair.read((before.angle + after.angle) / 2)
+        evaluations += 1
+        if _foreseen(before, middle, after) or evaluations > MOST_EVALUATIONS:
+            kept += [middle, pending.pop()]
+        else:
+            pending.append(middle)
+    return kept
+
+
+def _foreseen(before: _Reading, middle: _Reading, after: _Reading) -> bool:
+    """Whether the cubic through two readings says what is between them."""
+    width = after.angle - before.angle
+    missed = (before.missed + after.missed) / 2 + width * (before.slope - after.slope) / 8
+    change = 1.5 * (after.missed - before.missed) - width * (before.slope + after.slope) / 4
+    return abs(missed - middle.missed) <= AGREES and abs(change - width * middle.slope) <= AGREES
+
+
+def _roots(pair: _Pair, before: _Reading, after: _Reading) -> list[float]:
+    """Angles between two readings at which the drives are met, up to full turns."""
+    ends = [before, after]
+    if (before.slope > 0.0) != (after.slope > 0.0):
+        # It rises and falls in between: each of the two parts goes one way.
+        angle = bracketed_zero(
+            lambda angle: pair.read(angle).slope, (before.angle, before.slope), (after.angle, after.slope)
+        )
+        ends = [before, pair.read(angle), after]
+    roots = []
+    for start, end in itertools.pairwise(ends):
+        low, high = sorted((start.missed / TURN, end.missed / TURN))
+        for turns in range(int(np.floor(low)) + 1, int(np.floor(high)) + 1):
+            root = _crossing(pair, start, end, TURN * turns)
+            # A drive that is off by full turns is met by tips that are off by as many.
+            roots.append(root - TURN * turns)
+    return roots
+
+
+def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> float:
+    """The angle at which the drives are off by a level, between readings on both sides of it."""
+
+    def above(angle: float) -> float:
+        return pair.read(angle).missed - level
+
+    return bracketed_zero(above, (start.angle, start.missed - level), (end.angle, end.missed - level))
+
+
+# More tubes
+
+
+def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+    found: list[FloatArray] = []
+    for points in GRIDS[model.size]:
+        before = len(found)
+        for start in _starts(model, inputs, points):
+            end = solution_near(model, inputs, start)
+            if end.converged and all(np.abs(end.x - known).max() > SAME for known in found):
+                found.append(end.x)
+        determinants = (float(np.linalg.det(model.jacobian(x, inputs, 1.0)[0].full())) for x in found)
+        if len(found) == before and _degree(determinants) == 1:
+            break
+    return found
+
+
+def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:
+    """Angles at the tips on a grid, turned together and by full turns until the drives are met as near as that goes."""
+    angles = FIRST_ANGLE + TURN / points * np.arange(points)
+    for between in itertools.product(angles, repeat=model.size - 1):
+        tips = np.array([0.0, *between])
+        missed = np.ravel(model.residual(tips, inputs, 1.0).full())
+        tips -= missed[0]
+        yield tips - TURN * np.round((missed - missed[0]) / TURN)

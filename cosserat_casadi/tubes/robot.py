@@ -1,0 +1,166 @@
+"""The tubes of a scene as numbers, and the vector of their inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.rods import shear_modulus
+from cosserat_casadi.rod.section import annulus, hooke
+from cosserat_casadi.scene.spelling import closest
+
+FIELDS = ("rotation", "translation")
+"""Inputs of each tube, rad and m, in the order of the inputs."""
+
+SLACK = 1e-12
+"""By how much, relative to a length, a translation may leave its range: what rounding does to it."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Tubes as arrays with one entry a tube, in the order of the scene.
+
+    Attributes:
+        title: of the scene.
+        names: of the tubes.
+        bending: EI, shape (n,), N m².
+        torsion: GJ, shape (n,), N m².
+        curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
+        straight: length of the straight part, shape (n,), m.
+        curved: length of the curved part behind it, shape (n,), m.
+        inputs: rotation and translation of each tube in the scene, shape (2 n,), rad and m.
+        tolerance: wanted pose error of the tips, distances relative to the length that stands out.
+    """
+
+    title: str
+    names: tuple[str, ...]
+    bending: FloatArray
+    torsion: FloatArray
+    curvature: FloatArray
+    straight: FloatArray
+    curved: FloatArray
+    inputs: FloatArray
+    tolerance: float
+
+    @property
+    def size(self) -> int:
+        """Number of tubes."""
+        return len(self.names)
+
+    @property
+    def length(self) -> FloatArray:
+        """Lengths of the tubes, shape (n,), m."""
+        return self.straight + self.curved
+
+    @property
+    def input_names(self) -> tuple[str, ...]:
+        """Names ``tube.rotation`` and ``tube.translation`` of the entries of the inputs."""
+        return tuple(f"{name}.{field}" for name in self.names for field in FIELDS)
+
+    def input_index(self, name: str) -> int:
+        """Place of an input in the inputs.
+
+        Raises:
+            SceneError: there is no such input.
+        """
+        if name not in self.input_names:
+            raise SceneError(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
+        return self.input_names.index(name)
+
+    def packed(self, values: Mapping[str, float] | npt.ArrayLike | None) -> FloatArray:
+        """The inputs, shape (2 n,).
+
+        Args:
+            values: inputs by name, where those not named keep the scene's value; or all of them in order; None for
+                those of the scene.
+
+        Raises:
+            SceneError: with every input that is unknown, no finite number, or out of its range.
+        """
+        if values is None:
+            return self.inputs.copy()
+        if isinstance(values, Mapping):
+            inputs = self._named(values)
+        else:
+            inputs = np.array(values, dtype=float)
+            if inputs.shape != self.inputs.shape:
+                problem = f"must have {self.inputs.size} entries, got the shape {inputs.shape}"
+                raise SceneError(Problem("inputs", problem, ", ".join(self.input_names)))
+        problems = [*self._out_of_range(inputs)]
+        if problems:
+            raise SceneError(*problems)
+        return inputs
+
+    def _named(self, values: Mapping[str, float]) -> FloatArray:
+        inputs = self.inputs.copy()
+        problems = []
+        for name, value in values.items():
+            number = np.asarray(value, dtype=float)
+            if name not in self.input_names:
+                problems.append(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
+            elif number.size != 1:
+                problems.append(Problem(name, f"must be a number, got the shape {number.shape}"))
+            else:
+                inputs[self.input_names.index(name)] = number.item()
+        if problems:
+            raise SceneError(*problems)
+        return inputs
+
+    def _out_of_range(self, inputs: FloatArray) -> list[Problem]:
+        problems = []
+        for name, value in zip(self.input_names, inputs, strict=True):
+            if not np.isfinite(value):
+                problems.append(Problem(name, f"must be finite, got {value}"))
+        for name, translation, length in zip(self.names, inputs[1::2], self.length, strict=True):
+            if translation < -SLACK * length or translation > (1 + SLACK) * length:
+                problem = f"must be from 0 to the length of the tube, {length:g} m, got {translation:g}"
+                remedy = "it is how far the tip stands out of the plate"
+                problems.append(Problem(f"{name}.translation", problem, remedy))
+        if not problems and not np.any(inputs[1::2] > 0.0):
+            problems.append(Problem("tubes", "no tube stands out of the plate", "push one out: translation > 0"))
+        return problems
+
+
+def robot_of(scene: scenes.Scene) -> Robot:
+    """The tubes of a scene.
+
+    Raises:
+        SceneError: the scene has no tubes.
+    """
+    if not scene.tubes:
+        raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve_scene"))
+    stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
+    inputs = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
+    return Robot(
+        title=scene.title,
+        names=tuple(tube.name for tube in scene.tubes),
+        bending=stiffness[:, 0],
+        torsion=stiffness[:, 1],
+        curvature=np.array([tube.curvature for tube in scene.tubes]),
+        straight=np.array([tube.straight for tube in scene.tubes]),
+        curved=np.array([tube.curved for tube in scene.tubes]),
+        inputs=np.array(inputs, dtype=float),
+        tolerance=scene.accuracy.tolerance,
+    )
+
+
+def _stiffness(tube: scenes.Tube) -> tuple[float, float]:
+    """EI and GJ of a tube, N m²."""
+    if tube.stiffness is not None:
+        return tube.stiffness.bending, tube.stiffness.torsion
+    material = tube.material
+    section = tube.section
+    # The rules of the scene have seen to it that one of the two is given whole.
+    assert material is not None
+    assert section is not None
+    shape = annulus(np.array([section.outer_radius]), np.array([section.inner_radius]))
+    diagonal = hooke(shape, material.youngs_modulus, shear_modulus(material), shear_correction=1.0)
+    bending, _, torsion, *_ = known(diagonal)[0]
+    return float(bending), float(torsion)

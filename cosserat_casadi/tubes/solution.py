@@ -1,0 +1,158 @@
+"""An equilibrium of concentric tubes, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.accuracy.pose_change import change_size, rotation_vectors
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.maths.pose import NumericPose
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.robot import Robot
+from cosserat_casadi.tubes.stability import Stability, stability_of
+
+
+class TubeOutcome(Enum):
+    """Every way a solve of tubes can end. Only CONVERGED carries a result to build on."""
+
+    CONVERGED = "Equilibrium found: the tubes meet the rotations of their drives."
+    NOT_FOUND = (
+        "No equilibrium found: the way from straight tubes to the curved ones could not be followed to its end; "
+        "the equilibria of these inputs may be found one by one."
+    )
+    UNRESOLVED = "An equilibrium was found, but its error is above the tolerance: allow a larger one."
+
+    @property
+    def label(self) -> str:
+        """The word of the result file."""
+        return self.name.lower()
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A robot at k places from the plate to its tip.
+
+    Attributes:
+        distance: from the plate along the centre line, shape (k,), m.
+        position: in world axes, shape (k, 3), m.
+        quaternion: of the frame that follows the centre line without turning about it, w x y z, shape (k, 4).
+        angles: of the tubes against that frame, shape (k, n), rad; beyond its tip a tube keeps the angle of the tip.
+        torques: in the tubes, shape (k, n), N m.
+    """
+
+    distance: FloatArray
+    position: FloatArray
+    quaternion: FloatArray
+    angles: FloatArray
+    torques: FloatArray
+
+
+@dataclass(frozen=True)
+class TubeSolution:
+    """An equilibrium of concentric tubes.
+
+    Attributes:
+        model: the robot with its steps.
+        inputs: rotation and translation of each tube, shape (2 n,), rad and m.
+        x: angles at the tips against the frame of the centre line, shape (n,), rad.
+        outcome: how the solve ended.
+        residual_norm: largest angle that the tubes miss their drives by, rad.
+        error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
+            it was not estimated.
+    """
+
+    model: TubeModel
+    inputs: FloatArray
+    x: FloatArray
+    outcome: TubeOutcome
+    residual_norm: float
+    error_estimate: float | None
+
+    @property
+    def robot(self) -> Robot:
+        """The tubes."""
+        return self.model.robot
+
+    @property
+    def converged(self) -> bool:
+        """Whether this is an equilibrium within tolerance."""
+        return self.outcome is TubeOutcome.CONVERGED
+
+    @property
+    def message(self) -> str:
+        """A sentence for the user."""
+        return self.outcome.value
+
+    @cached_property
+    def stability(self) -> Stability:
+        """What the second variation of the energy says."""
+        return stability_of(self.model, self.x, self.inputs)
+
+    @property
+    def stable(self) -> bool:
+        """Whether the energy rises in every direction."""
+        return self.stability.stable
+
+    @cached_property
+    def energy(self) -> float:
+        """Elastic energy of what stands out of the plate, and of torsion in the housing, J."""
+        return float(self.model.energy(self.x, self.inputs, 1.0))
+
+    @cached_property
+    def shape(self) -> Shape:
+        """The robot at the ends of all steps."""
+        distance, position, quaternion, angles, torques = self.model.stations(self.x, self.inputs, 1.0)
+        return Shape(
+            distance=np.ravel(distance.full()),
+            position=position.full().T,
+            quaternion=quaternion.full().T,
+            angles=angles.full().T,
+            torques=torques.full().T,
+        )
+
+    @cached_property
+    def tips(self) -> dict[str, NumericPose]:
+        """Pose of every tube's tip in the world, by name; z is the tangent, x the side that the tube would bend to."""
+        position, quaternion = self.model.tips(self.x, self.inputs, 1.0)
+        return {
+            name: NumericPose(position.full()[:, index], quaternion.full()[:, index])
+            for index, name in enumerate(self.robot.names)
+        }
+
+    def tip(self, tube: str | None = None) -> NumericPose:
+        """Pose of a tube's tip in the world; without a name that of the tube that reaches farthest.
+
+        Raises:
+            SceneError: there is no such tube.
+        """
+        name = tube
+        if name is None:
+            name = self.robot.names[int(np.argmax(self.inputs[1::2]))]
+        if name not in self.tips:
+            raise SceneError(Problem(name, "is no tube", closest(name, self.tips)))
+        return self.tips[name]
+
+    @cached_property
+    def tip_jacobian(self) -> FloatArray:
+        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n), angular first, rad and m."""
+        jacobian = self.model.tip_jacobian(self.x, self.inputs, 1.0).full()
+        return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
+
+
+def tip_error(found: TubeSolution, finer: TubeSolution) -> float:
+    """Largest pose error of the tips of one solution beside a finer one, distances relative to the length outside."""
+    length = float(finer.inputs[1::2].max())
+    rough = found.tips.values()
+    exact = finer.tips.values()
+    displacements = np.array([tip.position for tip in rough]) - [tip.position for tip in exact]
+    turns = rotation_vectors(
+        np.array([tip.quaternion for tip in exact]),
+        np.array([tip.quaternion for tip in rough]),
+    )
+    return change_size(np.concatenate([displacements / length, turns]))

@@ -1,0 +1,459 @@
+"""Robots of several tubes: shape, energy, derivatives, order of ends, against integration and differences."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import (
+    Scene,
+    SceneError,
+    TubeSolution,
+    all_equilibria,
+    build,
+    equilibria_result,
+    follow_tubes,
+    parse_scene,
+    solve_tubes,
+    tube_path_result,
+    tubes_result,
+)
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solution import tip_error
+from cosserat_casadi.tubes.solve import solution_near
+from tests.commands import cosserat
+
+TWO = """
+schema = 1
+title = "Two tubes"
+accuracy = { tolerance = 1e-8 }
+[[tubes]]
+name = "outer"
+stiffness = { bending = 0.06, torsion = 0.045 }
+straight = 0.05
+curved = 0.15
+curvature = 10.0
+rotation = 0.3
+translation = 0.18
+[[tubes]]
+name = "inner"
+stiffness = { bending = 0.03, torsion = 0.022 }
+straight = 0.1
+curved = 0.2
+curvature = 14.0
+rotation = 2.0
+translation = 0.24
+"""
+
+THREE = (
+    TWO
+    + """
+[[tubes]]
+name = "innermost"
+stiffness = { bending = 0.012, torsion = 0.01 }
+straight = 0.2
+curved = 0.15
+curvature = -20.0
+rotation = -1.0
+translation = 0.3
+"""
+)
+
+DIFFERENCE = 1e-6
+
+
+def integrated(found: TubeSolution) -> tuple[np.ndarray, np.ndarray, float]:
+    """Angles, position and energy at the tip, from the plate on, by DOP853: K u = Σ Kᵢ R(αᵢ) uᵢ* with matrices."""
+    robot = found.robot
+    reach = found.inputs[1::2]
+    bends = reach - robot.curved
+    size = robot.size
+
+    def rate(s: float, y: np.ndarray) -> np.ndarray:
+        angles, torques = y[:size], y[size : 2 * size]
+        rotation = y[2 * size : 2 * size + 9].reshape(3, 3)
+        here = s < reach
+        wanted = np.zeros((size, 2))
+        for i in range(size):
+            turn = np.array([[np.cos(angles[i]), -np.sin(angles[i])], [np.sin(angles[i]), np.cos(angles[i])]])
+            # To bend towards x is to turn about y.
+            wanted[i] = turn @ [0.0, robot.curvature[i] * (s > bends[i])]
+        stiffness = robot.bending * here
+        u = stiffness @ wanted / stiffness.sum()
+        # GJ α″ = −∂/∂α of −EI u·R(α)u*: the moment of the bent tube about its tangent.
+        moments = stiffness[:, None] * (u - wanted)
+        gained = np.array([moments[i, 0] * wanted[i, 1] - moments[i, 1] * wanted[i, 0] for i in range(size)])
+        spin = np.array([[0, 0, u[1]], [0, 0, -u[0]], [-u[1], u[0], 0]])
+        energy = torques**2 @ (1 / robot.torsion) / 2 + np.sum(stiffness[:, None] * (u - wanted) ** 2) / 2
+        return np.concatenate([torques / robot.torsion, gained, (rotation @ spin).ravel(), rotation[:, 2], [energy]])
+
+    shape = found.shape
+    y = np.concatenate([shape.angles[0], shape.torques[0], np.eye(3).ravel(), np.zeros(4)])
+    cuts = sorted({0.0, *np.maximum(bends, 0.0), *reach})
+    for start, end in itertools.pairwise(cuts):
+        inset = 1e-14
+        y = solve_ivp(rate, (start + inset, end - inset), y, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+    housing = np.sum(shape.torques[0] ** 2 * (robot.length - reach) / robot.torsion) / 2
+    return y[:size], y[2 * size + 9 : 2 * size + 12], float(y[-1] + housing)
+
+
+@pytest.mark.parametrize(
+    "inputs",
+    [
+        {},
+        {"innermost.translation": 0.1},
+        {"outer.translation": 0.05, "inner.translation": 0.29, "innermost.translation": 0.12},
+        {"outer.translation": 0.0, "inner.rotation": 4.0},
+    ],
+)
+def test_three_tubes_whatever_the_order_of_their_ends(inputs: dict[str, float]) -> None:
+    found = solve_tubes(parse_scene(THREE), inputs)
+    assert found.converged
+    assert found.error_estimate is not None
+    assert found.error_estimate <= 1e-8
+    angles, position, energy = integrated(found)
+    # What is integrated towards the free ends grows, with errors that the plate does not see.
+    assert_allclose(angles, found.x, rtol=0, atol=1e-6)
+    assert_allclose(position, found.tip().position, rtol=0, atol=1e-7)
+    assert_allclose(energy, found.energy, rtol=1e-7, atol=0)
+    # At the drives.
+    inside = robot_of(parse_scene(THREE)).length - found.inputs[1::2]
+    at_drives = found.shape.angles[0] - inside / found.robot.torsion * found.shape.torques[0]
+    assert_allclose(at_drives, found.inputs[::2], rtol=0, atol=1e-10)
+    # No moment leaves the robot.
+    assert_allclose(found.shape.torques.sum(axis=1), 0.0, rtol=0, atol=1e-14)
+
+
+def test_tips_of_shorter_tubes_lie_on_the_centre_line() -> None:
+    found = solve_tubes(parse_scene(THREE))
+    shape = found.shape
+    assert_allclose(shape.distance[0], 0.0, rtol=0, atol=0)
+    assert_allclose(shape.distance[-1], 0.3, rtol=0, atol=1e-15)
+    for name, reach in zip(found.robot.names, found.inputs[1::2], strict=True):
+        station = int(np.argmin(np.abs(shape.distance - reach)))
+        assert_allclose(found.tip(name).position, shape.position[station], rtol=0, atol=1e-12)
+
+
+def test_aligned_tubes_are_arcs() -> None:
+    found = solve_tubes(parse_scene(TWO), {"outer.rotation": 0.7, "inner.rotation": 0.7})
+    assert found.stable
+    assert_allclose(found.x, 0.7, rtol=0, atol=1e-14)
+    robot = found.robot
+    # Curved: the outer tube from 0.03 m to its end, the inner one from 0.04 m on.
+    both = float(robot.bending @ robot.curvature / robot.bending.sum())
+    one = float(robot.bending[0] * robot.curvature[0] / robot.bending.sum())
+    x, z, angle = 0.0, 0.0, 0.0
+    for curvature, length in ((0.0, 0.03), (one, 0.01), (both, 0.14), (14.0, 0.06)):
+        end = angle + curvature * length
+        if curvature == 0.0:
+            z += length
+        else:
+            x += (np.cos(angle) - np.cos(end)) / curvature
+            z += (np.sin(end) - np.sin(angle)) / curvature
+        angle = end
+    expected = [x * np.cos(0.7), x * np.sin(0.7), z]
+    assert_allclose(found.tip("inner").position, expected, rtol=0, atol=1e-12)
+    tangent = found.tip("inner").rotation[:, 2]
+    assert_allclose(tangent, [np.sin(angle) * np.cos(0.7), np.sin(angle) * np.sin(0.7), np.cos(angle)], atol=1e-12)
+
+
+def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
+    inputs = found.inputs.copy()
+    inputs[index] += by
+    return solution_near(found.model, inputs, found.x)
+
+
+@pytest.mark.parametrize("inputs", [{}, {"innermost.translation": 0.1}])
+def test_tip_jacobian_vs_differences(inputs: dict[str, float]) -> None:
+    found = solve_tubes(parse_scene(THREE), inputs)
+    for index in range(found.inputs.size):
+        ahead = moved(found, index, DIFFERENCE)
+        behind = moved(found, index, -DIFFERENCE)
+        for tube, name in enumerate(found.robot.names):
+            column = found.tip_jacobian[tube, :, index]
+            position = (ahead.tip(name).position - behind.tip(name).position) / (2 * DIFFERENCE)
+            turn = (ahead.tip(name).rotation - behind.tip(name).rotation) / (2 * DIFFERENCE)
+            spin = turn @ found.tip(name).rotation.T
+            assert_allclose(column[3:], position, rtol=0, atol=1e-7)
+            assert_allclose(column[:3], [spin[2, 1], spin[0, 2], spin[1, 0]], rtol=0, atol=1e-6)
+
+
+def test_equilibrium_is_an_expression() -> None:
+    found = solve_tubes(parse_scene(TWO))
+    model = found.model
+    start, inputs = ca.MX.sym("start", 2), ca.MX.sym("inputs", 4)
+    x, _ = model.equilibrium(start, inputs)
+    position, _ = model.tips(x, inputs, 1.0)
+    derivative = ca.Function("derivative", [start, inputs], [ca.jacobian(ca.vec(position), inputs)])
+    by_casadi = derivative(found.x + 0.05, found.inputs).full().reshape(2, 3, 4)
+    assert_allclose(by_casadi, found.tip_jacobian[:, 3:], rtol=0, atol=1e-11)
+    x, missed = model.equilibrium(found.x + 0.05, found.inputs)
+    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
+    assert float(missed) < 1e-11
+    # What was not found says so.
+    _, missed = model.equilibrium(found.x, [np.nan, 0.1, 0.0, 0.2])
+    assert np.isnan(float(missed))
+
+
+@pytest.mark.usefixtures("quick_compiler")
+def test_functions_in_c(tmp_path: Path) -> None:
+    found = solve_tubes(parse_scene(TWO))
+    generator = ca.CodeGenerator("tubes.c")
+    generator.add(found.model.equilibrium)
+    generator.add(found.model.tip_jacobian)
+    (tmp_path / "tubes.c").write_text(generator.dump())
+    command = [os.environ["CC"], "-shared", "-fPIC", "-o", "tubes.so", "tubes.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = str(tmp_path / "tubes.so")
+    x, missed = ca.external("equilibrium", library)(found.x + 0.05, found.inputs)
+    assert float(missed) < 1e-11
+    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
+    jacobian = ca.external("tip_jacobian", library)(x, found.inputs, 1.0)
+    assert_allclose(jacobian.full().reshape(2, 6, 4), found.tip_jacobian, rtol=0, atol=1e-10)
+
+
+def test_torque_of_a_drive_is_the_rate_of_the_energy() -> None:
+    found = solve_tubes(parse_scene(THREE))
+    for tube in range(found.robot.size):
+        ahead = moved(found, 2 * tube, DIFFERENCE)
+        behind = moved(found, 2 * tube, -DIFFERENCE)
+        rate = (ahead.energy - behind.energy) / (2 * DIFFERENCE)
+        assert_allclose(rate, -found.shape.torques[0, tube], rtol=0, atol=1e-7)
+
+
+def test_a_straight_third_tube_only_stiffens() -> None:
+    scene = parse_scene(THREE, ["innermost.curvature=0.0", "innermost.translation=0.2", "accuracy.tolerance=1e-6"])
+    inputs = {"inner.rotation": 3.4}
+    found = all_equilibria(scene, inputs)
+    assert found.complete
+    # It turns freely: the other two have as many equilibria as without it, a little stiffer.
+    alone = all_equilibria(parse_scene(TWO, ["accuracy.tolerance=1e-6"]), inputs)
+    assert alone.complete
+    assert len(found.solutions) == len(alone.solutions) == 3
+    assert [solution.stable for solution in found.solutions] == [True, True, False]
+    for solution in found.solutions:
+        assert_allclose(solution.x[2], -1.0, rtol=0, atol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_no_start_leads_to_an_equilibrium_that_was_not_found(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    scene = parse_scene(THREE, ["accuracy.tolerance=1e-6"])
+    rotations = generator.uniform(-np.pi, np.pi, 3)
+    inputs = robot_of(scene).inputs.copy()
+    inputs[::2] = rotations
+    found = all_equilibria(scene, inputs)
+    assert found.complete
+    assert len(found.solutions) % 2 == 1
+    model = found.solutions[0].model
+    known = np.array([solution.x for solution in found.solutions])
+    reached = 0
+    for _ in range(300):
+        end = solution_near(model, inputs, rotations + generator.uniform(-4.0, 4.0, 3))
+        if end.converged:
+            reached += 1
+            assert np.abs(known - end.x).max(axis=1).min() < 1e-6
+    assert reached > 60
+
+
+def test_error_of_the_tips_is_relative_to_the_length_outside() -> None:
+    scene = parse_scene(TWO.partition('[[tubes]]\nname = "inner"')[0], ["outer.curvature=0.0"])
+    exact = solve_tubes(scene, {"outer.translation": 0.2})
+    found = solve_tubes(scene, {"outer.translation": 0.18})
+    assert_allclose(tip_error(found, exact), 0.02 / 0.2, rtol=1e-12, atol=0)
+    turned = solve_tubes(scene, {"outer.translation": 0.2, "outer.rotation": 0.35})
+    assert_allclose(tip_error(turned, exact), 0.05, rtol=1e-12, atol=0)
+
+
+def test_a_common_turn_turns_the_robot() -> None:
+    scene = parse_scene(TWO)
+    found = solve_tubes(scene)
+    turned = solve_tubes(scene, found.inputs + np.array([0.5, 0, 0.5, 0]))
+    c, s = np.cos(0.5), np.sin(0.5)
+    about_z = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    assert_allclose(turned.tip().position, about_z @ found.tip().position, rtol=0, atol=1e-12)
+    assert_allclose(turned.energy, found.energy, rtol=1e-12, atol=0)
+
+
+def test_path_over_a_translation_passes_where_the_order_changes() -> None:
+    scene = parse_scene(TWO, ["accuracy.tolerance=1e-6"])
+    path = follow_tubes(scene, "inner.translation", 0.05)
+    assert path.converged
+    assert path.stable.all()
+    assert not path.events
+    end = solve_tubes(scene, {"inner.translation": 0.05})
+    assert_allclose(path.tip("inner")[-1], end.tip("inner").position, rtol=0, atol=1e-8)
+
+
+def test_one_tube() -> None:
+    scene = parse_scene(TWO.partition('[[tubes]]\nname = "inner"')[0])
+    found = all_equilibria(scene)
+    assert found.complete
+    assert len(found.solutions) == 1
+    assert found.solutions[0].stable
+    assert_allclose(found.solutions[0].x, 0.3, rtol=0, atol=0)
+
+
+MATERIAL = "material = { youngs_modulus = 6e10, poisson_ratio = 0.33 }"
+
+
+def with_sections(outer: str, inner: str) -> str:
+    text = TWO.replace("stiffness = { bending = 0.06, torsion = 0.045 }", f"{MATERIAL}\nsection = {{ {outer} }}")
+    return text.replace("stiffness = { bending = 0.03, torsion = 0.022 }", f"{MATERIAL}\nsection = {{ {inner} }}")
+
+
+def test_stiffness_of_a_section() -> None:
+    text = with_sections("outer_radius = 1.2e-3, inner_radius = 1e-3", "outer_radius = 1e-3, inner_radius = 0.0")
+    robot = robot_of(parse_scene(text))
+    moment = np.pi / 4 * np.array([1.2e-3**4 - 1e-3**4, 1e-3**4])
+    assert_allclose(robot.bending, 6e10 * moment, rtol=1e-14, atol=0)
+    assert_allclose(robot.torsion, 6e10 / 2.66 * 2 * moment, rtol=1e-14, atol=0)
+
+
+ROD = """
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_y = 1.0 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        (TWO.replace("translation = 0.18", "translation = 0.21"), ["tubes[0].translation"]),
+        (TWO.replace("translation = 0.18", "translation = -0.1"), ["tubes[0].translation"]),
+        (TWO.replace("0.18", "0.0").replace("0.24", "0.0"), ["tubes[0].translation"]),
+        (TWO.replace("straight = 0.05\ncurved = 0.15", "straight = 0.0\ncurved = 0.0"), ["tubes[0].curved"]),
+        (TWO.replace('"inner"', '"outer"'), ["tubes[1].name"]),
+        (TWO.replace("stiffness = { bending = 0.03, torsion = 0.022 }", ""), ["tubes[1].material", "tubes[1].section"]),
+        (TWO.replace("0.03,", "0.0,"), ["tubes[1].stiffness.bending"]),
+        (TWO + ROD, ["rods"]),
+        ('inputs = ["inner.rotation"]\n' + TWO, ["inputs", "inputs[0]"]),
+        (TWO.replace("accuracy = {", "accuracy = { modes = 4,"), ["accuracy.modes"]),
+        ("schema = 1", ["rods"]),
+        (
+            with_sections("outer_radius = 1.2e-3, inner_radius = 0.8e-3", "outer_radius = 1e-3, inner_radius = 0.0"),
+            ["tubes[1].section.outer_radius"],
+        ),
+        (
+            with_sections("outer_radius = 1.2e-3, inner_radius = 1.3e-3", "outer_radius = 1e-3, inner_radius = 0.0"),
+            ["tubes[0].section.inner_radius"],
+        ),
+    ],
+)
+def test_refused_scenes(text: str, where: list[str]) -> None:
+    with pytest.raises(SceneError) as refused:
+        parse_scene(text)
+    assert [problem.where for problem in refused.value.problems] == where
+
+
+@pytest.mark.parametrize(
+    ("inputs", "problem"),
+    [
+        ({"inner.rotation": np.nan}, "inner.rotation: must be finite"),
+        ({"inner.translation": 0.31}, "inner.translation: must be from 0 to the length"),
+        ({"inner.turn": 1.0}, "inner.turn: is no input"),
+        ({"inner.rotation": [1.0, 2.0]}, "inner.rotation: must be a number"),
+        ([0.0, 0.1, 0.0], "inputs: must have 4 entries"),
+        ({"inner.translation": 0.0, "outer.translation": 0.0}, "no tube stands out"),
+    ],
+)
+def test_refused_inputs(inputs: dict[str, float], problem: str) -> None:
+    with pytest.raises(SceneError, match=problem):
+        solve_tubes(parse_scene(TWO), inputs)
+
+
+def test_what_works_on_rods_refuses_tubes() -> None:
+    scene: Scene = parse_scene(TWO)
+    with pytest.raises(SceneError, match="works on rods"):
+        build(scene)
+    with pytest.raises(SceneError, match="the scene has none"):
+        solve_tubes(parse_scene("schema = 1" + ROD))
+
+
+def test_files_hold_what_python_says(tmp_path: Path) -> None:
+    scene = tmp_path / "tubes.toml"
+    scene.write_text(TWO.replace("1e-8", "1e-5"))
+    read = parse_scene(scene.read_text())
+    ended = cosserat("solve", "tubes.toml", "--json", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert json.loads(ended.stdout) == tubes_result(solve_tubes(read))
+    ended = cosserat("solve", "tubes.toml", "--all", "--output", "all.json", "--plot", "all.png", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert "2 of them stable" in ended.stdout
+    data = json.loads((tmp_path / "all.json").read_text())
+    assert data == equilibria_result(all_equilibria(read))
+    assert data["complete"]
+    assert (tmp_path / "all.png").stat().st_size > 10_000
+    line = ("path", "tubes.toml", "--input", "inner.rotation", "--to", "6", "--csv", "p.csv", "--plot", "p.svg")
+    ended = cosserat(*line, "--output", "p.json", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert "limit" in ended.stdout
+    path = follow_tubes(read, "inner.rotation", 6.0)
+    assert json.loads((tmp_path / "p.json").read_text()) == tube_path_result(path)
+    rows = np.genfromtxt(tmp_path / "p.csv", delimiter=",", names=True, dtype=None, encoding=None)
+    assert_allclose(rows["innerrotation"], path.values, rtol=0, atol=0)
+    assert_allclose(rows["innertipz"], path.tip("inner")[:, 2], rtol=0, atol=0)
+    assert cosserat("check", "tubes.toml", cwd=tmp_path).returncode == 0
+
+
+def test_unstable_robots_are_told(tmp_path: Path) -> None:
+    scene = tmp_path / "tubes.toml"
+    scene.write_text(TWO.replace("1e-8", "1e-5"))
+    opposed = ("solve", "tubes.toml", "--set", f"inner.rotation={0.3 + np.pi}")
+    ended = cosserat(*opposed, cwd=tmp_path)
+    assert ended.returncode == 0
+    assert "not stable" in ended.stderr
+    ended = cosserat(*opposed, "--stable", "--json", cwd=tmp_path)
+    assert ended.returncode == 0
+    assert json.loads(ended.stdout)["stable"] is True
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "simulate tubes.toml --output out",
+        "modes tubes.toml --output out",
+        "inverse tubes.toml --output out",
+        "identify tubes.toml --output out",
+        "estimate tubes.toml --table t.csv --output out",
+        "sweep tubes.toml --output out --table t.csv",
+        "export tubes.toml --output out",
+        "export tubes.toml --page out",
+        "tune tubes.toml --output out",
+        "view tubes.toml",
+        "path tubes.toml --input inner.rotation --to 3 --branch --output out",
+        "path tubes.toml --input inner.turn --to 3 --output out",
+        "path tubes.toml --input inner.rotation --to [3,4] --output out",
+        "path tubes.toml --input inner.rotation --to 2.0 --output out",
+        "path tubes.toml --input inner.translation --to 1.0 --output out",
+        "check tubes.toml --time",
+    ],
+)
+def test_commands_that_refuse(line: str, tmp_path: Path) -> None:
+    (tmp_path / "tubes.toml").write_text(TWO)
+    (tmp_path / "t.csv").write_text("inner.rotation\n1.0\n")
+    ended = cosserat(*line.split(), cwd=tmp_path)
+    assert ended.returncode == 2, ended.stdout + ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["t.csv", "tubes.toml"]
+
+
+def test_all_is_for_tubes(tmp_path: Path) -> None:
+    (tmp_path / "rod.toml").write_text("schema = 1" + ROD)
+    ended = cosserat("solve", "rod.toml", "--all", "--output", "out", cwd=tmp_path)
+    assert ended.returncode == 2
+    assert "--all" in ended.stderr
+    assert not (tmp_path / "out").exists()
