@@ -300,7 +300,7 @@ class Panel {
         return [...panel.pose(index).position];
       },
       reset: () => panel.reset(),
-      redraw: () => panel.scenery.render(),
+      redraw: () => panel.scenery.painter.paintStill(),
     };
   }
 }

@@ -1,6 +1,9 @@
 // What is drawn: rods as swept sections, actuators, bodies, arrows, derivatives. World axes, z up, metres.
 
 const RING = 14; // Corners of a round section.
+const THIN_RING = 8; // Of one that is a few pixels wide: a processor without a graphics card pays for each triangle.
+const THREAD_RING = 5; // Of a tendon.
+const THIN = 0.01; // Half width of such a section, relative to the scene.
 const AXES_EVERY = 6; // Sections whose axes are drawn.
 const AXES_COLOURS = ["#cc3311", "#228833"];
 const DERIVATIVES = "#0077bb";
@@ -14,7 +17,6 @@ class Scenery {
     this.most = new THREE.Vector3(...facts.most);
     this.size = this.most.clone().sub(this.least).length();
     this.references = {};
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.scene = new THREE.Scene();
     this.layers = {};
     for (const name of ["unloaded", "sections", "loads", "derivatives"]) {
@@ -41,8 +43,9 @@ class Scenery {
   addCamera() {
     this.camera = new THREE.PerspectiveCamera(35, 1, this.size / 100, this.size * 100);
     this.camera.up.set(0, 0, 1);
+    this.painter = new Painter(this.canvas, this.scene, this.camera);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener("change", () => this.render());
+    this.controls.addEventListener("change", () => this.painter.paint());
     this.lookAtAll();
   }
 
@@ -89,7 +92,7 @@ class Scenery {
   }
 
   addBall(group, point, share, colour) {
-    const ball = new THREE.Mesh(new THREE.SphereGeometry(share * this.size, 20, 14), solid(colour));
+    const ball = new THREE.Mesh(new THREE.SphereGeometry(share * this.size, 12, 8), solid(colour));
     ball.position.set(...point);
     group.add(ball);
     return ball;
@@ -111,14 +114,16 @@ class Scenery {
     const thinnest = THINNEST * this.size;
     const box = facts.shape === "rectangle";
     const half = (axis, k) => Math.max(facts[axis] ? facts[axis][k] : 1.5 * thinnest, box ? thinnest / 2 : thinnest);
-    const corners = box ? [[1, 1], [-1, 1], [-1, -1], [1, -1]] : circle(RING);
+    const widest = Math.max(...Array.from({ length: entry.columns }, (_, k) => half("x", k)));
+    const round = circle(widest < THIN * this.size ? THIN_RING : RING);
+    const corners = box ? [[1, 1], [-1, 1], [-1, -1], [1, -1]] : round;
     const material = solid(facts.colour, box);
     if (facts.see_through) Object.assign(material, { transparent: true, opacity: 0.5, depthWrite: false });
     const tube = new Tube(entry.columns, corners.length, material);
     this.scene.add(tube.mesh);
     const axes = new Segments(AXES_COLOURS, Math.ceil(entry.columns / AXES_EVERY));
     this.layers.sections.add(axes.lines);
-    const clamp = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 28), solid("#444b52"));
+    const clamp = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20), solid("#444b52"));
     if (!facts.carried) this.scene.add(clamp);
     return (numbers) => {
       for (let k = 0; k < entry.columns; k++) {
@@ -147,7 +152,7 @@ class Scenery {
     const facts = this.facts.actuators[entry.name];
     const channel = facts.drawn_as === "channel";
     const radius = (channel ? 0.006 : 0.0022) * this.size;
-    const corners = circle(8);
+    const corners = circle(channel ? THIN_RING : THREAD_RING);
     const material = solid(facts.colour);
     if (channel) Object.assign(material, { transparent: true, opacity: 0.8 });
     const tube = new Tube(entry.columns, corners.length, material);
@@ -235,8 +240,8 @@ class Scenery {
     for (const { entry, update } of this.parts) {
       update(drawn.subarray(entry.first, entry.first + entry.rows * entry.columns));
     }
-    this.canvas.classList.toggle("faint", !found);
-    this.render();
+    this.canvas.parentElement.classList.toggle("faint", !found);
+    this.painter.paint();
   }
 
   addDerivatives() {
@@ -254,7 +259,7 @@ class Scenery {
   // the image of the ball of inputs, each over a tenth of its slider.
   drawDerivatives(position, columns) {
     this.layers.derivatives.visible = columns !== null;
-    if (columns === null) return this.render();
+    if (columns === null) return this.painter.paint();
     const moves = columns.map((column, i) => {
       const { least, most } = this.facts.sliders[i];
       return column.map((value) => (value * (most - least)) / 10);
@@ -273,7 +278,7 @@ class Scenery {
     const rows = [0, 1, 2].map((i) => [0, 1, 2].map((j) => vectors[i][j] * radii[j]));
     this.ellipsoid.matrix.set(...rows[0], position[0], ...rows[1], position[1], ...rows[2], position[2], 0, 0, 0, 1);
     this.ellipsoid.matrixWorldNeedsUpdate = true;
-    this.render();
+    this.painter.paint();
   }
 
   // Where the arrows of the derivatives end on the screen, px, the longest first; short ones are left out.
@@ -292,151 +297,16 @@ class Scenery {
 
   show(layer, visible) {
     this.layers[layer].visible = visible;
-    this.render();
+    this.painter.paint();
   }
 
   resize() {
     const { clientWidth, clientHeight } = this.canvas.parentElement;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
     if (!this.placed) this.lookAtAll();
     this.placed = true;
-    this.render();
+    // The picture's size has changed: what was painted is gone.
+    this.painter.paintStill();
   }
-
-  render() {
-    this.renderer.render(this.scene, this.camera);
-  }
-}
-
-// A surface swept by sections of the same number of corners, closed at both ends.
-class Tube {
-  constructor(sections, corners, material) {
-    this.sections = sections;
-    this.corners = corners;
-    this.positions = new THREE.BufferAttribute(new Float32Array(3 * (sections * corners + 2)), 3);
-    const index = [];
-    for (let k = 0; k + 1 < sections; k++) {
-      for (let i = 0; i < corners; i++) {
-        const next = (i + 1) % corners;
-        const [a, b, c, d] = [k * corners + i, k * corners + next, (k + 1) * corners + i, (k + 1) * corners + next];
-        index.push(a, b, d, a, d, c);
-      }
-    }
-    const last = (sections - 1) * corners;
-    for (let i = 0; i < corners; i++) {
-      const next = (i + 1) % corners;
-      index.push(sections * corners, next, i, sections * corners + 1, last + i, last + next);
-    }
-    this.geometry = new THREE.BufferGeometry();
-    this.geometry.setAttribute("position", this.positions);
-    this.geometry.setIndex(index);
-    this.mesh = new THREE.Mesh(this.geometry, material);
-    this.mesh.frustumCulled = false;
-  }
-
-  set(section, corner, point) {
-    this.positions.setXYZ(section * this.corners + corner, point.x, point.y, point.z);
-  }
-
-  // The middle of a section, where it is the first or the last.
-  setEnd(section, point) {
-    if (section === 0) this.positions.setXYZ(this.sections * this.corners, point.x, point.y, point.z);
-    if (section === this.sections - 1) this.positions.setXYZ(this.sections * this.corners + 1, point.x, point.y, point.z);
-  }
-
-  finish() {
-    this.positions.needsUpdate = true;
-    this.geometry.computeVertexNormals();
-  }
-}
-
-// Short lines, a few of each colour at each place.
-class Segments {
-  constructor(colours, places) {
-    this.colours = colours;
-    this.positions = new THREE.BufferAttribute(new Float32Array(6 * colours.length * places), 3);
-    const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
-    const shades = [];
-    for (let k = 0; k < places; k++) {
-      for (const colour of colours) shades.push(...new THREE.Color(colour).toArray(), ...new THREE.Color(colour).toArray());
-    }
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(shades), 3));
-    this.lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
-    this.lines.frustumCulled = false;
-  }
-
-  set(place, colour, from, to) {
-    const first = 2 * (place * this.colours.length + colour);
-    this.positions.setXYZ(first, from.x, from.y, from.z);
-    this.positions.setXYZ(first + 1, to.x, to.y, to.z);
-  }
-
-  finish() {
-    this.positions.needsUpdate = true;
-  }
-}
-
-// A shaft with a head, or with two, as a moment has.
-class Arrow {
-  constructor(colour, twoHeads = false) {
-    this.group = new THREE.Group();
-    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), solid(colour));
-    const cone = new THREE.ConeGeometry(1, 1, 18).translate(0, -0.5, 0);
-    this.heads = Array.from({ length: twoHeads ? 2 : 1 }, () => new THREE.Mesh(cone, this.shaft.material));
-    this.group.add(this.shaft, ...this.heads);
-  }
-
-  point(start, vector, thickness) {
-    const length = vector.length();
-    this.length = length;
-    this.end = start.clone().add(vector);
-    this.group.visible = length > 3 * thickness;
-    if (!this.group.visible) return;
-    this.group.position.copy(start);
-    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector.clone().normalize());
-    const head = Math.min(9 * thickness, 0.45 * length);
-    this.shaft.scale.set(thickness, length - head / 2, thickness);
-    this.heads.forEach((mesh, i) => {
-      mesh.scale.set(0.36 * head, head, 0.36 * head);
-      mesh.position.y = length - 0.7 * i * head;
-    });
-  }
-}
-
-function solid(colour, flatShading = false) {
-  return new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6, metalness: 0.05, flatShading, side: THREE.DoubleSide });
-}
-
-// Corners of a polygon that stands for a circle of radius 1.
-function circle(corners) {
-  const angles = Array.from({ length: corners }, (_, i) => (2 * Math.PI * i) / corners);
-  return angles.map((angle) => [Math.cos(angle), Math.sin(angle)]);
-}
-
-// A round bar between two points.
-function bar(from, to, radius, material) {
-  const along = to.clone().sub(from);
-  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, along.length(), 10), material);
-  mesh.position.copy(from).addScaledVector(along, 0.5);
-  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
-  return mesh;
-}
-
-// Position and axes x, y, z of a section from position and quaternion w, x, y, z.
-function frame(numbers, first) {
-  const [px, py, pz, w, x, y, z] = numbers.subarray(first, first + 7);
-  const turn = new THREE.Quaternion(x, y, z, w);
-  const axis = (a, b, c) => new THREE.Vector3(a, b, c).applyQuaternion(turn);
-  return [new THREE.Vector3(px, py, pz), axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, 1)];
-}
-
-// The axis of the world that a direction has least of.
-function leastAlong(direction) {
-  const sizes = direction.toArray().map(Math.abs);
-  const axis = new THREE.Vector3();
-  axis.setComponent(sizes.indexOf(Math.min(...sizes)), 1);
-  return axis;
 }

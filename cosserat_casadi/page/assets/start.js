@@ -6,6 +6,7 @@ async function start() {
   const scenery = new Scenery(document.getElementById("canvas"), facts);
   const panel = new Panel(facts, robot, scenery);
   window.robot = panel.api;
+  window.scenery = scenery;
   await panel.reset();
   if (facts.hand.length) new Hand(panel);
   // Motions need a program behind the page.

@@ -1,0 +1,131 @@
+// Shapes that pictures are made of: swept surfaces, short lines, arrows, bars.
+
+// A surface swept by sections of the same number of corners, closed at both ends.
+class Tube {
+  constructor(sections, corners, material) {
+    this.sections = sections;
+    this.corners = corners;
+    this.positions = new THREE.BufferAttribute(new Float32Array(3 * (sections * corners + 2)), 3);
+    const index = [];
+    for (let k = 0; k + 1 < sections; k++) {
+      for (let i = 0; i < corners; i++) {
+        const next = (i + 1) % corners;
+        const [a, b, c, d] = [k * corners + i, k * corners + next, (k + 1) * corners + i, (k + 1) * corners + next];
+        index.push(a, b, d, a, d, c);
+      }
+    }
+    const last = (sections - 1) * corners;
+    for (let i = 0; i < corners; i++) {
+      const next = (i + 1) % corners;
+      index.push(sections * corners, next, i, sections * corners + 1, last + i, last + next);
+    }
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setAttribute("position", this.positions);
+    this.geometry.setIndex(index);
+    this.mesh = new THREE.Mesh(this.geometry, material);
+    this.mesh.frustumCulled = false;
+  }
+
+  set(section, corner, point) {
+    this.positions.setXYZ(section * this.corners + corner, point.x, point.y, point.z);
+  }
+
+  // The middle of a section, where it is the first or the last.
+  setEnd(section, point) {
+    if (section === 0) this.positions.setXYZ(this.sections * this.corners, point.x, point.y, point.z);
+    if (section === this.sections - 1) this.positions.setXYZ(this.sections * this.corners + 1, point.x, point.y, point.z);
+  }
+
+  finish() {
+    this.positions.needsUpdate = true;
+    this.geometry.computeVertexNormals();
+  }
+}
+
+// Short lines, a few of each colour at each place.
+class Segments {
+  constructor(colours, places) {
+    this.colours = colours;
+    this.positions = new THREE.BufferAttribute(new Float32Array(6 * colours.length * places), 3);
+    const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
+    const shades = [];
+    for (let k = 0; k < places; k++) {
+      for (const colour of colours) shades.push(...new THREE.Color(colour).toArray(), ...new THREE.Color(colour).toArray());
+    }
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(shades), 3));
+    this.lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
+    this.lines.frustumCulled = false;
+  }
+
+  set(place, colour, from, to) {
+    const first = 2 * (place * this.colours.length + colour);
+    this.positions.setXYZ(first, from.x, from.y, from.z);
+    this.positions.setXYZ(first + 1, to.x, to.y, to.z);
+  }
+
+  finish() {
+    this.positions.needsUpdate = true;
+  }
+}
+
+// A shaft with a head, or with two, as a moment has.
+class Arrow {
+  constructor(colour, twoHeads = false) {
+    this.group = new THREE.Group();
+    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 6, 1, true).translate(0, 0.5, 0), solid(colour));
+    const cone = new THREE.ConeGeometry(1, 1, 10).translate(0, -0.5, 0);
+    this.heads = Array.from({ length: twoHeads ? 2 : 1 }, () => new THREE.Mesh(cone, this.shaft.material));
+    this.group.add(this.shaft, ...this.heads);
+  }
+
+  point(start, vector, thickness) {
+    const length = vector.length();
+    this.length = length;
+    this.end = start.clone().add(vector);
+    this.group.visible = length > 3 * thickness;
+    if (!this.group.visible) return;
+    this.group.position.copy(start);
+    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector.clone().normalize());
+    const head = Math.min(9 * thickness, 0.45 * length);
+    this.shaft.scale.set(thickness, length - head / 2, thickness);
+    this.heads.forEach((mesh, i) => {
+      mesh.scale.set(0.36 * head, head, 0.36 * head);
+      mesh.position.y = length - 0.7 * i * head;
+    });
+  }
+}
+
+function solid(colour, flatShading = false) {
+  return new THREE.MeshLambertMaterial({ color: colour, flatShading, side: THREE.DoubleSide });
+}
+
+// Corners of a polygon that stands for a circle of radius 1.
+function circle(corners) {
+  const angles = Array.from({ length: corners }, (_, i) => (2 * Math.PI * i) / corners);
+  return angles.map((angle) => [Math.cos(angle), Math.sin(angle)]);
+}
+
+// A round bar between two points.
+function bar(from, to, radius, material) {
+  const along = to.clone().sub(from);
+  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, along.length(), 8), material);
+  mesh.position.copy(from).addScaledVector(along, 0.5);
+  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
+  return mesh;
+}
+
+// Position and axes x, y, z of a section from position and quaternion w, x, y, z.
+function frame(numbers, first) {
+  const [px, py, pz, w, x, y, z] = numbers.subarray(first, first + 7);
+  const turn = new THREE.Quaternion(x, y, z, w);
+  const axis = (a, b, c) => new THREE.Vector3(a, b, c).applyQuaternion(turn);
+  return [new THREE.Vector3(px, py, pz), axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, 1)];
+}
+
+// The axis of the world that a direction has least of.
+function leastAlong(direction) {
+  const sizes = direction.toArray().map(Math.abs);
+  const axis = new THREE.Vector3();
+  axis.setComponent(sizes.indexOf(Math.min(...sizes)), 1);
+  return axis;
+}
