@@ -7,6 +7,9 @@ const THIN = 0.01; // Half width of such a section, relative to the scene.
 const AXES_EVERY = 6; // Sections whose axes are drawn.
 const AXES_COLOURS = ["#cc3311", "#228833"];
 const DERIVATIVES = "#0077bb";
+const CONTACTS = "#000000";
+const CONTACT_BALL = 0.009; // Radius of a mark of contact, relative to the scene.
+const ARROW = 0.0042; // Radius of the shaft of an arrow, relative to the scene.
 const THINNEST = 0.004; // Least half width of what is drawn, relative to the scene.
 
 class Scenery {
@@ -19,7 +22,7 @@ class Scenery {
     this.references = {};
     this.scene = new THREE.Scene();
     this.layers = {};
-    for (const name of ["unloaded", "sections", "loads", "derivatives"]) {
+    for (const name of ["unloaded", "sections", "loads", "obstacles", "contacts", "derivatives"]) {
       this.layers[name] = new THREE.Group();
       this.scene.add(this.layers[name]);
     }
@@ -27,6 +30,7 @@ class Scenery {
     this.addCamera();
     this.addGround();
     this.addUnloaded();
+    this.addObstacles();
     this.parts = facts.layout.map((entry) => this.part(entry));
     this.addDerivatives();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -89,6 +93,32 @@ class Scenery {
     }
     for (const point of this.facts.held) this.addBall(this.scene, point, 0.016, "#333333");
     for (const point of this.facts.targets) this.addBall(this.scene, point, 0.012, this.facts.colours.target);
+  }
+
+  addObstacles() {
+    for (const { net } of this.facts.obstacles) {
+      const material = solid(this.facts.colours.obstacle);
+      // Seen through from both sides: a lumen has the robot inside.
+      Object.assign(material, { transparent: true, opacity: 0.35, depthWrite: false });
+      this.layers.obstacles.add(new THREE.Mesh(netGeometry(net), material));
+    }
+  }
+
+  // Where rods touch obstacles: points or stretches of centre lines, and the resultant on the rod.
+  drawContacts(contacts) {
+    const group = this.layers.contacts;
+    group.traverse((part) => part.geometry && part.geometry.dispose());
+    group.clear();
+    for (const { points, force } of contacts) {
+      const line = points.map((point) => new THREE.Vector3(...point));
+      const ends = line.length > 1 ? [line[0], line[line.length - 1]] : line;
+      for (const end of ends) this.addBall(group, end.toArray(), CONTACT_BALL, CONTACTS);
+      line.slice(1).forEach((point, k) => group.add(bar(line[k], point, 0.8 * CONTACT_BALL * this.size, solid(CONTACTS))));
+      const arrow = new Arrow(this.facts.colours.point);
+      const middle = line[Math.floor(line.length / 2)];
+      arrow.point(middle, new THREE.Vector3(...force).multiplyScalar(this.arrowScale("point")), ARROW * this.size);
+      group.add(arrow.group);
+    }
   }
 
   addBall(group, point, share, colour) {
@@ -205,14 +235,14 @@ class Scenery {
 
   arrows(entry) {
     const colour = this.facts.colours[entry.sort];
-    const thickness = entry.sort === "line" ? 0.6 : 1.2;
+    const thickness = entry.sort === "line" ? ARROW / 2 : ARROW;
     const arrows = Array.from({ length: entry.columns }, () => new Arrow(colour, entry.sort === "moment"));
     for (const arrow of arrows) this.layers.loads.add(arrow.group);
     return (numbers) => {
       arrows.forEach((arrow, k) => {
         const start = new THREE.Vector3(...numbers.subarray(6 * k, 6 * k + 3));
         const vector = new THREE.Vector3(...numbers.subarray(6 * k + 3, 6 * k + 6));
-        arrow.point(start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * 0.0035 * this.size);
+        arrow.point(start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * this.size);
       });
     };
   }
@@ -224,19 +254,25 @@ class Scenery {
   }
 
   // The first arrows of a sort set its scale; it shrinks where they grow far beyond.
-  measureArrows(drawn) {
+  measureArrows(drawn, contacts) {
     for (const entry of this.facts.layout.filter((entry) => entry.kind === "arrows")) {
       for (let k = 0; k < entry.columns; k++) {
-        const vector = drawn.subarray(entry.first + 6 * k + 3, entry.first + 6 * k + 6);
-        const reference = this.references[entry.sort] || 0;
-        if (!reference || Math.hypot(...vector) > 2.5 * reference) this.references[entry.sort] = Math.hypot(...vector);
+        this.measureArrow(entry.sort, drawn.subarray(entry.first + 6 * k + 3, entry.first + 6 * k + 6));
       }
     }
+    for (const { force } of contacts) this.measureArrow("point", force);
+  }
+
+  measureArrow(sort, vector) {
+    const reference = this.references[sort] || 0;
+    const length = Math.hypot(...vector);
+    if (!reference || length > 2.5 * reference) this.references[sort] = length;
   }
 
   // Draw the numbers that the library gives; faint where they are no equilibrium at the full load.
-  draw(drawn, found = true) {
-    this.measureArrows(drawn);
+  draw(drawn, found = true, contacts = []) {
+    this.measureArrows(drawn, contacts);
+    this.drawContacts(contacts);
     for (const { entry, update } of this.parts) {
       update(drawn.subarray(entry.first, entry.first + entry.rows * entry.columns));
     }

@@ -1,4 +1,6 @@
-// Shapes that pictures are made of: swept surfaces, short lines, arrows, bars.
+// Shapes that pictures are made of: swept surfaces, nets, short lines, arrows, bars.
+
+const SAME = 1e-9; // Metres between two points that are one, but for rounding.
 
 // A surface swept by sections of the same number of corners, closed at both ends.
 class Tube {
@@ -93,6 +95,26 @@ class Arrow {
       mesh.position.y = length - 0.7 * i * head;
     });
   }
+}
+
+// A surface through rows of points; rows that end where they begin are closed.
+function netGeometry(net) {
+  const columns = net[0].length;
+  const isClosed = net.every((row) => row[0].every((value, axis) => Math.abs(value - row[columns - 1][axis]) < SAME));
+  const count = isClosed ? columns - 1 : columns;
+  const index = [];
+  for (let k = 0; k + 1 < net.length; k++) {
+    for (let i = 0; i + 1 < columns; i++) {
+      const next = (i + 1) % count;
+      const [a, b, c, d] = [k * count + i, k * count + next, (k + 1) * count + i, (k + 1) * count + next];
+      index.push(a, b, d, a, d, c);
+    }
+  }
+  const positions = new Float32Array(net.flatMap((row) => row.slice(0, count)).flat());
+  const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(positions, 3));
+  geometry.setIndex(index);
+  geometry.computeVertexNormals();
+  return geometry;
 }
 
 function solid(colour, flatShading = false) {

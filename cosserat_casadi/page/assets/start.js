@@ -9,7 +9,7 @@ async function start() {
   window.scenery = scenery;
   await panel.reset();
   if (facts.hand.length) new Hand(panel);
-  // Motions need a program behind the page.
-  if (typeof Theatre !== "undefined") window.theatre = new Theatre(panel, facts);
+  // Modes and motions need a program behind the page.
+  if (facts.modes) window.theatre = new Theatre(panel, facts);
   document.body.dataset.ready = "yes";
 }
