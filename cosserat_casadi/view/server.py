@@ -139,8 +139,7 @@ class _Handler(BaseHTTPRequestHandler):
         except (KeyError, TypeError, ValueError) as error:
             self.send_error(HTTPStatus.BAD_REQUEST, f"no question of the page: {error!r}")
             return
-        # JSON has no word for what is not a number; the page takes null for it.
-        self._send("application/json", json.dumps(_finite(answer)).encode())
+        self._send("application/json", _json(answer))
 
     def _is_foreign(self) -> bool:
         """Refuse a request that a page from elsewhere makes, under a name of its own for this machine."""
@@ -162,6 +161,14 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name of the base class
         """Say nothing of each request."""
+
+
+def _json(answer: Any) -> bytes:
+    """An answer as text; JSON has no word for what is not a number, and the page takes null for it."""
+    try:
+        return json.dumps(answer, allow_nan=False).encode()
+    except ValueError:
+        return json.dumps(_finite(answer)).encode()
 
 
 def _finite(answer: Any) -> Any:

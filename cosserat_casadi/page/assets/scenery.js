@@ -109,16 +109,17 @@ class Scenery {
     const group = this.layers.contacts;
     group.traverse((part) => part.geometry && part.geometry.dispose());
     group.clear();
-    for (const { points, force } of contacts) {
+    const arrows = new Arrows(this.facts.colours.point, contacts.length);
+    group.add(arrows.mesh);
+    contacts.forEach(({ points, force }, i) => {
       const line = points.map((point) => new THREE.Vector3(...point));
       const ends = line.length > 1 ? [line[0], line[line.length - 1]] : line;
       for (const end of ends) this.addBall(group, end.toArray(), CONTACT_BALL, CONTACTS);
       line.slice(1).forEach((point, k) => group.add(bar(line[k], point, 0.8 * CONTACT_BALL * this.size, solid(CONTACTS))));
-      const arrow = new Arrow(this.facts.colours.point);
       const middle = line[Math.floor(line.length / 2)];
-      arrow.point(middle, new THREE.Vector3(...force).multiplyScalar(this.arrowScale("point")), ARROW * this.size);
-      group.add(arrow.group);
-    }
+      arrows.point(i, middle, new THREE.Vector3(...force).multiplyScalar(this.arrowScale("point")), ARROW * this.size);
+    });
+    arrows.finish();
   }
 
   addBall(group, point, share, colour) {
@@ -236,14 +237,15 @@ class Scenery {
   arrows(entry) {
     const colour = this.facts.colours[entry.sort];
     const thickness = entry.sort === "line" ? ARROW / 2 : ARROW;
-    const arrows = Array.from({ length: entry.columns }, () => new Arrow(colour, entry.sort === "moment"));
-    for (const arrow of arrows) this.layers.loads.add(arrow.group);
+    const arrows = new Arrows(colour, entry.columns, entry.sort === "moment");
+    this.layers.loads.add(arrows.mesh);
     return (numbers) => {
-      arrows.forEach((arrow, k) => {
+      for (let k = 0; k < entry.columns; k++) {
         const start = new THREE.Vector3(...numbers.subarray(6 * k, 6 * k + 3));
         const vector = new THREE.Vector3(...numbers.subarray(6 * k + 3, 6 * k + 6));
-        arrow.point(start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * this.size);
-      });
+        arrows.point(k, start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * this.size);
+      }
+      arrows.finish();
     };
   }
 
@@ -281,8 +283,8 @@ class Scenery {
   }
 
   addDerivatives() {
-    this.derivativeArrows = this.facts.sliders.map(() => new Arrow(DERIVATIVES));
-    for (const arrow of this.derivativeArrows) this.layers.derivatives.add(arrow.group);
+    this.derivativeArrows = new Arrows(DERIVATIVES, this.facts.sliders.length);
+    this.layers.derivatives.add(this.derivativeArrows.mesh);
     const material = solid(DERIVATIVES);
     Object.assign(material, { transparent: true, opacity: 0.18, depthWrite: false });
     this.ellipsoid = new THREE.Mesh(new THREE.SphereGeometry(1, 40, 24), material);
@@ -306,8 +308,9 @@ class Scenery {
     const start = new THREE.Vector3(...position);
     const scaled = moves.map((move) => move.map((value) => value * scale));
     scaled.forEach((move, i) => {
-      this.derivativeArrows[i].point(start, new THREE.Vector3(...move), 0.003 * this.size);
+      this.derivativeArrows.point(i, start, new THREE.Vector3(...move), 0.003 * this.size);
     });
+    this.derivativeArrows.finish();
     const covariance = [0, 1, 2].map((i) => [0, 1, 2].map((j) => scaled.reduce((sum, move) => sum + move[i] * move[j], 0)));
     const { values, vectors } = eigen(covariance);
     const radii = values.map((value) => Math.max(Math.sqrt(Math.max(value, 0)), 1e-4 * this.size));
@@ -319,9 +322,10 @@ class Scenery {
 
   // Where the arrows of the derivatives end on the screen, px, the longest first; short ones are left out.
   derivativeEnds() {
-    const shown = this.derivativeArrows.map((arrow, i) => ({ arrow, i })).filter(({ arrow }) => arrow.group.visible);
-    shown.sort((one, other) => other.arrow.length - one.arrow.length);
-    return shown.map(({ arrow, i }) => ({ i, end: this.onScreen(arrow.end) }));
+    const { lengths, ends } = this.derivativeArrows;
+    const shown = [...lengths.keys()].filter((i) => lengths[i] > 0);
+    shown.sort((one, other) => lengths[other] - lengths[one]);
+    return shown.map((i) => ({ i, end: this.onScreen(ends[i]) }));
   }
 
   // A point of the world on the picture, px.

@@ -70,30 +70,57 @@ class Segments {
   }
 }
 
-// A shaft with a head, or with two, as a moment has.
-class Arrow {
-  constructor(colour, twoHeads = false) {
-    this.group = new THREE.Group();
-    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 6, 1, true).translate(0, 0.5, 0), solid(colour));
-    const cone = new THREE.ConeGeometry(1, 1, 10).translate(0, -0.5, 0);
-    this.heads = Array.from({ length: twoHeads ? 2 : 1 }, () => new THREE.Mesh(cone, this.shaft.material));
-    this.group.add(this.shaft, ...this.heads);
+// Arrows of one colour in one mesh: each a shaft with a head, or with two, as moments have.
+class Arrows {
+  constructor(colour, count, twoHeads = false) {
+    const shaft = new THREE.CylinderGeometry(1, 1, 1, 6, 1, true).translate(0, 0.5, 0);
+    const head = new THREE.ConeGeometry(0.36, 1, 10).translate(0, -0.5, 0);
+    this.parts = twoHeads ? [shaft, head, head] : [shaft, head];
+    this.vertices = this.parts.reduce((sum, part) => sum + part.attributes.position.count, 0);
+    this.positions = new THREE.BufferAttribute(new Float32Array(3 * this.vertices * count), 3);
+    this.normals = new THREE.BufferAttribute(new Float32Array(3 * this.vertices * count), 3);
+    const index = [];
+    for (let k = 0; k < count; k++) {
+      let first = k * this.vertices;
+      for (const part of this.parts) {
+        for (const vertex of part.index.array) index.push(first + vertex);
+        first += part.attributes.position.count;
+      }
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", this.positions).setAttribute("normal", this.normals).setIndex(index);
+    this.mesh = new THREE.Mesh(geometry, solid(colour));
+    this.mesh.frustumCulled = false;
+    // Of those that are long enough to be seen, 0 of the others.
+    this.lengths = new Float64Array(count);
+    this.ends = Array.from({ length: count }, () => new THREE.Vector3());
   }
 
-  point(start, vector, thickness) {
-    const length = vector.length();
-    this.length = length;
-    this.end = start.clone().add(vector);
-    this.group.visible = length > 3 * thickness;
-    if (!this.group.visible) return;
-    this.group.position.copy(start);
-    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector.clone().normalize());
+  point(k, start, vector, thickness) {
+    const length = vector.length() > 3 * thickness ? vector.length() : 0;
+    const turn = new THREE.Quaternion();
+    if (length) turn.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector.clone().divideScalar(length));
+    this.lengths[k] = length;
+    this.ends[k].copy(start).add(vector);
     const head = Math.min(9 * thickness, 0.45 * length);
-    this.shaft.scale.set(thickness, length - head / 2, thickness);
-    this.heads.forEach((mesh, i) => {
-      mesh.scale.set(0.36 * head, head, 0.36 * head);
-      mesh.position.y = length - 0.7 * i * head;
+    let vertex = k * this.vertices;
+    this.parts.forEach((part, i) => {
+      const [across, along] = i ? [head, head] : [length && thickness, length - head / 2];
+      const up = i ? length - 0.7 * (i - 1) * head : 0;
+      const { position, normal } = part.attributes;
+      for (let v = 0; v < position.count; v++, vertex++) {
+        const point = new THREE.Vector3(across * position.getX(v), up + along * position.getY(v), across * position.getZ(v));
+        point.applyQuaternion(turn).add(start);
+        this.positions.setXYZ(vertex, point.x, point.y, point.z);
+        point.fromBufferAttribute(normal, v).applyQuaternion(turn);
+        this.normals.setXYZ(vertex, point.x, point.y, point.z);
+      }
     });
+  }
+
+  finish() {
+    this.positions.needsUpdate = true;
+    this.normals.needsUpdate = true;
   }
 }
 
