@@ -168,6 +168,12 @@ def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
     picture = page.locator("#picture").bounding_box()
     assert picture["width"] == 360
     assert picture["height"] > 300
+    # The ring is still at the tip.
+    gap = page.evaluate("""async () => { await new Promise(requestAnimationFrame); const { scenery } = window;
+        const tip = scenery.onScreen(new THREE.Vector3(...window.robot.tip()));
+        const ring = document.getElementById("hand").getBoundingClientRect();
+        return Math.hypot(ring.x + ring.width / 2 - tip.x, ring.y + ring.height / 2 - tip.y); }""")
+    assert gap < 1.0
     handle = page.get_by_label("push.force x, N", exact=True).bounding_box()
     # A finger finds it.
     assert handle["height"] >= 28

@@ -346,6 +346,8 @@ class Scenery {
     this.camera.updateProjectionMatrix();
     if (!this.placed) this.lookAtAll();
     this.placed = true;
+    // Names and the ring stand elsewhere now.
+    this.controls.dispatchEvent({ type: "change" });
     // The picture's size has changed: what was painted is gone.
     this.painter.paintStill();
   }
