@@ -107,8 +107,12 @@ class Scenery {
   // Where rods touch obstacles: points or stretches of centre lines, and the resultant on the rod.
   drawContacts(contacts) {
     const group = this.layers.contacts;
-    group.traverse((part) => part.geometry && part.geometry.dispose());
+    for (const { geometry, material } of group.children) {
+      geometry.dispose();
+      material.dispose();
+    }
     group.clear();
+    if (!contacts.length) return;
     const arrows = new Arrows(this.facts.colours.point, contacts.length);
     group.add(arrows.mesh);
     contacts.forEach(({ points, force }, i) => {
