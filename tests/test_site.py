@@ -251,4 +251,7 @@ def test_gallery_has_every_scene_of_the_repository(tmp_path: Path, monkeypatch: 
     for name in names:
         assert f"]({name}.md)" in cards
         assert "Estimated error: 1.0e-07 of the length." in (tmp_path / "gallery" / f"{name}.md").read_text()
-    assert len(contents) == 1 + len(names) + 3
+    programs = sorted(path.stem for path in (ROOT / "examples").glob("*.py") if path.stem not in ("demo", "__init__"))
+    for name in programs:
+        assert f"]({name}.md)" in cards
+    assert len(contents) == 1 + len(names) + len(programs)

@@ -169,7 +169,11 @@ def _failed(console: Console, error: Exception) -> int:
         return NOT_WRITTEN
     # Typer's own refusals (an unknown option, a missing argument) have no public base class to catch.
     if hasattr(error, "format_message") and hasattr(error, "exit_code"):
-        _print_error(console, error.format_message())
+        # What checks values puts its own word before the sentence.
+        _print_error(console, error.format_message().replace("Value error, ", ""))
+        context = getattr(error, "ctx", None)
+        if context is not None:
+            print_plain(console, f"Help: {context.command_path} --help")
         return int(error.exit_code)
     raise error
 

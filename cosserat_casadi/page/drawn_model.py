@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.arrow import Sort
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -44,6 +45,11 @@ class Drawn:
     numbers: Matrix
     sort: Sort | None = None
 
+    @property
+    def key(self) -> tuple[str, str, Sort | None]:
+        """What tells it from the others."""
+        return self.kind, self.name, self.sort
+
 
 class DrawnModel(Model):
     """A model that can be drawn without Python."""
@@ -61,10 +67,9 @@ class DrawnModel(Model):
 
 def drawn_layout(model: Model) -> list[dict[str, Any]]:
     """Where each part lies among the numbers of ``drawn``: kind, name, first entry, rows, columns, sort of arrows."""
-    symbols = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
     entries: list[dict[str, Any]] = []
     first = 0
-    for part in drawn_parts(System(model.discrete, symbols)):
+    for part in _symbolic_parts(model):
         rows, columns = part.numbers.shape
         entry = {"kind": part.kind, "name": part.name, "first": first, "rows": rows, "columns": columns}
         if part.sort is not None:
@@ -72,6 +77,19 @@ def drawn_layout(model: Model) -> list[dict[str, Any]]:
         entries.append(entry)
         first += rows * columns
     return entries
+
+
+def drawn_numbers(wanted: Model, solution: Solution) -> FloatArray:
+    """What is drawn of an equilibrium, shape (k,), in the layout of a model whose loads are some of the solution's."""
+    arguments = Arguments(ca.DM(solution.x), ca.DM(solution.inputs))
+    found = {part.key: part.numbers for part in drawn_parts(System(solution.model.discrete, arguments))}
+    parts = [ca.vec(ca.densify(found[part.key])) for part in _symbolic_parts(wanted)]
+    return np.asarray(ca.evalf(ca.vertcat(*parts)).full()[:, 0])
+
+
+def _symbolic_parts(model: Model) -> Iterator[Drawn]:
+    symbols = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size))
+    return drawn_parts(System(model.discrete, symbols))
 
 
 def drawn_parts(system: System) -> Iterator[Drawn]:

@@ -16,12 +16,13 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.obstacles.registry import SURFACES
 from cosserat_casadi.page.drawn_model import SECTIONS, drawn_layout
 from cosserat_casadi.page.ranges import movable, sliders
 from cosserat_casadi.plots.arrows import STYLES
-from cosserat_casadi.plots.colours import BODIES, TARGETS, actuator_colour, rod_colour
+from cosserat_casadi.plots.colours import BODIES, OBSTACLES, TARGETS, actuator_colour, rod_colour
 from cosserat_casadi.plots.scenery import body_corners
-from cosserat_casadi.plots.shapes import rod_shapes
+from cosserat_casadi.plots.shapes import RodShapes, rod_shapes
 
 DIGITS = 6
 """Significant digits of what is only drawn."""
@@ -33,13 +34,15 @@ STILL = 8
 """Every so many of the sampled points of an unloaded rod are kept."""
 
 
-def page_facts(solution: Solution) -> dict[str, Any]:
+def page_facts(solution: Solution, model: Model | None = None) -> dict[str, Any]:
     """Facts of a scene for its page.
 
     Args:
-        solution: the equilibrium at the scene's own inputs, on the model that the page solves.
+        solution: the equilibrium at the scene's own inputs.
+        model: the model whose inputs are moved; by default that of the solution, which is another one where contacts
+            were found for it.
     """
-    model = solution.model
+    model = solution.model if model is None else model
     scene = model.scene
     shapes = rod_shapes(solution)
     points = _extent_points(solution, shapes.points)
@@ -56,7 +59,9 @@ def page_facts(solution: Solution) -> dict[str, Any]:
         "bodies": {body.name: _body(scene, body) for body in scene.bodies},
         "held": [_rounded(np.array(support.position)) for support in scene.supports],
         "targets": [_rounded(np.array(point)) for point in _target_points(scene)],
-        "colours": {"body": BODIES, "target": TARGETS, **{sort: style.colour for sort, style in STYLES.items()}},
+        "derivatives": True,
+        "obstacles": [_obstacle(obstacle, shapes) for obstacle in scene.obstacles],
+        "colours": _colours(),
         "arrow_lengths": {sort: style.share for sort, style in STYLES.items()},
         "arrow_units": dict(UNITS),
         "planar": all(set(rod.admitted) <= IN_PLANE for rod in scene.rods) and bool(np.ptp(points[:, 1]) == 0.0),
@@ -120,6 +125,18 @@ def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
     """Corners of the polygon that stands for a body, and its joints, in its own axes, m."""
     joints = [joint.position for joint in scene.joints if joint.body == body.name]
     return {"corners": _rounded(body_corners(scene, body)), "joints": _rounded(np.array(joints))}
+
+
+def _obstacle(obstacle: scenes.ObstacleRecord, shapes: RodShapes) -> dict[str, Any]:
+    """A net of points on the surface of an obstacle, rows of points, m; what has no end is shown about the rods."""
+    mesh = SURFACES[obstacle.kind].mesh(obstacle, shapes.points.mean(axis=0), shapes.size)
+    return {"name": obstacle.name, "net": _rounded(mesh)}
+
+
+def _colours() -> dict[str, str]:
+    """Colours of bodies, targets and obstacles, and of the arrows of each sort."""
+    of_arrows = {sort: style.colour for sort, style in STYLES.items()}
+    return {"body": BODIES, "target": TARGETS, "obstacle": OBSTACLES, **of_arrows}
 
 
 def _target_points(scene: scenes.Scene) -> list[tuple[float, float, float]]:

@@ -23,7 +23,7 @@ from cosserat_casadi.page.webassembly import find_wasm_compiler, wasm_of
 LARGEST = 3_000_000
 """Bytes that a page may have: what a mail takes without a word."""
 
-SCRIPTS = ("spectrum.js", "scenery.js", "panel.js", "hand.js")
+SCRIPTS = ("spectrum.js", "shapes.js", "painter.js", "scenery.js", "panel.js", "hand.js")
 """Scripts of every page, in the order in which they are loaded; the one that solves comes after them."""
 
 

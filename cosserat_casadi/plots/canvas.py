@@ -24,6 +24,9 @@ TICKS = 5
 LABEL_HEIGHT = 0.05
 """Of the name of the vertical axis above its end, relative to the longest side."""
 
+LABEL_DISTANCE = 9.0
+"""Between the numbers of an axis in space and its name, points: nearer they stand on each other."""
+
 THINNEST_BOX = 0.4
 """Least side of the box of a scene in space, relative to the longest."""
 
@@ -148,8 +151,9 @@ class Canvas:
     def label_axes(self) -> None:
         """Name the axes that are shown, with their unit; the vertical one of space where its end is known."""
         right, up = self.columns[:2]
-        self.axes.set_xlabel(f"{self._axis_name(right)}, m")
-        self.axes.set_ylabel(f"{self._axis_name(up)}, m")
+        distance = LABEL_DISTANCE if self.plane is None else None
+        self.axes.set_xlabel(f"{self._axis_name(right)}, m", labelpad=distance)
+        self.axes.set_ylabel(f"{self._axis_name(up)}, m", labelpad=distance)
 
     def _axis_name(self, index: int) -> str:
         """Name of an axis that is shown: one of the world's, or the direction that it has in the world."""

@@ -13,8 +13,8 @@ from threading import Lock
 from typing import Any
 
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
-from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.page import page_text
+from cosserat_casadi.view.contact_session import ContactSession
 from cosserat_casadi.view.session import Session
 
 HOST = "127.0.0.1"
@@ -47,16 +47,14 @@ class Desk:
         session: who answers.
     """
 
-    session: Session
+    session: Session | ContactSession
     page: bytes = field(init=False)
     _lock: Lock = field(init=False, default_factory=Lock)
 
     def __post_init__(self) -> None:
-        scene = self.session.first.model.scene
-        facts = {**page_facts(self.session.first), "motion": scene.simulation is not None}
         folder = resources.files("cosserat_casadi.view") / "assets"
         scripts = [(folder / name).read_text(encoding="utf-8") for name in SCRIPTS]
-        self.page = page_text(facts, scripts).encode()
+        self.page = page_text(self.session.facts(), scripts).encode()
 
     def answer(self, question: str, asked: dict[str, Any]) -> Any:
         """The answer to a question; a refusal is an answer with the sentence ``refused``.
@@ -65,18 +63,21 @@ class Desk:
             KeyError: there is no such question, or something it needs is missing.
         """
         session = self.session
-        if question == "motion":
+        if question == "motion" and isinstance(session, Session):
             # It may take a minute, in which the robot can be moved: it has a model of its own.
             return _refusable(session.motion)
         with self._lock:
             if question in ("move", "reset"):
                 inputs = asked["inputs"]
-                return session.move(inputs) if question == "move" else session.reset(inputs)
-            if question == "reach":
-                return _refusable(lambda: session.reach(asked["pose"], asked["position"]))
+                answer = session.move if question == "move" else session.reset
+                return _refusable(lambda: answer(inputs))
             plain = {"derivatives": session.derivatives, "eigenvalues": session.eigenvalues}
             if question in plain:
                 return plain[question]()
+            if isinstance(session, ContactSession):
+                raise KeyError(question)
+            if question == "reach":
+                return _refusable(lambda: session.reach(asked["pose"], asked["position"]))
             return _refusable({"modes": session.modes}[question])
 
 
@@ -94,7 +95,7 @@ class RobotServer(ThreadingHTTPServer):
         desk: who answers.
     """
 
-    def __init__(self, session: Session, port: int = 0) -> None:
+    def __init__(self, session: Session | ContactSession, port: int = 0) -> None:
         """Take a port of this machine, 0 for one that is free; OSError where it is taken."""
         self.desk = Desk(session)
         super().__init__((HOST, port), _Handler)
@@ -138,8 +139,7 @@ class _Handler(BaseHTTPRequestHandler):
         except (KeyError, TypeError, ValueError) as error:
             self.send_error(HTTPStatus.BAD_REQUEST, f"no question of the page: {error!r}")
             return
-        # JSON has no word for what is not a number; the page takes null for it.
-        self._send("application/json", json.dumps(_finite(answer)).encode())
+        self._send("application/json", _json(answer))
 
     def _is_foreign(self) -> bool:
         """Refuse a request that a page from elsewhere makes, under a name of its own for this machine."""
@@ -161,6 +161,14 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name of the base class
         """Say nothing of each request."""
+
+
+def _json(answer: Any) -> bytes:
+    """An answer as text; JSON has no word for what is not a number, and the page takes null for it."""
+    try:
+        return json.dumps(answer, allow_nan=False).encode()
+    except ValueError:
+        return json.dumps(_finite(answer)).encode()
 
 
 def _finite(answer: Any) -> Any:

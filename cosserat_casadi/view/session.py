@@ -21,6 +21,7 @@ from cosserat_casadi.control.inverse import LiftedProblem, lifted_problem, searc
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -28,7 +29,10 @@ from cosserat_casadi.motion.modes import modes_of
 from cosserat_casadi.motion.resolve import simulate_scene
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.page.drawn_model import DrawnModel
+from cosserat_casadi.page.facts import page_facts
 from cosserat_casadi.page.ranges import movable, sliders
+from cosserat_casadi.view.answers import stacked_inputs, state_of
+from cosserat_casadi.view.contact_session import ContactSession
 
 NAME = "viewed"
 """What symbols of the compiled library begin with."""
@@ -70,9 +74,14 @@ class Session:
     def __post_init__(self) -> None:
         self._inputs = self.first.inputs
 
+    def facts(self) -> dict[str, Any]:
+        """Facts of the scene for its page."""
+        has_motion = self.first.model.scene.simulation is not None
+        return {**page_facts(self.first), "motion": has_motion, "modes": True}
+
     def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs: along the way from the last one, or anew where that leads nowhere."""
-        given = _numbers(inputs)
+        given = stacked_inputs(inputs)
         before = self._present
         anew = False
         if before is not None and before.converged:
@@ -84,7 +93,7 @@ class Session:
 
     def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
         """The equilibrium for these inputs from the unloaded scene, whatever was before."""
-        given = _numbers(inputs)
+        given = stacked_inputs(inputs)
         return self._accepted(given, self.library.solve(given), False)
 
     def derivatives(self) -> list[float] | None:
@@ -180,15 +189,7 @@ class Session:
     def _accepted(self, inputs: FloatArray, found: CompiledSolution, anew: bool) -> dict[str, Any]:
         self._inputs = inputs
         self._present = found
-        return {
-            "found": found.converged,
-            "label": found.outcome.label,
-            "text": found.outcome.value,
-            "anew": anew,
-            "loadFactor": found.load_factor,
-            "iterations": found.iterations,
-            "drawn": self.library.drawn(found.x, inputs).full()[:, 0].tolist(),
-        }
+        return state_of(found, self.library.drawn(found.x, inputs).full()[:, 0], anew=anew)
 
     @cached_property
     def _problems(self) -> dict[tuple[tuple[str, str], ...], LiftedProblem]:
@@ -220,8 +221,17 @@ class Session:
         )
 
 
-def opened(solution: Solution, progress: Progress | None = None) -> Session:
-    """A session of a solved scene, with its library compiled, or found compiled.
+def is_compiled(scene: scenes.Scene) -> bool:
+    """Whether the compiled library moves a scene; exact contact is looked for by Python alone."""
+    try:
+        refuse_obstacles(scene, "a compiled library")
+    except SceneError:
+        return False
+    return True
+
+
+def opened(solution: Solution, progress: Progress | None = None) -> Session | ContactSession:
+    """A session of a solved scene, with its library compiled, or found compiled, where it has one.
 
     Args:
         solution: the equilibrium at the scene's own inputs.
@@ -230,17 +240,13 @@ def opened(solution: Solution, progress: Progress | None = None) -> Session:
     Raises:
         ExportError: there is no C compiler, or it fails.
     """
-    refuse_obstacles(solution.model.scene, "a view")
+    if not is_compiled(solution.model.scene):
+        return ContactSession(solution)
     with tempfile.TemporaryDirectory() as folder:
         # The compiled library lies in the cache: the sources are not needed any more.
         sources = export(DrawnModel(solution.model.discrete), Path(folder) / NAME, NAME)
         library = load(sources, progress=progress)
     return Session(solution, library)
-
-
-def _numbers(inputs: Sequence[float | None]) -> FloatArray:
-    """Stacked inputs; JSON has null for what is not a number."""
-    return np.array([np.nan if value is None else value for value in inputs], dtype=np.float64)
 
 
 def _packed(pictures: FloatArray) -> str:

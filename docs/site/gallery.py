@@ -17,10 +17,17 @@ from examples.demo import MOTIONS, PAGES, SCENES, arguments_of, can_write_pages,
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
-FIGURES = ROOT / "docs" / "figures"
+FIGURES = (ROOT / "docs" / "figures", ROOT / "docs")
 
-PROGRAMS = ("carry_load", "tendon_robot_mpc", "trace_circle")
-"""Programs of examples/, whose pictures are in docs/figures: they optimise for minutes."""
+PROGRAMS = (
+    "carry_load",
+    "design_finger",
+    "feel_tip_force",
+    "tendon_robot_mpc",
+    "tendon_robot_swing_free",
+    "trace_circle",
+)
+"""Programs of examples/, whose pictures are those of the pages: they optimise for minutes."""
 
 NO_CONTENTS = "---\nhide:\n  - toc\n---\n\n"
 """Leaves the cards the whole width."""
@@ -33,6 +40,8 @@ Every scene and program of `examples/`, and what comes out when it is run. `coss
 ROBOT = (0.0, 0.08, 0.54, 0.92)
 """Left, upper, right and lower edge of the robot in a figure of ``--plot``, relative to its size: panels stand beside
 it, the title above and the legend below."""
+
+WHOLE = (0.0, 0.0, 1.0, 1.0)
 
 CARD_WIDTH = 560
 """Of the picture of a card, pixels."""
@@ -50,12 +59,14 @@ class Card:
         name: that of its file, without suffix.
         title: its heading.
         pictures: files that show it, films first.
+        edges: left, upper, right and lower edge of what the card shows of a picture, relative to its size.
         sections: Markdown of its page, below heading and pictures.
     """
 
     name: str
     title: str
     pictures: tuple[Path, ...]
+    edges: tuple[float, float, float, float]
     sections: tuple[str, ...]
 
 
@@ -128,7 +139,8 @@ def _scene_card(name: str, runs: Path) -> Card:
     return Card(
         name=name,
         title=title,
-        pictures=_pictures(runs, name),
+        pictures=_pictures(name, runs),
+        edges=ROBOT,
         sections=(
             f"```sh\ncosserat {command}\n```",
             f"{found['message']} {_error_words(found)}",
@@ -137,9 +149,9 @@ def _scene_card(name: str, runs: Path) -> Card:
     )
 
 
-def _pictures(folder: Path, name: str) -> tuple[Path, ...]:
+def _pictures(name: str, *folders: Path) -> tuple[Path, ...]:
     """Film and picture of an example, as far as there are any."""
-    files = [folder / f"{name}{suffix}" for suffix in (".gif", ".png")]
+    files = [folder / f"{name}{suffix}" for suffix in (".gif", ".png") for folder in folders]
     return tuple(file for file in files if file.exists())
 
 
@@ -157,7 +169,8 @@ def _program_card(name: str) -> Card:
     return Card(
         name=name,
         title=title.rstrip("."),
-        pictures=_pictures(FIGURES, name),
+        pictures=_pictures(name, *FIGURES),
+        edges=WHOLE,
         sections=(
             f"```sh\npython examples/{name}.py --help\n```",
             more,
@@ -177,12 +190,12 @@ def _page(card: Card, *, live: bool) -> str:
 
 
 def _draw_card(card: Card, folder: Path) -> None:
-    """Write the picture of a card: a film as it is, of a figure the robot alone."""
+    """Write the picture of a card: a film as it is, of the figure of a scene the robot alone."""
     picture = card.pictures[0]
     if picture.suffix == ".gif":
         return
     with Image.open(picture) as figure:
-        left, upper, right, lower = ROBOT
+        left, upper, right, lower = card.edges
         box = (left * figure.width, upper * figure.height, right * figure.width, lower * figure.height)
         robot = figure.convert("RGB").crop([round(edge) for edge in box])
     robot.thumbnail((CARD_WIDTH, CARD_WIDTH))

@@ -542,3 +542,23 @@ def test_iterations_are_those_of_the_whole_search(wire: Path) -> None:
     iterations = json.loads((wire / "r.json").read_text())["iterations"]
     assert iterations > 5
     assert f"{iterations} iterations" in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence", "helps"),
+    [
+        ("solve", "Missing argument 'SCENE'.", " solve --help"),
+        ("solve scene.toml --nothing 3", "No such option: --nothing", " solve --help"),
+        ("slove scene.toml", "No such command 'slove'.", " --help"),
+        ("new scene.toml --template arm", "Error: Invalid value for '--template': 'arm' is not one of", " new --help"),
+    ],
+)
+def test_command_that_is_written_wrongly_is_told_where_to_look(
+    line: str, sentence: str, helps: str, tmp_path: Path
+) -> None:
+    done = cosserat(*line.split(), cwd=tmp_path)
+    assert done.returncode == 2
+    assert sentence in " ".join(done.stderr.split())
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("Help: ")
+    assert last.endswith(helps)

@@ -168,7 +168,34 @@ def test_on_a_narrow_screen_nothing_is_wider_than_it(page: Any) -> None:
     picture = page.locator("#picture").bounding_box()
     assert picture["width"] == 360
     assert picture["height"] > 300
+    # The ring is still at the tip.
+    gap = page.evaluate("""async () => { await new Promise(requestAnimationFrame); const { scenery } = window;
+        const tip = scenery.onScreen(new THREE.Vector3(...window.robot.tip()));
+        const ring = document.getElementById("hand").getBoundingClientRect();
+        return Math.hypot(ring.x + ring.width / 2 - tip.x, ring.y + ring.height / 2 - tip.y); }""")
+    assert gap < 1.0
     handle = page.get_by_label("push.force x, N", exact=True).bounding_box()
     # A finger finds it.
     assert handle["height"] >= 28
     assert handle["width"] > 150
+
+
+def test_what_moves_is_painted_as_finely_as_there_is_time_for_and_at_rest_in_full(page: Any) -> None:
+    page.set_viewport_size({"width": 1100, "height": 700})
+    moved = """async (quality) => { window.scenery.painter.pace.turnTo(quality);
+        await window.robot.setInput("push.force.x", 0.3 + 0.1 * quality);
+        const shown = document.getElementById(quality ? "rough" : "canvas");
+        return [document.getElementById("picture").classList.contains("rough"), shown.width / shown.clientWidth]; }"""
+    # A browser without a graphics card may be late by itself: the quality is held for these pictures.
+    page.evaluate("window.scenery.painter.pace.took = () => {}")
+    assert page.evaluate(moved, 0) == [False, 1.0]
+    assert page.evaluate(moved, 1) == [True, 1.0]
+    assert page.evaluate(moved, 3) == [True, 0.5]
+    page.wait_for_function("() => !document.getElementById('picture').classList.contains('rough')", timeout=20_000)
+    assert page.evaluate("window.scenery.painter.shown.smooth")
+    # However many things move, they are one picture.
+    painted = page.evaluate("""async () => { const { painter } = window.scenery; let count = 0;
+        const { show } = painter; painter.show = (quality) => { count++; show.call(painter, quality); };
+        for (let i = 0; i < 5; i++) window.scenery.show("loads", i % 2 === 0);
+        await new Promise(requestAnimationFrame); await new Promise(requestAnimationFrame); return count; }""")
+    assert painted == 1

@@ -71,8 +71,9 @@ def test_the_tip_follows_the_hand_and_inverse_has_the_last_word(page: Any) -> No
     page.mouse.down()
     page.mouse.move(x + 40, y + 10, steps=4)
     page.wait_for_function(f"() => Math.abs(window.robot.inputs['front.tension'] - {before}) > 0.3", timeout=20_000)
-    moved = page.locator("#hand").bounding_box()
-    assert moved["x"] > box["x"] + 10
+    page.wait_for_function(
+        f"() => document.getElementById('hand').getBoundingClientRect().x > {box['x'] + 10}", timeout=20_000
+    )
     page.mouse.up()
     page.wait_for_function("() => 'met' in window.robot.state", timeout=60_000)
     # One tendon leads the tip along a line: the point beside it is not reached, and the words say so.

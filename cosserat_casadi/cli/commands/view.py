@@ -30,11 +30,12 @@ def view(
     """
     # Imported here, because motions and inverse problems are needed by few commands.
     from cosserat_casadi.view.server import RobotServer, check_port
-    from cosserat_casadi.view.session import opened
+    from cosserat_casadi.view.session import is_compiled, opened
 
     check_port(port)
     viewed_scene = read_scene(scene, tuple(settings or ()))
-    find_compiler()
+    if is_compiled(viewed_scene):
+        find_compiler()
     solution = solve_with_progress(viewed_scene)
     if not solution.converged:
         Console(stderr=True).print(f"[bold red]Nothing to view.[/] {solution.message}", highlight=False)

@@ -22,6 +22,7 @@ class Panel {
     document.getElementById("reset").onclick = () => this.reset();
     document.getElementById("fit").onclick = () => this.scenery.lookAtAll();
     document.getElementById("scale").textContent = `grid ${quantity(scenery.cell, "m")}`;
+    document.getElementById("note").textContent = facts.note || "";
     scenery.controls.addEventListener("change", () => this.placeLabels());
   }
 
@@ -88,7 +89,8 @@ class Panel {
     layer("section axes", true, (on) => this.scenery.show("sections", on));
     layer("loads", true, (on) => this.scenery.show("loads", on));
     this.derivativesBox = layer("derivatives", false, () => this.showDerivatives());
-    if (!this.facts.sliders.length) this.derivativesBox.parentElement.remove();
+    if (this.facts.obstacles.length) layer("obstacles", true, (on) => this.scenery.show("obstacles", on));
+    if (!this.facts.sliders.length || !this.facts.derivatives) this.derivativesBox.parentElement.remove();
     if (this.facts.poses.length > 1) {
       const label = element("label", field);
       label.append("of ");
@@ -125,7 +127,9 @@ class Panel {
       this.wanted = null;
       this.waiting = [];
       try {
-        this.accept(inputs, await this.robot.move(inputs));
+        const state = await this.robot.move(inputs);
+        if (state.refused) this.say("✕ Refused", state.refused);
+        else this.accept(inputs, state);
       } catch (error) {
         this.say("✕ Nobody answers", `The program that solves has ended, or failed: ${error.message}.`);
       }
@@ -139,7 +143,7 @@ class Panel {
     this.inputs = inputs;
     this.state = state;
     this.eigenvalues = null;
-    this.scenery.draw(state.drawn, state.found);
+    this.scenery.draw(state.drawn, state.found, state.contacts);
     this.showStatus();
     this.showReadings();
     this.showDerivatives();
@@ -211,7 +215,9 @@ class Panel {
     const { position } = this.pose(this.point);
     const [factor, unit] = this.lengths;
     const numbers = [...position].map((value) => (factor * value).toFixed(2)).join(", ");
-    document.getElementById("readings").textContent = `${nameOf(this.facts.poses[this.point])} at (${numbers}) ${unit}`;
+    const contacts = (this.state.contacts || []).map(({ words }) => words);
+    const readings = [`${nameOf(this.facts.poses[this.point])} at (${numbers}) ${unit}`, ...contacts];
+    document.getElementById("readings").replaceChildren(...readings.flatMap((words) => [words, document.createElement("br")]));
   }
 
   // What lengths are written in.
@@ -300,7 +306,7 @@ class Panel {
         return [...panel.pose(index).position];
       },
       reset: () => panel.reset(),
-      redraw: () => panel.scenery.render(),
+      redraw: () => panel.scenery.painter.paintStill(),
     };
   }
 }

@@ -1,9 +1,15 @@
 // What is drawn: rods as swept sections, actuators, bodies, arrows, derivatives. World axes, z up, metres.
 
 const RING = 14; // Corners of a round section.
+const THIN_RING = 8; // Of one that is a few pixels wide: a processor without a graphics card pays for each triangle.
+const THREAD_RING = 5; // Of a tendon.
+const THIN = 0.01; // Half width of such a section, relative to the scene.
 const AXES_EVERY = 6; // Sections whose axes are drawn.
 const AXES_COLOURS = ["#cc3311", "#228833"];
 const DERIVATIVES = "#0077bb";
+const CONTACTS = "#000000";
+const CONTACT_BALL = 0.009; // Radius of a mark of contact, relative to the scene.
+const ARROW = 0.0042; // Radius of the shaft of an arrow, relative to the scene.
 const THINNEST = 0.004; // Least half width of what is drawn, relative to the scene.
 
 class Scenery {
@@ -14,10 +20,9 @@ class Scenery {
     this.most = new THREE.Vector3(...facts.most);
     this.size = this.most.clone().sub(this.least).length();
     this.references = {};
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.scene = new THREE.Scene();
     this.layers = {};
-    for (const name of ["unloaded", "sections", "loads", "derivatives"]) {
+    for (const name of ["unloaded", "sections", "loads", "obstacles", "contacts", "derivatives"]) {
       this.layers[name] = new THREE.Group();
       this.scene.add(this.layers[name]);
     }
@@ -25,6 +30,7 @@ class Scenery {
     this.addCamera();
     this.addGround();
     this.addUnloaded();
+    this.addObstacles();
     this.parts = facts.layout.map((entry) => this.part(entry));
     this.addDerivatives();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
@@ -41,8 +47,9 @@ class Scenery {
   addCamera() {
     this.camera = new THREE.PerspectiveCamera(35, 1, this.size / 100, this.size * 100);
     this.camera.up.set(0, 0, 1);
+    this.painter = new Painter(this.canvas, this.scene, this.camera);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
-    this.controls.addEventListener("change", () => this.render());
+    this.controls.addEventListener("change", () => this.painter.paint());
     this.lookAtAll();
   }
 
@@ -88,8 +95,39 @@ class Scenery {
     for (const point of this.facts.targets) this.addBall(this.scene, point, 0.012, this.facts.colours.target);
   }
 
+  addObstacles() {
+    for (const { net } of this.facts.obstacles) {
+      const material = solid(this.facts.colours.obstacle);
+      // Seen through from both sides: a lumen has the robot inside.
+      Object.assign(material, { transparent: true, opacity: 0.35, depthWrite: false });
+      this.layers.obstacles.add(new THREE.Mesh(netGeometry(net), material));
+    }
+  }
+
+  // Where rods touch obstacles: points or stretches of centre lines, and the resultant on the rod.
+  drawContacts(contacts) {
+    const group = this.layers.contacts;
+    for (const { geometry, material } of group.children) {
+      geometry.dispose();
+      material.dispose();
+    }
+    group.clear();
+    if (!contacts.length) return;
+    const arrows = new Arrows(this.facts.colours.point, contacts.length);
+    group.add(arrows.mesh);
+    contacts.forEach(({ points, force }, i) => {
+      const line = points.map((point) => new THREE.Vector3(...point));
+      const ends = line.length > 1 ? [line[0], line[line.length - 1]] : line;
+      for (const end of ends) this.addBall(group, end.toArray(), CONTACT_BALL, CONTACTS);
+      line.slice(1).forEach((point, k) => group.add(bar(line[k], point, 0.8 * CONTACT_BALL * this.size, solid(CONTACTS))));
+      const middle = line[Math.floor(line.length / 2)];
+      arrows.point(i, middle, new THREE.Vector3(...force).multiplyScalar(this.arrowScale("point")), ARROW * this.size);
+    });
+    arrows.finish();
+  }
+
   addBall(group, point, share, colour) {
-    const ball = new THREE.Mesh(new THREE.SphereGeometry(share * this.size, 20, 14), solid(colour));
+    const ball = new THREE.Mesh(new THREE.SphereGeometry(share * this.size, 12, 8), solid(colour));
     ball.position.set(...point);
     group.add(ball);
     return ball;
@@ -111,14 +149,16 @@ class Scenery {
     const thinnest = THINNEST * this.size;
     const box = facts.shape === "rectangle";
     const half = (axis, k) => Math.max(facts[axis] ? facts[axis][k] : 1.5 * thinnest, box ? thinnest / 2 : thinnest);
-    const corners = box ? [[1, 1], [-1, 1], [-1, -1], [1, -1]] : circle(RING);
+    const widest = Math.max(...Array.from({ length: entry.columns }, (_, k) => half("x", k)));
+    const round = circle(widest < THIN * this.size ? THIN_RING : RING);
+    const corners = box ? [[1, 1], [-1, 1], [-1, -1], [1, -1]] : round;
     const material = solid(facts.colour, box);
     if (facts.see_through) Object.assign(material, { transparent: true, opacity: 0.5, depthWrite: false });
     const tube = new Tube(entry.columns, corners.length, material);
     this.scene.add(tube.mesh);
     const axes = new Segments(AXES_COLOURS, Math.ceil(entry.columns / AXES_EVERY));
     this.layers.sections.add(axes.lines);
-    const clamp = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 28), solid("#444b52"));
+    const clamp = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 20), solid("#444b52"));
     if (!facts.carried) this.scene.add(clamp);
     return (numbers) => {
       for (let k = 0; k < entry.columns; k++) {
@@ -147,7 +187,7 @@ class Scenery {
     const facts = this.facts.actuators[entry.name];
     const channel = facts.drawn_as === "channel";
     const radius = (channel ? 0.006 : 0.0022) * this.size;
-    const corners = circle(8);
+    const corners = circle(channel ? THIN_RING : THREAD_RING);
     const material = solid(facts.colour);
     if (channel) Object.assign(material, { transparent: true, opacity: 0.8 });
     const tube = new Tube(entry.columns, corners.length, material);
@@ -200,15 +240,16 @@ class Scenery {
 
   arrows(entry) {
     const colour = this.facts.colours[entry.sort];
-    const thickness = entry.sort === "line" ? 0.6 : 1.2;
-    const arrows = Array.from({ length: entry.columns }, () => new Arrow(colour, entry.sort === "moment"));
-    for (const arrow of arrows) this.layers.loads.add(arrow.group);
+    const thickness = entry.sort === "line" ? ARROW / 2 : ARROW;
+    const arrows = new Arrows(colour, entry.columns, entry.sort === "moment");
+    this.layers.loads.add(arrows.mesh);
     return (numbers) => {
-      arrows.forEach((arrow, k) => {
+      for (let k = 0; k < entry.columns; k++) {
         const start = new THREE.Vector3(...numbers.subarray(6 * k, 6 * k + 3));
         const vector = new THREE.Vector3(...numbers.subarray(6 * k + 3, 6 * k + 6));
-        arrow.point(start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * 0.0035 * this.size);
-      });
+        arrows.point(k, start, vector.multiplyScalar(this.arrowScale(entry.sort)), thickness * this.size);
+      }
+      arrows.finish();
     };
   }
 
@@ -219,29 +260,35 @@ class Scenery {
   }
 
   // The first arrows of a sort set its scale; it shrinks where they grow far beyond.
-  measureArrows(drawn) {
+  measureArrows(drawn, contacts) {
     for (const entry of this.facts.layout.filter((entry) => entry.kind === "arrows")) {
       for (let k = 0; k < entry.columns; k++) {
-        const vector = drawn.subarray(entry.first + 6 * k + 3, entry.first + 6 * k + 6);
-        const reference = this.references[entry.sort] || 0;
-        if (!reference || Math.hypot(...vector) > 2.5 * reference) this.references[entry.sort] = Math.hypot(...vector);
+        this.measureArrow(entry.sort, drawn.subarray(entry.first + 6 * k + 3, entry.first + 6 * k + 6));
       }
     }
+    for (const { force } of contacts) this.measureArrow("point", force);
+  }
+
+  measureArrow(sort, vector) {
+    const reference = this.references[sort] || 0;
+    const length = Math.hypot(...vector);
+    if (!reference || length > 2.5 * reference) this.references[sort] = length;
   }
 
   // Draw the numbers that the library gives; faint where they are no equilibrium at the full load.
-  draw(drawn, found = true) {
-    this.measureArrows(drawn);
+  draw(drawn, found = true, contacts = []) {
+    this.measureArrows(drawn, contacts);
+    this.drawContacts(contacts);
     for (const { entry, update } of this.parts) {
       update(drawn.subarray(entry.first, entry.first + entry.rows * entry.columns));
     }
-    this.canvas.classList.toggle("faint", !found);
-    this.render();
+    this.canvas.parentElement.classList.toggle("faint", !found);
+    this.painter.paint();
   }
 
   addDerivatives() {
-    this.derivativeArrows = this.facts.sliders.map(() => new Arrow(DERIVATIVES));
-    for (const arrow of this.derivativeArrows) this.layers.derivatives.add(arrow.group);
+    this.derivativeArrows = new Arrows(DERIVATIVES, this.facts.sliders.length);
+    this.layers.derivatives.add(this.derivativeArrows.mesh);
     const material = solid(DERIVATIVES);
     Object.assign(material, { transparent: true, opacity: 0.18, depthWrite: false });
     this.ellipsoid = new THREE.Mesh(new THREE.SphereGeometry(1, 40, 24), material);
@@ -254,7 +301,7 @@ class Scenery {
   // the image of the ball of inputs, each over a tenth of its slider.
   drawDerivatives(position, columns) {
     this.layers.derivatives.visible = columns !== null;
-    if (columns === null) return this.render();
+    if (columns === null) return this.painter.paint();
     const moves = columns.map((column, i) => {
       const { least, most } = this.facts.sliders[i];
       return column.map((value) => (value * (most - least)) / 10);
@@ -265,22 +312,24 @@ class Scenery {
     const start = new THREE.Vector3(...position);
     const scaled = moves.map((move) => move.map((value) => value * scale));
     scaled.forEach((move, i) => {
-      this.derivativeArrows[i].point(start, new THREE.Vector3(...move), 0.003 * this.size);
+      this.derivativeArrows.point(i, start, new THREE.Vector3(...move), 0.003 * this.size);
     });
+    this.derivativeArrows.finish();
     const covariance = [0, 1, 2].map((i) => [0, 1, 2].map((j) => scaled.reduce((sum, move) => sum + move[i] * move[j], 0)));
     const { values, vectors } = eigen(covariance);
     const radii = values.map((value) => Math.max(Math.sqrt(Math.max(value, 0)), 1e-4 * this.size));
     const rows = [0, 1, 2].map((i) => [0, 1, 2].map((j) => vectors[i][j] * radii[j]));
     this.ellipsoid.matrix.set(...rows[0], position[0], ...rows[1], position[1], ...rows[2], position[2], 0, 0, 0, 1);
     this.ellipsoid.matrixWorldNeedsUpdate = true;
-    this.render();
+    this.painter.paint();
   }
 
   // Where the arrows of the derivatives end on the screen, px, the longest first; short ones are left out.
   derivativeEnds() {
-    const shown = this.derivativeArrows.map((arrow, i) => ({ arrow, i })).filter(({ arrow }) => arrow.group.visible);
-    shown.sort((one, other) => other.arrow.length - one.arrow.length);
-    return shown.map(({ arrow, i }) => ({ i, end: this.onScreen(arrow.end) }));
+    const { lengths, ends } = this.derivativeArrows;
+    const shown = [...lengths.keys()].filter((i) => lengths[i] > 0);
+    shown.sort((one, other) => lengths[other] - lengths[one]);
+    return shown.map((i) => ({ i, end: this.onScreen(ends[i]) }));
   }
 
   // A point of the world on the picture, px.
@@ -292,151 +341,18 @@ class Scenery {
 
   show(layer, visible) {
     this.layers[layer].visible = visible;
-    this.render();
+    this.painter.paint();
   }
 
   resize() {
     const { clientWidth, clientHeight } = this.canvas.parentElement;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(clientHeight, 1);
     this.camera.updateProjectionMatrix();
     if (!this.placed) this.lookAtAll();
     this.placed = true;
-    this.render();
+    // Names and the ring stand elsewhere now.
+    this.controls.dispatchEvent({ type: "change" });
+    // The picture's size has changed: what was painted is gone.
+    this.painter.paintStill();
   }
-
-  render() {
-    this.renderer.render(this.scene, this.camera);
-  }
-}
-
-// A surface swept by sections of the same number of corners, closed at both ends.
-class Tube {
-  constructor(sections, corners, material) {
-    this.sections = sections;
-    this.corners = corners;
-    this.positions = new THREE.BufferAttribute(new Float32Array(3 * (sections * corners + 2)), 3);
-    const index = [];
-    for (let k = 0; k + 1 < sections; k++) {
-      for (let i = 0; i < corners; i++) {
-        const next = (i + 1) % corners;
-        const [a, b, c, d] = [k * corners + i, k * corners + next, (k + 1) * corners + i, (k + 1) * corners + next];
-        index.push(a, b, d, a, d, c);
-      }
-    }
-    const last = (sections - 1) * corners;
-    for (let i = 0; i < corners; i++) {
-      const next = (i + 1) % corners;
-      index.push(sections * corners, next, i, sections * corners + 1, last + i, last + next);
-    }
-    this.geometry = new THREE.BufferGeometry();
-    this.geometry.setAttribute("position", this.positions);
-    this.geometry.setIndex(index);
-    this.mesh = new THREE.Mesh(this.geometry, material);
-    this.mesh.frustumCulled = false;
-  }
-
-  set(section, corner, point) {
-    this.positions.setXYZ(section * this.corners + corner, point.x, point.y, point.z);
-  }
-
-  // The middle of a section, where it is the first or the last.
-  setEnd(section, point) {
-    if (section === 0) this.positions.setXYZ(this.sections * this.corners, point.x, point.y, point.z);
-    if (section === this.sections - 1) this.positions.setXYZ(this.sections * this.corners + 1, point.x, point.y, point.z);
-  }
-
-  finish() {
-    this.positions.needsUpdate = true;
-    this.geometry.computeVertexNormals();
-  }
-}
-
-// Short lines, a few of each colour at each place.
-class Segments {
-  constructor(colours, places) {
-    this.colours = colours;
-    this.positions = new THREE.BufferAttribute(new Float32Array(6 * colours.length * places), 3);
-    const geometry = new THREE.BufferGeometry().setAttribute("position", this.positions);
-    const shades = [];
-    for (let k = 0; k < places; k++) {
-      for (const colour of colours) shades.push(...new THREE.Color(colour).toArray(), ...new THREE.Color(colour).toArray());
-    }
-    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(shades), 3));
-    this.lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
-    this.lines.frustumCulled = false;
-  }
-
-  set(place, colour, from, to) {
-    const first = 2 * (place * this.colours.length + colour);
-    this.positions.setXYZ(first, from.x, from.y, from.z);
-    this.positions.setXYZ(first + 1, to.x, to.y, to.z);
-  }
-
-  finish() {
-    this.positions.needsUpdate = true;
-  }
-}
-
-// A shaft with a head, or with two, as a moment has.
-class Arrow {
-  constructor(colour, twoHeads = false) {
-    this.group = new THREE.Group();
-    this.shaft = new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), solid(colour));
-    const cone = new THREE.ConeGeometry(1, 1, 18).translate(0, -0.5, 0);
-    this.heads = Array.from({ length: twoHeads ? 2 : 1 }, () => new THREE.Mesh(cone, this.shaft.material));
-    this.group.add(this.shaft, ...this.heads);
-  }
-
-  point(start, vector, thickness) {
-    const length = vector.length();
-    this.length = length;
-    this.end = start.clone().add(vector);
-    this.group.visible = length > 3 * thickness;
-    if (!this.group.visible) return;
-    this.group.position.copy(start);
-    this.group.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector.clone().normalize());
-    const head = Math.min(9 * thickness, 0.45 * length);
-    this.shaft.scale.set(thickness, length - head / 2, thickness);
-    this.heads.forEach((mesh, i) => {
-      mesh.scale.set(0.36 * head, head, 0.36 * head);
-      mesh.position.y = length - 0.7 * i * head;
-    });
-  }
-}
-
-function solid(colour, flatShading = false) {
-  return new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6, metalness: 0.05, flatShading, side: THREE.DoubleSide });
-}
-
-// Corners of a polygon that stands for a circle of radius 1.
-function circle(corners) {
-  const angles = Array.from({ length: corners }, (_, i) => (2 * Math.PI * i) / corners);
-  return angles.map((angle) => [Math.cos(angle), Math.sin(angle)]);
-}
-
-// A round bar between two points.
-function bar(from, to, radius, material) {
-  const along = to.clone().sub(from);
-  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, along.length(), 10), material);
-  mesh.position.copy(from).addScaledVector(along, 0.5);
-  mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
-  return mesh;
-}
-
-// Position and axes x, y, z of a section from position and quaternion w, x, y, z.
-function frame(numbers, first) {
-  const [px, py, pz, w, x, y, z] = numbers.subarray(first, first + 7);
-  const turn = new THREE.Quaternion(x, y, z, w);
-  const axis = (a, b, c) => new THREE.Vector3(a, b, c).applyQuaternion(turn);
-  return [new THREE.Vector3(px, py, pz), axis(1, 0, 0), axis(0, 1, 0), axis(0, 0, 1)];
-}
-
-// The axis of the world that a direction has least of.
-function leastAlong(direction) {
-  const sizes = direction.toArray().map(Math.abs);
-  const axis = new THREE.Vector3();
-  axis.setComponent(sizes.indexOf(Math.min(...sizes)), 1);
-  return axis;
 }

@@ -6,9 +6,10 @@ async function start() {
   const scenery = new Scenery(document.getElementById("canvas"), facts);
   const panel = new Panel(facts, robot, scenery);
   window.robot = panel.api;
+  window.scenery = scenery;
   await panel.reset();
   if (facts.hand.length) new Hand(panel);
-  // Motions need a program behind the page.
-  if (typeof Theatre !== "undefined") window.theatre = new Theatre(panel, facts);
+  // Modes and motions need a program behind the page.
+  if (facts.modes) window.theatre = new Theatre(panel, facts);
   document.body.dataset.ready = "yes";
 }

@@ -9,6 +9,7 @@ class ServerRobot {
 
   async state(question, inputs) {
     const state = await this.ask(question, { inputs: [...inputs] });
+    if (state.refused) return state;
     return { ...state, drawn: Float64Array.from(state.drawn, (value) => (value === null ? NaN : value)) };
   }
 

@@ -114,7 +114,7 @@ class Theatre {
     this.film = null;
     this.transport.hidden = true;
     document.body.classList.remove("playing");
-    this.panel.scenery.draw(this.panel.state.drawn, this.panel.state.found);
+    this.panel.scenery.draw(this.panel.state.drawn, this.panel.state.found, this.panel.state.contacts);
     this.panel.showDerivatives();
     this.panel.showStatus();
   }

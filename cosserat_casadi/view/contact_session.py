@@ -1,0 +1,99 @@
+"""What a page asks of a scene whose contacts are exact: equilibria that are found anew for every move, in Python."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.page.drawn_model import drawn_numbers
+from cosserat_casadi.page.facts import page_facts
+from cosserat_casadi.view.answers import stacked_inputs, state_of
+
+ALONG_LINE = 25
+"""Points at which a stretch of contact is drawn."""
+
+
+@dataclass
+class ContactSession:
+    """A robot that touches obstacles and is moved from a browser.
+
+    The contacts are unknowns, which the compiled library does not look for: :func:`cosserat_casadi.solve` does, from
+    those of the last equilibrium.
+
+    Attributes:
+        first: the equilibrium at the scene's own inputs, with its contacts.
+    """
+
+    first: Solution
+    model: Model = field(init=False)
+    _present: Solution = field(init=False)
+
+    def __post_init__(self) -> None:
+        first = self.first.model
+        # As the scene's file has it: contacts come and go.
+        self.model = build(without_contacts(first.scene), first.discretisation)
+        self._present = self.first
+
+    def facts(self) -> dict[str, Any]:
+        """Facts of the scene for its page, which offers what is answered here alone."""
+        began = time.perf_counter()
+        self.move(self.model.pack().tolist())
+        seconds = time.perf_counter() - began
+        note = (
+            f"Contact is exact and is looked for anew with every move: about {seconds:.1g} s each. "
+            "Derivatives, the ring at the tip, vibrations and motions are for scenes without it."
+        )
+        offered = {"hand": [], "motion": False, "modes": False, "derivatives": False}
+        return {**page_facts(self.first, self.model), **offered, "note": note}
+
+    def move(self, inputs: Sequence[float | None]) -> dict[str, Any]:
+        """The equilibrium for these inputs, whose contacts are tried from those of the last one on."""
+        given = stacked_inputs(inputs)
+        before = self._present if self._present.converged else self.first
+        return self._accepted(given, before)
+
+    def reset(self, inputs: Sequence[float | None]) -> dict[str, Any]:
+        """The equilibrium for these inputs from the one at the scene's own inputs, whatever was before."""
+        return self._accepted(stacked_inputs(inputs), self.first)
+
+    def derivatives(self) -> None:
+        """There are none: a contact that begins or ends has a derivative to one side alone."""
+
+    def eigenvalues(self) -> list[float] | None:
+        """The smallest eigenvalue of the second variation, contacts held; None where stability has no meaning."""
+        smallest = self._present.smallest_eigenvalue
+        if smallest is None or not self._present.converged:
+            return None
+        return [smallest]
+
+    def _accepted(self, given: FloatArray, start: Solution) -> dict[str, Any]:
+        if np.all(np.isfinite(given)):
+            found = solve(self.model, given, start=start)
+        else:
+            found = replace(start, outcome=Outcome.NOT_FINITE, message=Outcome.NOT_FINITE.value)
+        self._present = found
+        numbers = drawn_numbers(self.model, found)
+        contacts = [_drawn_contact(found, contact) for contact in found.contacts]
+        return {**state_of(found, numbers, anew=False), "text": found.message, "contacts": contacts}
+
+
+def _drawn_contact(solution: Solution, contact: Contact) -> dict[str, Any]:
+    """Points of a rod at which it touches, and the resultant on it there, world axes, m and N; and where, in words."""
+    X = np.linspace(contact.start, contact.end, ALONG_LINE if contact.start < contact.end else 1)
+    points = solution.pose(X, contact.rod).position
+    place = f"at X = {contact.start:.3g}"
+    if len(X) > 1:
+        place = f"from X = {contact.start:.3g} to {contact.end:.3g}"
+    force = float(np.linalg.norm(contact.force))
+    words = f"{contact.rod} touches {contact.obstacle} {place} with {force:.3g} N"
+    return {"points": points.tolist(), "force": contact.force.tolist(), "words": words.replace("_", " ")}
