@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure

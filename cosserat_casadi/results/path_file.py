@@ -9,7 +9,7 @@ from typing import Any
 
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")

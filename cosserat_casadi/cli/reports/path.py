@@ -13,7 +13,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, title_line
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
 
 
 def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:

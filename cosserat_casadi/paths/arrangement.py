@@ -1,0 +1,240 @@
+"""Rods in one arrangement of contacts: a curve in y = (z, λ), with what is read off a point of it.
+
+z = (x, f, p) are the unknowns of equilibrium/contact/equations.py. All that is watched along the curve follows from
+the positions of the nodes, which move with the places of contact: no model is built on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations
+from cosserat_casadi.equilibrium.contact.settle import Found, found_at, pairs
+from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
+from cosserat_casadi.equilibrium.contact.verdict import FLAT
+from cosserat_casadi.equilibrium.solution import Pose, rotations
+from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, restricted, variations
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
+from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.events import DETERMINANT
+from cosserat_casadi.paths.gaps_along import GapsAlong
+
+EQUILIBRATIONS = 6
+"""Times that rows and columns are made of one size."""
+
+SINGULAR = 1e-13
+"""Singular value, relative to the largest, that is zero: a short line has some as small as the cube of its width."""
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """One arrangement of contacts while an input grows.
+
+    Attributes:
+        equations: of its contacts; their inputs are those at load factor 0.
+        change: stacked inputs of the scene at load factor 1 less those at 0.
+        potential: whether all loads have a potential along the path.
+        settings: limits of the curve.
+        near: z where it begins, or nearly so.
+        load_factor: λ there.
+    """
+
+    equations: ContactEquations
+    change: FloatArray
+    potential: bool
+    settings: ArcSettings
+    near: FloatArray
+    load_factor: float
+
+    @property
+    def scene(self) -> scenes.Scene:
+        """The scene without contacts."""
+        return self.equations.scene
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """The contacts, where the equations start from."""
+        return self.equations.state.touches
+
+    def inputs(self, load_factor: float) -> FloatArray:
+        """Stacked inputs of the scene at a load factor."""
+        return np.asarray(self.equations.given + load_factor * self.change)
+
+    @cached_property
+    def _scales(self) -> tuple[FloatArray, FloatArray]:
+        """Units of z along the curve, and what each equation is multiplied by where linear systems are solved.
+
+        A short line of contact has forces that hardly tell on the rod, and moments of the gap that hardly tell of it:
+        their columns and rows are made as large as the others (D. Ruiz, RAL-TR-2001-034).
+        """
+        nominal = self.equations.nominal
+        size = nominal.model.size
+        forces = slice(size, size + len(nominal.force_units))
+        inputs = self.inputs(self.load_factor)
+        load = float(np.linalg.norm(self.equations.rate(self.near, inputs, self.change)[:size]))
+        scale = np.ones(len(self.near))
+        # Otherwise a strong load on a held rod would make a long way of small steps.
+        scale[variations(nominal.model).held] = max(1.0, load)
+        matrix = np.abs(self.equations.jacobian(self.near, inputs)) * scale
+        rows = np.ones(len(matrix))
+        for _ in range(EQUILIBRATIONS):
+            rows = 1.0 / matrix.max(axis=1)
+            columns = (rows[:, None] * matrix)[:, forces].max(axis=0)
+            matrix[:, forces] /= columns
+            scale[forces] /= columns
+        # A force that tells counts relative to the load, as those of supports do.
+        scale[forces] = np.maximum(scale[forces], max(1.0, load))
+        return scale, rows
+
+    @property
+    def scale(self) -> FloatArray:
+        """Units of z along the curve."""
+        return self._scales[0]
+
+    @cached_property
+    def curve(self) -> Curve:
+        """Its equations in y, scaled; the start of its path is not read."""
+        equations = self.equations
+        scale, rows = self._scales
+        path = Path(
+            residual=lambda y, t: equations.residual(scale * y, self.inputs(t)),
+            jacobian=lambda y, t: equations.jacobian(scale * y, self.inputs(t)) * scale,
+            rate=lambda y, t: equations.rate(scale * y, self.inputs(t), self.change),
+            start=self.near / scale,
+        )
+        monitor = DETERMINANT
+        if self.potential:
+            monitor = Monitor(self._eigenvalues, feels_limits=True)
+        return Curve(path, monitor, self.settings, rows, SINGULAR)
+
+    def z(self, point: ArcPoint) -> FloatArray:
+        """Unknowns, forces and places of a point."""
+        return self.scale * point.x
+
+    def y(self, z: FloatArray, load_factor: float) -> FloatArray:
+        """The point of the curve's space that holds z and λ."""
+        return np.append(z / self.scale, load_factor)
+
+    def state(self, z: FloatArray) -> ContactState:
+        """The contacts at the places in z."""
+        _, _, places = self.equations.parts(z)
+        return self.equations.state.at(places.tolist())
+
+    def found(self, z: FloatArray, load_factor: float) -> Found:
+        """A point on elements of its own, for all that is asked of a solution."""
+        return found_at(self.equations, z, self.inputs(load_factor))
+
+    def parts(self, z: FloatArray) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact where it is, the forces at its ends and the coefficients of that along it, without unit."""
+        _, forces, _ = self.equations.parts(z)
+        modes = self.equations.nominal.modes
+        return self.state(z).with_forces(forces, modes)
+
+    @cached_property
+    def _poses(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ of every rod positions, 3×M, their rates, 3×M, and quaternions, 4×M, at the nodes.
+
+        World axes; rates are those with the coordinate that integrals run over.
+        """
+        written = self.equations.written
+        poses: list[Matrix] = []
+        for name, shape in written.system.shapes.items():
+            base = written.system.base(name)
+            rotation = quaternion_to_matrix(base.quaternion)
+            count = shape.rod.grid.size
+            quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
+            poses.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
+            poses.append(rotation @ shape.tangent)
+            poses.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
+        return ca.Function("poses", written.arguments, poses)
+
+    def _nodes(self, z: FloatArray, load_factor: float) -> dict[str, tuple[FloatArray, FloatArray, FloatArray]]:
+        """Positions and their rates, shape (M, 3), and quaternions, shape (M, 4), of the nodes of every rod."""
+        outputs = self._poses(*self.equations.parts(z), self.inputs(load_factor))
+        arrays = [output.full().T for output in outputs]
+        nodes = {}
+        for number, name in enumerate(self.equations.written.system.shapes):
+            positions, rates, quaternions = arrays[3 * number : 3 * number + 3]
+            nodes[name] = (positions, rates, quaternions)
+        return nodes
+
+    def ends(self, rod: str, z: FloatArray) -> FloatArray:
+        """Abscissae of the ends of a rod's elements."""
+        return self.equations.ends(rod, self.equations.parts(z)[2])
+
+    def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
+        """Distances of rods from the obstacles that they must not enter, by the names of rod and obstacle."""
+        nodes = self._nodes(z, load_factor)
+        gaps = {}
+        for rod, obstacle in pairs(self.scene):
+            discrete_rod = self.equations.nominal.model.discrete.rods[rod]
+            positions, rates, _ = nodes[rod]
+            ends = self.ends(rod, z)
+            # The rate with the abscissa, which moved elements stretch.
+            moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
+            by_element = rates.reshape(discrete_rod.grid.elements, -1, 3)
+            gaps[rod, obstacle.name] = GapsAlong(
+                rod=rod,
+                obstacle=obstacle,
+                ends=ends,
+                positions=positions.reshape(by_element.shape),
+                tangents=by_element / moved[:, None, None],
+                radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
+                length=discrete_rod.properties.length,
+            )
+        return gaps
+
+    def pose(self, z: FloatArray, load_factor: float, X: float, rod: str) -> Pose:
+        """Pose of one section."""
+        positions, _, quaternions = self._nodes(z, load_factor)[rod]
+        ends = self.ends(rod, z)
+        grid = self.equations.nominal.model.discrete.rods[rod].grid
+        element = int(np.searchsorted(ends[1:-1], X, side="left"))
+        local = (X - ends[element]) / (ends[element + 1] - ends[element])
+        weights = chebyshev.interpolation_matrix(grid.intervals, [local])
+        own = slice(element * (grid.intervals + 1), (element + 1) * (grid.intervals + 1))
+        quaternion = weights @ quaternions[own]
+        quaternion = quaternion / np.linalg.norm(quaternion)
+        return Pose(weights @ positions[own], rotations(quaternion), quaternion)
+
+    @cached_property
+    def _variations(self) -> Variations:
+        return variations(self.equations.nominal.model)
+
+    def _eigenvalues(self, y: FloatArray, jacobian: FloatArray, _bordered: FloatArray) -> FloatArray:
+        """Eigenvalues of the second variation over the motions that keep the contacts, see contact/verdict.py."""
+        z = self.scale * y[:-1]
+        size = self.equations.nominal.model.size
+        count = len(self.equations.nominal.force_units)
+        moved = self.equations.moved_strains(self.equations.parts(z)[2])
+        # Strains count per length of the rod, as where elements do not move.
+        scale, row_factors = self._scales
+        by_x = (jacobian / scale / row_factors[:, None])[:, :size] * moved
+        hessian = moved[:, None] * by_x[:size]
+        rows = by_x[size:]
+        held: list[FloatArray] = []
+        gaps = self.gaps(z, float(y[-1])) if count else {}
+        first = 0
+        for touch, ends, line in self.parts(z):
+            own = rows[first : first + len(ends) + len(touch.moving) + len(line)]
+            first += len(own)
+            if touch.is_line or not touch.moving:
+                held.extend(own)
+                continue
+            held.append(own[0])
+            _, _, bend = gaps[touch.rod, touch.obstacle].at(touch.start)
+            if bend <= FLAT:
+                held.append(own[1])
+            else:
+                hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
+        return admissible_eigenvalues(*restricted(hessian, held, self._variations))
