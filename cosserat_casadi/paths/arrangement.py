@@ -7,7 +7,7 @@ the positions of the nodes, which move with the places of contact: no model is b
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.settle import Found, found_at, pairs
+from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
 from cosserat_casadi.equilibrium.contact.verdict import FLAT
 from cosserat_casadi.equilibrium.solution import Pose, rotations
@@ -66,6 +67,11 @@ class Arrangement:
         """The contacts, where the equations start from."""
         return self.equations.state.touches
 
+    @property
+    def tolerance(self) -> float:
+        """Depth, pull and the like, relative, up to which it is valid."""
+        return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
+
     def inputs(self, load_factor: float) -> FloatArray:
         """Stacked inputs of the scene at a load factor."""
         return np.asarray(self.equations.given + load_factor * self.change)
@@ -81,14 +87,17 @@ class Arrangement:
         size = nominal.model.size
         forces = slice(size, size + len(nominal.force_units))
         inputs = self.inputs(self.load_factor)
-        load = float(np.linalg.norm(self.equations.rate(self.near, inputs, self.change)[:size]))
+        rate = self.equations.rate(self.near, inputs, self.change)
+        load = float(np.linalg.norm(rate[:size]))
         scale = np.ones(len(self.near))
+        # So that a strain counts as the angle by which its element turns, however wide that comes to be.
+        scale[:size] = 1.0 / self.equations.nominal_widths
         # Otherwise a strong load on a held rod would make a long way of small steps.
         scale[variations(nominal.model).held] = max(1.0, load)
         matrix = np.abs(self.equations.jacobian(self.near, inputs)) * scale
         rows = np.ones(len(matrix))
         for _ in range(EQUILIBRATIONS):
-            rows = 1.0 / matrix.max(axis=1)
+            rows = 1.0 / np.maximum(matrix.max(axis=1), np.abs(rate))
             columns = (rows[:, None] * matrix)[:, forces].max(axis=0)
             matrix[:, forces] /= columns
             scale[forces] /= columns
@@ -115,7 +124,9 @@ class Arrangement:
         monitor = DETERMINANT
         if self.potential:
             monitor = Monitor(self._eigenvalues, feels_limits=True)
-        return Curve(path, monitor, self.settings, rows, SINGULAR)
+        # To the last digit: of a short line a small residual leaves much of its forces open.
+        settings = replace(self.settings, aim=0.0)
+        return Curve(path, monitor, settings, rows, SINGULAR)
 
     def z(self, point: ArcPoint) -> FloatArray:
         """Unknowns, forces and places of a point."""

@@ -117,12 +117,13 @@ class Guard:
         at_start = margins(arrangement, arrangement.z(arc.start), arc.start.load_factor)
         at_end = margins(arrangement, arrangement.z(end), end.load_factor)
         first: ArcPoint | None = None
-        for key in violated(at_end):
+        for key in violated(at_end, arrangement.tolerance):
             before = at_start.get(key)
             if before is None or before.value <= 0.0:
+                # It was zero, to rounding, already where the step begins.
                 zero: ArcPoint | None = arc.start
             else:
-                zero = Arc(arc.curve, arc.start, end).zero(lambda point, key=key: self._value(point, key))  # type: ignore[misc]
+                zero = self._zero(Arc(arc.curve, arc.start, end), key)
             if zero is None:
                 return None
             if first is None or zero.length < first.length:
@@ -131,9 +132,14 @@ class Guard:
                 self.crossed = (key, X)
         return end if first is None else first
 
-    def _value(self, point: ArcPoint, key: Key) -> float:
-        found = margins(self.arrangement, self.arrangement.z(point), point.load_factor)
-        return found[key].value
+    def _zero(self, arc: Arc, key: Key) -> ArcPoint | None:
+        """Where a margin vanishes along a step."""
+
+        def value(point: ArcPoint) -> float:
+            found = margins(self.arrangement, self.arrangement.z(point), point.load_factor)
+            return found[key].value
+
+        return arc.zero(value)
 
 
 @dataclass
@@ -242,6 +248,8 @@ class Travel:
             arrangement = entry.arrangement
             beyond += 1
         touch = entry.change.touch
+        if entry.is_event:
+            touch = entry.arrangement.state(arrangement.z(point)).touches[entry.change.grows.number]
         self.events.append(
             PathEvent(
                 entry.change.kind,

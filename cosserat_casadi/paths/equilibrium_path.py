@@ -62,6 +62,17 @@ class PathEvent:
     contact: PathContact | None = None
 
 
+CONTACT_WORDS = {
+    "touch": "touch",
+    "lift_off": "lift-off",
+    "point_to_line": "point to line",
+    "line_to_point": "line to point",
+    "slide_to_tip": "slide to the tip",
+    "slide_from_tip": "slide from the tip",
+}
+"""Kinds of events that are changes of contact, in words."""
+
+
 @dataclass(frozen=True)
 class EquilibriumPath:
     """Equilibria of a model along one of its inputs.
@@ -116,6 +127,10 @@ class EquilibriumPath:
         """Stacked inputs at a factor."""
         change = factor * self.change
         return self.base + change
+
+    def contacts(self, index: int) -> tuple[PathContact, ...]:
+        """The contacts at a point of the path; none in a scene without obstacles."""
+        return ()
 
     def tip(self, rod: str | None = None) -> Pose:
         """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""

@@ -32,14 +32,14 @@ POLISHING = 4
 """Newton steps to the section that is nearest to an obstacle."""
 
 ROUNDING = 1e-9
-"""Margin below zero that is put down to rounding."""
+"""Difference of distances, over the length, that is put down to rounding."""
 
 
 class Watch(Enum):
     """What a margin is of."""
 
     GAP = "least distance of a rod from an obstacle, beside its contacts"
-    FORCE = "force at a point, or at an end of a line"
+    FORCE = "force at a point, or at an end of a line times its length"
     PRESSURE = "least force per length along a line"
     CURVATURE = "second derivative of the gap at a point: below zero the rod lies down"
     SLOPE = "fall of the gap towards a tip that touches: below zero a section inwards is nearer"
@@ -87,8 +87,10 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
         largest = max(largest, float(np.abs(ends).max()), float(np.abs(line).max(initial=0.0)))
     for number, (touch, ends, line) in enumerate(parts):
         pair = (touch.rod, touch.obstacle)
+        # What errors of the moment make of the forces of a short line is as large as it is short.
+        lever = touch.end - touch.start if touch.is_line else 1.0
         for end, (force, X) in enumerate(zip(ends, touch.ends, strict=True)):
-            found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) / largest, float(X))
+            found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
         if touch.moving:
             last = float(touch.moving[-1])
             found[Key(Watch.TO_TIP, number, pair)] = Margin(TIP - last - OPEN, last)
@@ -150,8 +152,8 @@ def _polished(gaps: GapsAlong, start: float, spacing: float) -> float:
     return X
 
 
-def violated(found: dict[Key, Margin]) -> Iterator[Key]:
-    """The margins below zero by more than rounding."""
+def violated(found: dict[Key, Margin], tolerance: float) -> Iterator[Key]:
+    """The margins below zero by more than a tolerance."""
     for key, margin in found.items():
-        if margin.value < -ROUNDING:
+        if margin.value < -tolerance:
             yield key

@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Plane, plane_through
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.arrangement import Arrangement
-from cosserat_casadi.paths.margins import OPEN, ROUNDING, Key, Watch, margins
+from cosserat_casadi.paths.margins import OPEN, Key, Watch, margins, violated
 
 WIDER = 2.0
 """Width, in units of the least one, with which a line or a distance from the tip begins."""
@@ -29,11 +29,8 @@ WIDER = 2.0
 PROBE = 1e-3
 """Step along the next arrangement that says which way leads into it."""
 
-MOST_PROBES = 12
-"""Steps, each twice as long, in search of where the next arrangement begins."""
-
-ENTERED = 1e-7
-"""Margin below zero at which an arrangement may begin."""
+MOST_PROBES = 40
+"""Steps in search of where the next arrangement begins: longer ones and, round corners, shorter ones."""
 
 
 @dataclass(frozen=True)
@@ -246,8 +243,9 @@ def _where_it_begins(arrangement: Arrangement, point: ArcPoint, grows: Key) -> A
     start = turned
     for _ in range(MOST_PROBES):
         end = _beside(arrangement, start, step)
-        if end is None:
-            return None
+        if end is None or end.tangent @ start.tangent < arrangement.settings.min_cosine:
+            step /= 2
+            continue
         passed = (_value(arrangement, end, grows) > 0.0) != back
         if passed:
             zero = Arc(arrangement.curve, start, end).zero(lambda p: _value(arrangement, p, grows))
@@ -265,4 +263,4 @@ def _is_valid(arrangement: Arrangement, point: ArcPoint) -> bool:
     if beyond is None:
         return False
     ahead = margins(arrangement, arrangement.z(beyond), beyond.load_factor)
-    return all(margin.value > -max(ENTERED, ROUNDING) for margin in ahead.values())
+    return not list(violated(ahead, arrangement.tolerance))

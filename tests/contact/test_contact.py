@@ -20,8 +20,6 @@ from cosserat_casadi import (
     discretise,
     export,
     export_page,
-    follow_path,
-    follow_scene_path,
     inverse,
     inverse_scene,
     linearise,
@@ -259,8 +257,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
     scene = parse_scene(TABLE)
     model = table.model
     uses: list[Callable[[], object]] = [
-        lambda: follow_path(model, "weight.acceleration", [0, 0, -9.81]),
-        lambda: follow_scene_path(scene, "weight.acceleration", [0, 0, -9.81]),
         lambda: inverse(model),
         lambda: inverse_scene(scene),
         lambda: simulate_scene(scene),

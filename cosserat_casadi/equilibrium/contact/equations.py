@@ -370,15 +370,23 @@ class ContactEquations:
 
         Strains of moved elements are counted per length that has moved; all other unknowns keep their values.
         """
+        return self._widths(p) / self.nominal_widths
+
+    @cached_property
+    def nominal_widths(self) -> FloatArray:
+        """Width of the element that each strain coordinate is of, where the equations start from; else 1, (n,)."""
+        return self._widths(self.state.places)
+
+    def _widths(self, p: FloatArray) -> FloatArray:
         model = self.nominal.model
-        factors = np.ones(model.size)
+        widths = np.ones(model.size)
         for name, rod in model.discrete.rods.items():
-            rates = np.diff(self.ends(name, p)) / np.diff(model.discretisation[name].breaks)
+            own = np.diff(self.ends(name, p))
             first = model.discrete.unknowns.strain(name).start
             for entries in rod.columns.values():
                 modes = (entries.stop - entries.start) // rod.grid.elements
-                factors[first + entries.start : first + entries.stop] = np.repeat(rates, modes)
-        return factors
+                widths[first + entries.start : first + entries.stop] = np.repeat(own, modes)
+        return widths
 
     def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
         """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
