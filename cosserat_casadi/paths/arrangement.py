@@ -15,7 +15,8 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
-from cosserat_casadi.equilibrium.contact.settle import Found, found_at, pairs
+from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
 from cosserat_casadi.equilibrium.contact.verdict import FLAT
@@ -23,6 +24,7 @@ from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, restricted, variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
@@ -35,6 +37,27 @@ EQUILIBRATIONS = 6
 
 SINGULAR = 1e-13
 """Singular value, relative to the largest, that is zero: a short line has some as small as the cube of its width."""
+
+
+ANGULAR = (0, 1, 2)
+"""Indices of the curvatures and the torsion among the strains."""
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of a rod.
+
+    Attributes:
+        positions: world axes, shape (M, 3), m.
+        rates: their derivatives with the coordinate that integrals run over, shape (M, 3), m.
+        quaternions: world_Q_section, shape (M, 4).
+        moments: internal moment in the sections' frames, shape (M, 3), N m.
+    """
+
+    positions: FloatArray
+    rates: FloatArray
+    quaternions: FloatArray
+    moments: FloatArray
 
 
 @dataclass(frozen=True)
@@ -153,30 +176,28 @@ class Arrangement:
 
     @cached_property
     def _poses(self) -> ca.Function:
-        """(x, f, p, inputs) ↦ of every rod positions, 3×M, their rates, 3×M, and quaternions, 4×M, at the nodes.
-
-        World axes; rates are those with the coordinate that integrals run over.
-        """
+        """(x, f, p, inputs) ↦ what :class:`Nodes` holds of every rod, one column a node."""
         written = self.equations.written
-        poses: list[Matrix] = []
+        results: list[Matrix] = []
         for name, shape in written.system.shapes.items():
             base = written.system.base(name)
             rotation = quaternion_to_matrix(base.quaternion)
             count = shape.rod.grid.size
             quaternions = ca.MX(ca.repmat(base.quaternion, 1, count))
-            poses.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
-            poses.append(rotation @ shape.tangent)
-            poses.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
-        return ca.Function("poses", written.arguments, poses)
+            results.append(ca.repmat(base.position, 1, count) + rotation @ shape.position)
+            results.append(rotation @ shape.tangent)
+            results.append(quaternion_product(quaternions, ca.densify(shape.quaternion)))
+            results.append(written.system.rods[name].statics.internal_wrench()[:3, :])
+        return ca.Function("poses", written.arguments, results)
 
-    def _nodes(self, z: FloatArray, load_factor: float) -> dict[str, tuple[FloatArray, FloatArray, FloatArray]]:
-        """Positions and their rates, shape (M, 3), and quaternions, shape (M, 4), of the nodes of every rod."""
+    def _nodes(self, z: FloatArray, load_factor: float) -> dict[str, Nodes]:
+        """The nodes of every rod."""
         outputs = self._poses(*self.equations.parts(z), self.inputs(load_factor))
         arrays = [output.full().T for output in outputs]
         nodes = {}
         for number, name in enumerate(self.equations.written.system.shapes):
-            positions, rates, quaternions = arrays[3 * number : 3 * number + 3]
-            nodes[name] = (positions, rates, quaternions)
+            positions, rates, quaternions, moments = arrays[4 * number : 4 * number + 4]
+            nodes[name] = Nodes(positions, rates, quaternions, moments)
         return nodes
 
     def ends(self, rod: str, z: FloatArray) -> FloatArray:
@@ -189,34 +210,59 @@ class Arrangement:
         gaps = {}
         for rod, obstacle in pairs(self.scene):
             discrete_rod = self.equations.nominal.model.discrete.rods[rod]
-            positions, rates, _ = nodes[rod]
             ends = self.ends(rod, z)
             # The rate with the abscissa, which moved elements stretch.
             moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
-            by_element = rates.reshape(discrete_rod.grid.elements, -1, 3)
+            by_element = (discrete_rod.grid.elements, -1, 3)
+            tangents = nodes[rod].rates.reshape(by_element) / moved[:, None, None]
             gaps[rod, obstacle.name] = GapsAlong(
                 rod=rod,
                 obstacle=obstacle,
                 ends=ends,
-                positions=positions.reshape(by_element.shape),
-                tangents=by_element / moved[:, None, None],
+                positions=nodes[rod].positions.reshape(by_element),
+                tangents=tangents,
+                bends=self._bends(rod, nodes[rod], tangents, ends),
                 radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
                 length=discrete_rod.properties.length,
             )
         return gaps
 
+    def _bends(self, rod: str, nodes: Nodes, tangents: FloatArray, ends: FloatArray) -> FloatArray:
+        """Second derivatives of the positions with X, shape (E, N + 1, 3), but for what lies along the tangent.
+
+        Curvature follows from the moment, which at the end of an element is known to more digits than the strain's
+        polynomial, a mean over the element. Under actuators the polynomial is taken.
+        """
+        discrete_rod = self.equations.nominal.model.discrete.rods[rod]
+        intervals = discrete_rod.grid.intervals
+        widths = np.diff(ends)[:, None, None]
+        if any(actuator.rod == rod for actuator in self.scene.actuators):
+            return np.asarray(chebyshev.differentiation_matrix(intervals) @ tangents / widths)
+        properties = discrete_rod.properties
+        local = chebyshev.nodes(intervals)
+        X = (ends[:-1, None] + np.diff(ends)[:, None] * local).ravel()
+        stiffness = np.broadcast_to(known(properties.hooke(X)), (len(X), 6))
+        curvature = np.array(known(properties.intrinsic_curvature(X)))
+        for axis in properties.admitted:
+            if axis in ANGULAR:
+                curvature[:, axis] += nodes.moments[:, axis] / stiffness[:, axis]
+        unit = nodes.quaternions / np.linalg.norm(nodes.quaternions, axis=1, keepdims=True)
+        in_world = np.einsum("kij,kj->ki", rotations(unit), curvature)
+        bends = properties.length * np.cross(in_world, tangents.reshape(-1, 3))
+        return np.asarray(bends.reshape(tangents.shape))
+
     def pose(self, z: FloatArray, load_factor: float, X: float, rod: str) -> Pose:
         """Pose of one section."""
-        positions, _, quaternions = self._nodes(z, load_factor)[rod]
+        nodes = self._nodes(z, load_factor)[rod]
         ends = self.ends(rod, z)
         grid = self.equations.nominal.model.discrete.rods[rod].grid
         element = int(np.searchsorted(ends[1:-1], X, side="left"))
         local = (X - ends[element]) / (ends[element + 1] - ends[element])
         weights = chebyshev.interpolation_matrix(grid.intervals, [local])
         own = slice(element * (grid.intervals + 1), (element + 1) * (grid.intervals + 1))
-        quaternion = weights @ quaternions[own]
+        quaternion = weights @ nodes.quaternions[own]
         quaternion = quaternion / np.linalg.norm(quaternion)
-        return Pose(weights @ positions[own], rotations(quaternion), quaternion)
+        return Pose(weights @ nodes.positions[own], rotations(quaternion), quaternion)
 
     @cached_property
     def _variations(self) -> Variations:

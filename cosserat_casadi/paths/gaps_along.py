@@ -22,6 +22,7 @@ class GapsAlong:
         ends: abscissae of the ends of its elements, shape (E + 1,).
         positions: of the nodes of each element, shape (E, N + 1, 3), m.
         tangents: their derivatives with X, shape (E, N + 1, 3), m.
+        bends: second derivatives, but for what lies along the tangent, shape (E, N + 1, 3), m.
         radii: of the sections at base and tip, between which the radius is linear, shape (2,), m.
         length: of the rod, m.
     """
@@ -31,6 +32,7 @@ class GapsAlong:
     ends: FloatArray
     positions: FloatArray
     tangents: FloatArray
+    bends: FloatArray
     radii: FloatArray
     length: float
 
@@ -64,7 +66,7 @@ class GapsAlong:
         weights = chebyshev.interpolation_matrix(self._intervals, [local])[0]
         position = weights @ self.positions[element]
         first = weights @ self.tangents[element]
-        second = weights @ chebyshev.differentiation_matrix(self._intervals) @ self.tangents[element] / width
+        second = weights @ self.bends[element]
         distance, gradient, hessian = (part.full() for part in surface(self.obstacle)(position))
         normal = gradient[:, 0]
         gap = float(distance[0, 0]) - float(self._radius(np.array(X)))

@@ -30,19 +30,15 @@ from cosserat_casadi import (
     simulate_scene,
     solve,
     solve_scene,
-    tune,
 )
 from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import embedded, stability_margin
-from cosserat_casadi.equilibrium.contact.gaps import gap_along
-from cosserat_casadi.equilibrium.contact.settle import pairs
+from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.view.session import opened
 from tests.conftest import CASES
 
@@ -266,13 +262,11 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
         lambda: linearise(table),
         lambda: export(model, tmp_path / "folder", "folder"),
         lambda: acados_expressions(model, "rod"),
-        lambda: tune(scene, [{}]),
         lambda: export_page(table, tmp_path / "page.html"),
         lambda: opened(table),
         lambda: stability_margin(model),
         lambda: embedded(model, table),
         lambda: make_plan(scene, None, None, None, quick=True),
-        lambda: plan_sweep(scene, table_of({"weight.acceleration.z": [-9.81]})),
     ]
     for use in uses:
         with pytest.raises(SceneError, match="does not look for contact"):
@@ -297,6 +291,21 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     check_forces_sum(harder, np.array([0.0, 0.0, -3.3]))
     # No load grows from zero once more: a few steps from the old contacts.
     assert harder.iterations < 10
+
+
+def test_from_a_solution_no_rod_passes_through_a_bar() -> None:
+    """Newton's method alone would end below the bar, where nothing touches."""
+    planar = ROD.replace('"kirchhoff"', '"planar"') + PUSH
+    bar = (
+        '[[obstacles]]\nname = "bar"\nkind = "capsule"\nfrom = [0.8, -1, -0.07]\nto = [0.8, 1, -0.07]\nradius = 0.05\n'
+    )
+    scene = parse_scene(planar + bar)
+    model = build(scene, discretise(scene, 4))
+    clear = solve(model, {"push.force": [0.0, 0.0, -0.02]})
+    assert clear.contacts == ()
+    pushed = solve(model, {"push.force": [0.0, 0.0, -0.5]}, start=clear)
+    assert [contact.obstacle for contact in pushed.contacts] == ["bar"]
+    check_complementary(pushed, 1e-6)
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids, Placed
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.projection import projected
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.solution import Solution
@@ -142,14 +142,6 @@ class Penetrated:
         if (touch.rod, touch.obstacle) != (self.rod, self.obstacle):
             return False
         return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
-
-
-def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
-    """Every rod with every obstacle that it must not enter."""
-    for rod in scene.rods:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name):
-                yield rod.name, obstacle
 
 
 @dataclass
