@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.passage import SECTIONS, is_inside_between
 from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
@@ -24,6 +25,7 @@ from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, restricted, variations
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -251,18 +253,26 @@ class Arrangement:
         bends = properties.length * np.cross(in_world, tangents.reshape(-1, 3))
         return np.asarray(bends.reshape(tangents.shape))
 
-    def pose(self, z: FloatArray, load_factor: float, X: float, rod: str) -> Pose:
-        """Pose of one section."""
+    def goes_through(self, start: ArcPoint, end: ArcPoint) -> bool:
+        """Whether a rod is inside an obstacle on the straight way from one point of the curve to another."""
+        for rod, obstacle in pairs(self.scene):
+            properties = self.equations.nominal.model.discrete.rods[rod].properties
+            start_positions, end_positions = (
+                self.poses(self.z(point), point.load_factor, SECTIONS, rod).position for point in (start, end)
+            )
+            if is_inside_between(obstacle, properties, start_positions, end_positions):
+                return True
+        return False
+
+    def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> Pose:
+        """Poses of sections at abscissae X."""
         nodes = self._nodes(z, load_factor)[rod]
-        ends = self.ends(rod, z)
-        grid = self.equations.nominal.model.discrete.rods[rod].grid
-        element = int(np.searchsorted(ends[1:-1], X, side="left"))
-        local = (X - ends[element]) / (ends[element + 1] - ends[element])
-        weights = chebyshev.interpolation_matrix(grid.intervals, [local])
-        own = slice(element * (grid.intervals + 1), (element + 1) * (grid.intervals + 1))
-        quaternion = weights @ nodes.quaternions[own]
-        quaternion = quaternion / np.linalg.norm(quaternion)
-        return Pose(weights @ nodes.positions[own], rotations(quaternion), quaternion)
+        breaks = self.equations.nominal.model.discretisation[rod].breaks
+        intervals = self.equations.nominal.model.discrete.rods[rod].grid.intervals
+        interpolation = Grid(breaks, intervals, tuple(self.ends(rod, z).tolist())).interpolation_matrix(X)
+        quaternions = interpolation @ nodes.quaternions
+        quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+        return Pose(interpolation @ nodes.positions, rotations(quaternions), quaternions)
 
     @cached_property
     def _variations(self) -> Variations:

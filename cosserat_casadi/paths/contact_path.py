@@ -75,7 +75,7 @@ class ContactPath(EquilibriumPath):
     def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
         """Pose of a rod's tip at an event, shapes (1, …)."""
         name = self.model.rod_name(rod)
-        return self.arrangements[event.arrangement].pose(event.x, event.factor, TIP, name)
+        return self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([TIP]), name)
 
     def position(self, X: float, rod: str | None = None) -> FloatArray:
         """Positions of a section at the k points of the path, shape (k, 3), m."""
@@ -86,7 +86,9 @@ class ContactPath(EquilibriumPath):
     def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
         """Position of a section at an event, shape (3,), m."""
         name = self.model.rod_name(rod)
-        return np.asarray(self.arrangements[event.arrangement].pose(event.x, event.factor, X, name).position[0])
+        return np.asarray(
+            self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([X]), name).position[0]
+        )
 
     def solution(self, index: int) -> Solution:
         """A point of the path as a solution with its contacts, judged as any other."""
@@ -96,7 +98,7 @@ class ContactPath(EquilibriumPath):
 
     def _pose(self, index: int, X: float, rod: str) -> Pose:
         arrangement: Arrangement = self.arrangements[self.arrangement[index]]
-        return arrangement.pose(self.x[index], float(self.factor[index]), X, rod)
+        return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
 
 
 @dataclass
@@ -130,7 +132,12 @@ class Guard:
                 first = zero
                 X = margins(arrangement, arrangement.z(zero), zero.load_factor)[key].X
                 self.crossed = (key, X)
-        return end if first is None else first
+        if first is not None:
+            return first
+        # It may have come out on the other side of a thin obstacle.
+        if arrangement.goes_through(arc.start, end):
+            return None
+        return end
 
     def _zero(self, arc: Arc, key: Key) -> ArcPoint | None:
         """Where a margin vanishes along a step."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
@@ -57,13 +58,26 @@ class GapsAlong:
         distances = distance_from(self.obstacle).map(X.size)(positions.reshape(-1, 3).T).full()[0]
         return np.asarray((distances.reshape(X.shape) - self._radius(X)) / self.length)
 
+    def distances(self, X: FloatArray) -> FloatArray:
+        """Distances at abscissae X, shape (k,)."""
+        elements, local = self._located(X)
+        weights = chebyshev.interpolation_matrix(self._intervals, local)
+        positions = np.einsum("kn,knj->kj", weights, self.positions[elements])
+        distances = distance_from(self.obstacle).map(len(X))(positions.T).full()[0]
+        return np.asarray((distances - self._radius(X)) / self.length)
+
+    def _located(self, X: FloatArray) -> tuple[npt.NDArray[np.int64], FloatArray]:
+        """The element of each abscissa, and the place in it, in [0, 1]; an end is of the element that it ends."""
+        elements = np.searchsorted(self.ends[1:-1], X, side="left").astype(np.int64)
+        widths = np.diff(self.ends)[elements]
+        # The ends of elements are places of contact: a place that was computed lies on one to the last digit.
+        return elements, np.clip((X - self.ends[elements]) / widths, 0.0, 1.0)
+
     def at(self, X: float) -> tuple[float, float, float]:
         """Distance and its first and second derivative with X, at an end of an element those from the base's side."""
-        element = int(np.searchsorted(self.ends[1:-1], X, side="left"))
-        width = self.ends[element + 1] - self.ends[element]
-        # The ends of elements are places of contact: a place that was computed lies on one to the last digit.
-        local = min((X - self.ends[element]) / width, 1.0)
-        weights = chebyshev.interpolation_matrix(self._intervals, [local])[0]
+        elements, local = self._located(np.array([X]))
+        element = elements[0]
+        weights = chebyshev.interpolation_matrix(self._intervals, local)[0]
         position = weights @ self.positions[element]
         first = weights @ self.tangents[element]
         second = weights @ self.bends[element]

@@ -28,8 +28,11 @@ NEAR = 0.01
 PER_ELEMENT = 48
 """Intervals between the abscissae of an element at which gaps are looked at."""
 
+NARROWINGS = 3
+"""Times that the section which is nearest to an obstacle is looked for more closely."""
+
 POLISHING = 4
-"""Newton steps to the section that is nearest to an obstacle."""
+"""Newton steps to it then."""
 
 ROUNDING = 1e-9
 """Difference of distances, over the length, that is put down to rounding."""
@@ -144,11 +147,22 @@ def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
 def _polished(gaps: GapsAlong, start: float, spacing: float) -> float:
     """Where the gap is least near an abscissa, which is nearer to it than a spacing."""
     X = start
+    reach = spacing
+    # Beside a thin obstacle the gap has a corner, almost: Newton's method needs to start close to it.
+    for _ in range(NARROWINGS):
+        around = np.clip(X + reach * np.linspace(-1.0, 1.0, 9), 0.0, TIP)
+        X = float(around[gaps.distances(around).argmin()])
+        reach /= 4
+    least, slope, curvature = gaps.at(X)
     for _ in range(POLISHING):
-        _, slope, curvature = gaps.at(X)
         if curvature <= 0.0:
-            return start
-        X = float(np.clip(X - slope / curvature, max(start - spacing, 0.0), min(start + spacing, TIP)))
+            return X
+        closer = float(np.clip(X - slope / curvature, max(X - reach, 0.0), min(X + reach, TIP)))
+        distance, slope, curvature = gaps.at(closer)
+        if distance > least:
+            return X
+        X = closer
+        least = distance
     return X
 
 

@@ -293,6 +293,48 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     assert harder.iterations < 10
 
 
+TAPERED = TABLE.replace(
+    "stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }\nlinear_density = 0.1",
+    "material = { youngs_modulus = 2e6, poisson_ratio = 0.45, density = 1100.0 }\n"
+    'section = { shape = "circle", radius = { base = 9e-3, tip = 5e-3 } }',
+).replace("-0.08]", "-0.12]")
+
+
+@pytest.mark.slow
+def test_heavy_tapered_rod_on_a_table() -> None:
+    """Its centre line comes to lie at the slope of its surface; stiffness and weight fall along the free span."""
+    tapered = solved(TAPERED, modes=11)
+    (contact,) = tapered.contacts
+
+    def radius(s: float) -> float:
+        return 9e-3 - 4e-3 * s / 1.2
+
+    def span(unknown: np.ndarray) -> np.ndarray:
+        length, moment, force = unknown
+
+        def rate(s: float, y: np.ndarray) -> list[float]:
+            _, theta, bending, shear = y
+            stiffness = 2e6 * np.pi / 4 * radius(s) ** 4
+            weight = 1100.0 * 9.81 * np.pi * radius(s) ** 2
+            return [np.sin(theta), bending / stiffness, -shear * np.cos(theta), weight]
+
+        start = [0.0, 0.0, moment, force]
+        return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        z, theta, bending, _ = span(unknown)
+        return np.array([z + 0.12 - radius(unknown[0]), np.sin(theta) + 4e-3 / 1.2, bending])
+
+    found = fsolve(missed, [0.41, -0.07, -0.7], xtol=1e-13)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)
+    assert_allclose(contact.start * 1.2, found[0], rtol=0, atol=1e-7)
+    # What lies on the table is straight and bears no shear: the reaction at lift-off is that of the free span.
+    assert_allclose(contact.ends[0], span(found)[3], rtol=1e-5, atol=0)
+    check_complementary(tapered, 1e-8)
+    volume = np.pi * 1.2 * (9e-3**2 + 9e-3 * 5e-3 + 5e-3**2) / 3
+    check_forces_sum(tapered, np.array([0.0, 0.0, -1100.0 * 9.81 * volume]))
+
+
 def test_from_a_solution_no_rod_passes_through_a_bar() -> None:
     """Newton's method alone would end below the bar, where nothing touches."""
     planar = ROD.replace('"kirchhoff"', '"planar"') + PUSH

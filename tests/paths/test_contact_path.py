@@ -221,6 +221,15 @@ def test_a_rod_is_drawn_over_a_bar() -> None:
     assert_allclose(path.contacts(slide.position - 1)[0].point_forces, [force], rtol=1e-7, atol=0)
 
 
+def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
+    thin = BAR.replace('inputs = ["rod.base.position"]', 'inputs = ["push.force"]').replace(
+        "radius = 0.05", "radius = 4e-3"
+    )
+    path = followed(thin.replace("-0.07]", "-0.21]"), "push.force", [0, 0, -3.0], 4)
+    assert [event.kind for event in path.events] == ["touch"]
+    assert path.contacts(-1)[0].obstacle == "bar"
+
+
 def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
     low = TABLE.replace("-0.08]", "-5.0]")
     bare = parse_scene(low[: low.index("[[obstacles]]")])
