@@ -27,7 +27,7 @@ class PathContact:
         start: abscissa X at which it begins.
         end: abscissa at which it ends; the same for a point.
         kind: "point" or "line".
-        point_forces: at the point, or at both ends of the line, along the normals there, N.
+        ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
     """
 
     obstacle: str
@@ -35,7 +35,7 @@ class PathContact:
     start: float
     end: float
     kind: str
-    point_forces: tuple[float, ...]
+    ends: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class PathEvent:
         multiplicity: independent directions in which the equilibrium is neutral there.
         position: index of the first point of the path that lies beyond it.
         arrangement: number of the arrangement of contacts that its unknowns belong to.
-        contact: the contact that changes, as it is there, but for its forces.
+        contact: the contact that changes, as it is there; None where none does.
     """
 
     kind: str

@@ -101,7 +101,7 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
         # Of scenes without obstacles there is nothing to say.
         if path.model.scene.obstacles:
             entry["contacts"] = [
-                {**_contact_entry(contact), "point_forces": contact.point_forces} for contact in path.contacts(index)
+                {**_contact_entry(contact), "point_forces": contact.ends} for contact in path.contacts(index)
             ]
         entries.append(entry)
     return entries

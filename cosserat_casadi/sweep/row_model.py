@@ -9,13 +9,13 @@ from functools import lru_cache
 import numpy as np
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
-from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.scene import parse_scene
+from cosserat_casadi.sweep.outcome_table import ENDINGS
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def result_row(solution: Solution, width: int, *, stability: bool = False) -> Fl
         stability: whether it ends with the stability of the equilibrium, NaN where the loads have no potential.
     """
     row = np.full(width, np.nan)
-    outcome = OUTCOMES.index(solution.outcome)
+    outcome = ENDINGS.index(solution.outcome)
     row[: len(JUDGED)] = (outcome, solution.iterations, solution.residual_norm)
     if not solution.converged:
         return row

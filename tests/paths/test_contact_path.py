@@ -96,12 +96,13 @@ def span(length: float, curvature: float, force: float, weight: float) -> np.nda
         return [np.cos(theta), np.sin(theta), kappa, -(force + weight * s) * np.cos(theta) / BENDING]
 
     start = [0.0, 0.0, 0.0, curvature]
-    return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
 
 
 def root(missed: object, guess: list[float]) -> np.ndarray:
-    found = fsolve(missed, guess, xtol=1e-13)
-    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-9)  # type: ignore[operator]
+    # What it says of its progress at the last digits is no matter: the root is held against the equations.
+    found, *_ = fsolve(missed, guess, xtol=1e-13, full_output=True)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)  # type: ignore[operator]
     return np.asarray(found)
 
 
@@ -129,7 +130,7 @@ def test_a_rod_comes_to_lie_on_a_table(lowered: ContactPath) -> None:
     assert lies_down.contact is not None
     assert (lies_down.contact.obstacle, lies_down.contact.start) == ("table", 1.0)
     before = lies_down.position - 1
-    assert_allclose(lowered.contacts(before)[0].point_forces, [reaction], rtol=1e-7, atol=0)
+    assert_allclose(lowered.contacts(before)[0].ends, [reaction], rtol=1e-7, atol=0)
     (line,) = lowered.contacts(-1)
     assert (line.kind, line.end) == ("line", 1.0)
 
@@ -177,7 +178,7 @@ def test_a_tip_that_is_lifted(lifted: ContactPath) -> None:
         *_, kappa = span(LENGTH, curvature, force - WEIGHT * LENGTH, WEIGHT)
         return [z + HEIGHT, theta, kappa]
 
-    force, _, place = root(letting_go, [0.6, -1.5, 0.43])
+    force, _, place = root(letting_go, [0.6, -3.1, 0.43])
     assert_allclose(0.8 * lets_go.factor, force, rtol=1e-8, atol=0)
     assert lets_go.contact is not None
     assert_allclose(lets_go.contact.start * LENGTH, place, rtol=1e-7, atol=0)
@@ -208,7 +209,7 @@ def test_a_rod_is_drawn_over_a_bar() -> None:
         def shape(end: float) -> np.ndarray:
             nonlocal angle
             angle = end
-            return solve_ivp(rate, (0, 1), [-shift, 0, 0, curvature], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+            return solve_ivp(rate, (0, 1), [-shift, 0, 0, curvature], method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
 
         angle = 0.0
         angle = brentq(lambda end: shape(end)[2] - end, -1.0, 0.5, xtol=1e-14)
@@ -218,7 +219,7 @@ def test_a_rod_is_drawn_over_a_bar() -> None:
     shift, _, force = root(at_tip, [0.195, -0.1, 3.0])
     assert_allclose(0.25 * slide.factor, shift, rtol=1e-8, atol=0)
     assert_allclose(path.contacts(slide.position)[0].start, 1.0, rtol=0, atol=0)
-    assert_allclose(path.contacts(slide.position - 1)[0].point_forces, [force], rtol=1e-7, atol=0)
+    assert_allclose(path.contacts(slide.position - 1)[0].ends, [force], rtol=1e-7, atol=0)
 
 
 def test_no_step_takes_a_rod_through_a_thin_wire() -> None:

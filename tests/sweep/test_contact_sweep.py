@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, parse_scene, solve, sweep_scene, tune
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.outcome_file import read_sweep
+from cosserat_casadi.sweep.outcome_table import LABELS
 from cosserat_casadi.sweep.row_model import RowModel
 from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.sweep.variants import variants_of
@@ -63,6 +66,19 @@ def test_a_row_starts_from_the_row_before(monkeypatch: pytest.MonkeyPatch) -> No
     RowModel(SCENE).solve(np.array([[0.0, 0.0, -0.5], [0.0, 0.0, -0.6]]))
     assert starts[0] is None
     assert starts[1].contacts[0].obstacle == "bar"
+
+
+def test_a_row_whose_contacts_are_not_found_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    unsettled = Outcome.CONTACT_UNSETTLED
+
+    def lost(model, inputs, start=None):  # type: ignore[no-untyped-def]
+        return replace(solve(model, inputs), outcome=unsettled, message=unsettled.value)
+
+    monkeypatch.setattr("cosserat_casadi.sweep.row_model.solve", lost)
+    ((ended, *rest),) = RowModel(SCENE).solve(np.array([[0.0, 0.0, -0.01]])).tolist()
+    assert LABELS[int(ended)] == "contact_unsettled"
+    # Nothing of what was not found is told.
+    assert np.all(np.isnan(rest[2:]))
 
 
 @pytest.mark.slow
