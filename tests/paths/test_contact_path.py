@@ -229,6 +229,9 @@ def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
     path = followed(thin.replace("-0.07]", "-0.21]"), "push.force", [0, 0, -3.0], 4)
     assert [event.kind for event in path.events] == ["touch"]
     assert path.contacts(-1)[0].obstacle == "bar"
+    # How the point slides as the rod moves is part of the second variation.
+    assert path.smallest_eigenvalue is not None
+    assert_allclose(path.smallest_eigenvalue[-1], path.solution(-1).smallest_eigenvalue, rtol=1e-9, atol=0)
 
 
 def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
