@@ -122,10 +122,10 @@ class Arrangement:
         matrix = np.abs(self.equations.jacobian(self.near, inputs)) * scale
         rows = np.ones(len(matrix))
         for _ in range(EQUILIBRATIONS):
-            rows = 1.0 / np.maximum(matrix.max(axis=1), np.abs(rate))
-            columns = (rows[:, None] * matrix)[:, forces].max(axis=0)
-            matrix[:, forces] /= columns
-            scale[forces] /= columns
+            rows = _inverse(np.maximum(matrix.max(axis=1), np.abs(rate)))
+            columns = _inverse((rows[:, None] * matrix)[:, forces].max(axis=0))
+            matrix[:, forces] *= columns
+            scale[forces] *= columns
         # A force that tells counts relative to the load, as those of supports do.
         scale[forces] = np.maximum(scale[forces], max(1.0, load))
         return scale, rows
@@ -305,3 +305,8 @@ class Arrangement:
             else:
                 hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
         return admissible_eigenvalues(*restricted(hessian, held, self._variations))
+
+
+def _inverse(sizes: FloatArray) -> FloatArray:
+    """What makes rows or columns of these sizes as large as one; those without entries stay as they are."""
+    return np.asarray(1.0 / np.where(sizes > 0.0, sizes, 1.0))

@@ -109,8 +109,8 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
     else:
         for option in instead_of_pulling(touch):
             following = ContactState.of([*others, *option])
-            grows = Key(Watch.GAP, -1, key.pair)
-            yield Change("line_to_point", touch, following, grows)
+            kind = "slide_from_tip" if any(other.is_line for other in option) else "line_to_point"
+            yield Change(kind, touch, following, Key(Watch.GAP, -1, key.pair))
 
 
 def _number(state: ContactState, touch: Touch) -> int:
