@@ -23,7 +23,7 @@ from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.arrangement import Arrangement
 from cosserat_casadi.paths.margins import OPEN, Key, Watch, margins, violated
 
-WIDER = 2.0
+WIDER = 4.0
 """Width, in units of the least one, with which a line or a distance from the tip begins."""
 
 PROBE = 1e-3
