@@ -38,7 +38,8 @@ from cosserat_casadi.motion.simulate import simulate
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.page.page import export_page
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent, follow_path
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.follow import follow_path
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.paths.trace import PathOutcome
 from cosserat_casadi.results.identification_file import identification_result

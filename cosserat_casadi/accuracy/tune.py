@@ -12,7 +12,6 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.accuracy.refine import solve_scene
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.load_cases import CaseLayout, case_layout
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.rod.discretisation import Discretisation
 from cosserat_casadi.scene.writing import scene_tables
 
@@ -64,7 +63,6 @@ def tune(
     Raises:
         SceneError: a value or the tolerance is refused.
     """
-    refuse_obstacles(scene, "a choice of modes for many cases")
     if tolerance is None:
         tolerance = scene.accuracy.tolerance
     layout = case_layout(scene)

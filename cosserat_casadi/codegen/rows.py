@@ -18,6 +18,7 @@ from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, ren
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
+from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -31,6 +32,9 @@ JUDGED = ("outcome", "iterations", "residual")
 
 STABILITY = ("smallest_eigenvalue", "stable")
 """Last columns of a row of results, where they are asked for: in units of EI/ℓ; 1 where it is stable, else 0."""
+
+CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
+"""Columns of a rod and an obstacle: number of contacts, abscissae between which they lie, their resultant (N)."""
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
@@ -142,7 +146,7 @@ def to_compile(files: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
 
 
 def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
-    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert.
+    """Names of the columns of a row of results: how it ended, poses of tips and bodies, what actuators exert, contacts.
 
     Args:
         scene: what is solved.
@@ -151,7 +155,8 @@ def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
     states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
-    return (*JUDGED, *poses, *states, *(STABILITY if stability else ()))
+    contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
+    return (*JUDGED, *poses, *states, *contacts, *(STABILITY if stability else ()))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:

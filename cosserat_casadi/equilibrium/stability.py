@@ -6,7 +6,7 @@ Wright, *Numerical Optimization*, 2nd ed., Springer 2006, section 16.2.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -144,6 +144,23 @@ def _null_space(constraints: FloatArray) -> FloatArray:
     independent = singular > DEPENDENT * singular[0]
     rank = int(np.sum(independent))
     return np.asarray(rows[rank:].T)
+
+
+def restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations) -> tuple[FloatArray, Variations]:
+    """A Jacobian with further rows that restrict the variations.
+
+    Args:
+        jacobian: as in :func:`second_variation`.
+        held: rows of the linearised constraints, shape (n + m,) each.
+        allowed: as there.
+    """
+    size = len(jacobian)
+    bordered = np.zeros((size + len(held), size + len(held)))
+    bordered[:size, :size] = jacobian
+    if held:
+        bordered[size:, :size] = held
+    further = np.arange(size, size + len(held), dtype=np.int64)
+    return bordered, replace(allowed, held=np.concatenate([allowed.held, further]))
 
 
 def stability_of(eigenvalues: FloatArray) -> Stability:

@@ -37,7 +37,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
 
     Args:
         scene: the scene.
-        what: what is asked of it, such as "a path".
+        what: what is asked of it, such as "a motion".
 
     Raises:
         SceneError: the scene has obstacles.

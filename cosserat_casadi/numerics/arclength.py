@@ -60,11 +60,11 @@ class Monitor:
     """Numbers that change sign where branches meet.
 
     Attributes:
-        values: (jacobian n×n, bordered (n+1)×(n+1)) ↦ real numbers in ascending order.
+        values: (y of length n + 1, jacobian n×n, bordered (n+1)×(n+1)) ↦ real numbers in ascending order.
         feels_limits: whether one of them changes sign at a limit point too.
     """
 
-    values: Callable[[FloatArray, FloatArray], FloatArray]
+    values: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
     feels_limits: bool
 
 
@@ -147,11 +147,16 @@ class Curve:
         path: equations that depend on a load factor.
         monitor: what is watched.
         settings: limits.
+        rows: what each equation is multiplied by where linear systems are solved, shape (n,); None where all are of one
+            size. Residuals are measured without.
+        singular: share of the largest singular value below which one is zero to rounding.
     """
 
     path: Path
     monitor: Monitor
     settings: ArcSettings
+    rows: FloatArray | None = None
+    singular: float = SINGULAR
 
     def residual(self, y: FloatArray) -> FloatArray:
         """Residual g(y), shape (n,)."""
@@ -160,22 +165,25 @@ class Curve:
         return self.path.residual(x, load_factor)
 
     def derivative(self, y: FloatArray) -> FloatArray:
-        """Derivative ∂g/∂y, shape (n, n + 1)."""
+        """Derivative ∂g/∂y, its rows multiplied, shape (n, n + 1)."""
         x = y[:-1]
         load_factor = float(y[-1])
         jacobian = dense(self.path.jacobian(x, load_factor))
         rate = self.path.rate(x, load_factor)
-        return np.column_stack([jacobian, rate])
+        derivative = np.column_stack([jacobian, rate])
+        if self.rows is None:
+            return derivative
+        return np.asarray(self.rows[:, None] * derivative)
 
     def point(self, y: FloatArray, direction: FloatArray, length: float) -> ArcPoint | None:
         """The point at y, its tangent on the side of a direction; None where a number is not finite."""
         derivative = self.derivative(y)
-        tangent = tangent_along(derivative, direction)
+        tangent = tangent_along(derivative, direction, self.singular)
         if tangent is None:
             return None
         jacobian = derivative[:, :-1]
         bordered = np.vstack([derivative, tangent])
-        spectrum = self.monitor.values(jacobian, bordered)
+        spectrum = self.monitor.values(y, jacobian, bordered)
         return ArcPoint(y, tangent, length, spectrum)
 
     def correct(self, start: FloatArray, plane: Plane) -> Correction | None:
@@ -196,8 +204,8 @@ class Curve:
         norm_before = np.inf
         for steps in range(limits.reject_above + 1):
             off_plane = plane.normal @ y - plane.level
-            residual = np.append(self.residual(y), off_plane)
-            norm = relative_norm(residual, y)
+            off_curve = self.residual(y)
+            norm = relative_norm(np.append(off_curve, off_plane), y)
             if not np.isfinite(norm):
                 return None
             within_tolerance = norm <= limits.tolerance
@@ -206,7 +214,9 @@ class Curve:
             if norm <= limits.aim or helps_no_more:
                 return Correction(y, steps)
             bordered = np.vstack([self.derivative(y), plane.normal])
-            step = _shortest_step(bordered, residual)
+            if self.rows is not None:
+                off_curve = self.rows * off_curve
+            step = _shortest_step(bordered, np.append(off_curve, off_plane), self.singular)
             if step is None:
                 return None
             y = y + step
@@ -249,7 +259,7 @@ def plane_through(y: FloatArray, normal: FloatArray) -> Plane:
     return Plane(normal, float(level))
 
 
-def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray | None:
+def tangent_along(derivative: FloatArray, direction: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
     """Unit tangent of g(y) = 0: the direction, projected on the null space of ∂g/∂y.
 
     Where branches meet, or a symmetry leaves a neutral direction, that space has more than one dimension: the
@@ -258,11 +268,12 @@ def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray |
     Args:
         derivative: shape (n, n + 1).
         direction: shape (n + 1,).
+        singular: share of the largest singular value below which one is zero.
 
     Returns:
         shape (n + 1,); None where a number is not finite, or the direction is across the null space.
     """
-    basis = null_space(derivative)
+    basis = null_space(derivative, singular)
     if basis is None:
         return None
     projected = basis @ (basis.T @ direction)
@@ -272,22 +283,22 @@ def tangent_along(derivative: FloatArray, direction: FloatArray) -> FloatArray |
     return projected / length
 
 
-def null_space(derivative: FloatArray) -> FloatArray | None:
+def null_space(derivative: FloatArray, singular: float = SINGULAR) -> FloatArray | None:
     """Orthonormal basis of the null space of ∂g/∂y to rounding, shape (n + 1, k) with k ≥ 1; None if not finite."""
     if not np.all(np.isfinite(derivative)):
         return None
-    _, singular, rows = np.linalg.svd(derivative)
-    largest = float(singular.max(initial=0.0))
-    rounding = SINGULAR * max(largest, 1e-300)
-    rank = int(np.sum(singular > rounding))
+    _, values, rows = np.linalg.svd(derivative)
+    largest = float(values.max(initial=0.0))
+    rounding = singular * max(largest, 1e-300)
+    rank = int(np.sum(values > rounding))
     return np.asarray(rows[rank:].T)
 
 
-def _shortest_step(matrix: FloatArray, residual: FloatArray) -> FloatArray | None:
+def _shortest_step(matrix: FloatArray, residual: FloatArray, singular: float) -> FloatArray | None:
     """Newton's step; singular values at rounding are left out, so that a neutral direction is not moved along."""
     if not np.all(np.isfinite(matrix)):
         return None
-    solution = np.linalg.lstsq(matrix, -residual, rcond=SINGULAR)[0]
+    solution = np.linalg.lstsq(matrix, -residual, rcond=singular)[0]
     step = np.asarray(solution)
     if not np.all(np.isfinite(step)):
         return None

@@ -156,7 +156,7 @@ def events_between(arc: Arc) -> list[Event] | None:
     return sorted(events, key=lambda event: event.point.length)
 
 
-def signed_singular_value(jacobian: FloatArray, bordered: FloatArray) -> FloatArray:
+def signed_singular_value(_y: FloatArray, _jacobian: FloatArray, bordered: FloatArray) -> FloatArray:
     """Smallest singular value of the bordered matrix with the sign of its determinant, shape (1,)."""
     smallest = np.linalg.norm(bordered, -2)
     determinant_sign = float(np.linalg.slogdet(bordered)[0])

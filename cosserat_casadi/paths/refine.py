@@ -17,10 +17,10 @@ from cosserat_casadi.accuracy.levels import seeing_modes
 from cosserat_casadi.accuracy.metrics import ROUNDING, largest_turn
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.arclength import ArcSettings
 from cosserat_casadi.numerics.progress import Progress, Report
-from cosserat_casadi.paths.follow import EquilibriumPath, follow_path
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
+from cosserat_casadi.paths.follow import follow_path
 from cosserat_casadi.paths.trace import PathOutcome
 
 MODES = (6, 9, 12, 16, 21, 28, 36)
@@ -82,7 +82,6 @@ def follow_scene_path(
             progress=progress,
         )
 
-    refuse_obstacles(scene, "a path")
     scene = scene.baked()
     accuracy = scene.accuracy
     fixed = accuracy.modes is not None or accuracy.nodes is not None

@@ -5,6 +5,7 @@ See docs/theory.md, section 12.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -28,6 +29,10 @@ AWAY = 4
 """Steps that a path must be long before coming near its start closes it."""
 
 
+Guard = Callable[[Arc, ArcPoint], ArcPoint | None]
+"""What may end a step early."""
+
+
 class PathOutcome(Enum):
     """Every way a path can end. Only CONVERGED has reached factor 1."""
 
@@ -39,6 +44,7 @@ class PathOutcome(Enum):
     CLOSED = "The path is closed: it came back to its start without reaching factor 1."
     NO_BIFURCATION = "No branch: the path reached factor 1 before the bifurcation to leave at."
     NO_BRANCH = "No branch: none was found at the bifurcation."
+    CONTACT_UNSETTLED = "The path could not be followed further: no arrangement of contacts was found to go on with."
     UNRESOLVED = (
         "The path of the discrete model reached its end, but the rod is not resolved to the tolerance asked for: "
         "fix more modes and nodes, or allow a larger tolerance."
@@ -90,7 +96,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) ->
         leave_at = 0
         if traced.branch is None:
             leave_at = branch
-        step = _extend(curve, traced, step, leave_at)
+        step = extend(curve, traced, step, leave_at)
         reached = min(traced.points[-1].load_factor, 1.0)
         largest = max(largest, reached)
         if progress is not None:
@@ -101,7 +107,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) ->
     return traced
 
 
-def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
+def extend(curve: Curve, traced: Trace, step: float, leave_at: int, guard: Guard | None = None) -> float:
     """Try one step and add what it passes to a trace.
 
     Args:
@@ -109,6 +115,8 @@ def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
         traced: what has been computed of it.
         step: arclength to try.
         leave_at: as ``branch`` of :func:`trace`.
+        guard: (step, its end) ↦ the point at which to stop within it, by default its end; None where the step is too
+            long to say.
 
     Returns:
         the step to try next.
@@ -126,6 +134,11 @@ def _extend(curve: Curve, traced: Trace, step: float, leave_at: int) -> float:
 
     # A step may pass the load factor 1; what lies beyond is not asked for.
     end = _end(arc)
+    if guard is not None:
+        guarded = guard(arc, end)
+        if guarded is None:
+            return _halved(traced, step, limits.shortest)
+        end = guarded
     # In a very short step events that stay together are left out: the path is worth more than they.
     passed = [event for event in events or [] if event.point.length <= end.length]
     departure = _departure(traced, passed, abs(leave_at))

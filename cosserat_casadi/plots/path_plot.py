@@ -13,13 +13,25 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 from cosserat_casadi.plots.canvas import AXIS_NAMES
 from cosserat_casadi.plots.colours import AXES, FAILURE, PLAIN_TEXT
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 
-MARKERS = {"limit": ("o", "limit point"), "bifurcation": ("D", "bifurcation")}
-"""Marker and words of each kind of event."""
+MARKERS = {
+    "limit": "o",
+    "bifurcation": "D",
+    "touch": "v",
+    "lift_off": "^",
+    "point_to_line": "s",
+    "line_to_point": "P",
+    "slide_to_tip": ">",
+    "slide_from_tip": "<",
+}
+"""Marker of each kind of event."""
+
+WORDS = {"limit": "limit point", "bifurcation": "bifurcation", **CONTACT_WORDS}
+"""Its words."""
 
 STABLE = 0
 UNSTABLE = 1
@@ -157,11 +169,11 @@ def _mark_events(axes: Any, path: EquilibriumPath, section: _Section, component:
 
 
 def _event_marker(event: PathEvent) -> str:
-    return MARKERS[event.kind][0]
+    return MARKERS[event.kind]
 
 
 def _event_label(event: PathEvent) -> str:
-    return MARKERS[event.kind][1]
+    return WORDS[event.kind]
 
 
 def _stability(path: EquilibriumPath) -> FloatArray:
@@ -198,7 +210,7 @@ def _input_value(path: EquilibriumPath) -> str:
 def _subtitle(path: EquilibriumPath) -> str:
     if not path.converged:
         return path.message
-    events = [f"{event.kind} at {event.factor:.6g}" for event in path.events[:3]]
+    events = [f"{CONTACT_WORDS.get(event.kind, event.kind)} at {event.factor:.6g}" for event in path.events[:3]]
     return "; ".join(events) or "no limit, no bifurcation"
 
 

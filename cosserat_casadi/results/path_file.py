@@ -9,7 +9,7 @@ from typing import Any
 
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -93,23 +93,42 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
     rods = _rods_along(path)
     entries = []
     for index, factor in enumerate(path.factor):
-        entry = {
+        entry: dict[str, Any] = {
             "factor": float(factor),
             **_stability_entry(path, index),
             "rods": {name: points.entry(index) for name, points in rods.items()},
         }
+        # Of scenes without obstacles there is nothing to say.
+        if path.model.scene.obstacles:
+            entry["contacts"] = [
+                {**_contact_entry(contact), "point_forces": contact.ends} for contact in path.contacts(index)
+            ]
         entries.append(entry)
     return entries
 
 
 def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
     rods = _rods_at_event(path, event)
-    return {
+    entry = {
         "kind": event.kind,
         "factor": event.factor,
         "multiplicity": event.multiplicity,
         "before": event.position,
         "rods": {name: points.entry(0) for name, points in rods.items()},
+    }
+    if event.contact is not None:
+        entry["contact"] = _contact_entry(event.contact)
+    return entry
+
+
+def _contact_entry(contact: PathContact) -> dict[str, Any]:
+    """Where and how a rod touches an obstacle."""
+    return {
+        "obstacle": contact.obstacle,
+        "rod": contact.rod,
+        "from": contact.start,
+        "to": contact.end,
+        "kind": contact.kind,
     }
 
 

@@ -35,7 +35,8 @@ def argument_columns(
         chosen: those among them that are no inputs.
         values: of the table, shape (rows, columns).
     """
-    if len(values) < COMPILED_FROM:
+    # Rows of scenes with obstacles are not compiled.
+    if len(values) < COMPILED_FROM or tables.get("obstacles"):
         return []
     # A column of one value is a constant, which costs nothing.
     varying = [k for k in chosen if np.ptp(values[:, k]) > 0.0]

@@ -11,8 +11,12 @@ import numpy.typing as npt
 
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
 
-LABELS = tuple(outcome.label for outcome in OUTCOMES)
+ENDINGS = (*OUTCOMES, Outcome.CONTACT_UNSETTLED)
+"""How rows end: as the solver in C does, or as rows in contact do, which are solved in Python."""
+
+LABELS = tuple(outcome.label for outcome in ENDINGS)
 """Words of the column ``outcome``."""
 
 

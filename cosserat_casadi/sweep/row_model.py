@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
-from cosserat_casadi.codegen.status import OUTCOMES
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.scene import parse_scene
+from cosserat_casadi.sweep.outcome_table import ENDINGS
 
 
 @dataclass(frozen=True)
@@ -33,9 +35,13 @@ class RowModel:
         model = _model(self.scene)
         width = len(row_results(model.scene, stability=self.stability))
         rows = []
+        near: Solution | None = None
         for row in inputs:
-            # From the unloaded scene each: what a row gives must not depend on those before.
-            solution = solve(model, model.inputs.unpack(row))
+            # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
+            # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
+            solution = solve(model, model.inputs.unpack(row), start=near)
+            if model.scene.obstacles and solution.converged:
+                near = solution
             rows.append(result_row(solution, width, stability=self.stability))
         return np.array(rows).reshape(len(inputs), width)
 
@@ -49,7 +55,7 @@ def result_row(solution: Solution, width: int, *, stability: bool = False) -> Fl
         stability: whether it ends with the stability of the equilibrium, NaN where the loads have no potential.
     """
     row = np.full(width, np.nan)
-    outcome = OUTCOMES.index(solution.outcome)
+    outcome = ENDINGS.index(solution.outcome)
     row[: len(JUDGED)] = (outcome, solution.iterations, solution.residual_norm)
     if not solution.converged:
         return row
@@ -63,11 +69,22 @@ def result_row(solution: Solution, width: int, *, stability: bool = False) -> Fl
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
+    for rod, obstacle in pairs(scene):
+        own = [contact for contact in solution.contacts if (contact.rod, contact.obstacle) == (rod, obstacle.name)]
+        numbers += contact_numbers(own)
     if stability:
         judged = (solution.smallest_eigenvalue, solution.stable)
         numbers += [np.nan if number is None else float(number) for number in judged]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
+
+
+def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
+    """Number of the contacts of a rod with an obstacle, where they begin and end, NaN without any, their resultant."""
+    first = min((contact.start for contact in contacts), default=np.nan)
+    last = max((contact.end for contact in contacts), default=np.nan)
+    resultant = sum((contact.force for contact in contacts), start=np.zeros(3))
+    return [float(len(contacts)), first, last, *resultant.tolist()]
 
 
 @lru_cache(maxsize=2)

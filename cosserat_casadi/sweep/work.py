@@ -80,7 +80,9 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk
     listed: list[Chunk] = []
     modelled = []
     for index, entry in enumerate(variants.entries):
-        if len(entry.rows) < compiled_from and variants.parameters and not variants.arguments:
+        few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
+        # Compiled C does not look for contact.
+        if few or entry.scene.obstacles:
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):

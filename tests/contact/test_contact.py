@@ -20,8 +20,6 @@ from cosserat_casadi import (
     discretise,
     export,
     export_page,
-    follow_path,
-    follow_scene_path,
     inverse,
     inverse_scene,
     linearise,
@@ -32,19 +30,15 @@ from cosserat_casadi import (
     simulate_scene,
     solve,
     solve_scene,
-    tune,
 )
 from cosserat_casadi.bench.plan import make_plan
 from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import embedded, stability_margin
-from cosserat_casadi.equilibrium.contact.gaps import gap_along
-from cosserat_casadi.equilibrium.contact.settle import pairs
+from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result
-from cosserat_casadi.sweep.run import plan_sweep
-from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.view.session import opened
 from tests.conftest import CASES
 
@@ -259,8 +253,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
     scene = parse_scene(TABLE)
     model = table.model
     uses: list[Callable[[], object]] = [
-        lambda: follow_path(model, "weight.acceleration", [0, 0, -9.81]),
-        lambda: follow_scene_path(scene, "weight.acceleration", [0, 0, -9.81]),
         lambda: inverse(model),
         lambda: inverse_scene(scene),
         lambda: simulate_scene(scene),
@@ -270,13 +262,11 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
         lambda: linearise(table),
         lambda: export(model, tmp_path / "folder", "folder"),
         lambda: acados_expressions(model, "rod"),
-        lambda: tune(scene, [{}]),
         lambda: export_page(table, tmp_path / "page.html"),
         lambda: opened(table),
         lambda: stability_margin(model),
         lambda: embedded(model, table),
         lambda: make_plan(scene, None, None, None, quick=True),
-        lambda: plan_sweep(scene, table_of({"weight.acceleration.z": [-9.81]})),
     ]
     for use in uses:
         with pytest.raises(SceneError, match="does not look for contact"):
@@ -301,6 +291,63 @@ def test_from_a_solution_the_contacts_are_tried_first(bars: Solution) -> None:
     check_forces_sum(harder, np.array([0.0, 0.0, -3.3]))
     # No load grows from zero once more: a few steps from the old contacts.
     assert harder.iterations < 10
+
+
+TAPERED = TABLE.replace(
+    "stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }\nlinear_density = 0.1",
+    "material = { youngs_modulus = 2e6, poisson_ratio = 0.45, density = 1100.0 }\n"
+    'section = { shape = "circle", radius = { base = 9e-3, tip = 5e-3 } }',
+).replace("-0.08]", "-0.12]")
+
+
+@pytest.mark.slow
+def test_heavy_tapered_rod_on_a_table() -> None:
+    """Its centre line comes to lie at the slope of its surface; stiffness and weight fall along the free span."""
+    tapered = solved(TAPERED, modes=11)
+    (contact,) = tapered.contacts
+
+    def radius(s: float) -> float:
+        return 9e-3 - 4e-3 * s / 1.2
+
+    def span(unknown: np.ndarray) -> np.ndarray:
+        length, moment, force = unknown
+
+        def rate(s: float, y: np.ndarray) -> list[float]:
+            _, theta, bending, shear = y
+            stiffness = 2e6 * np.pi / 4 * radius(s) ** 4
+            weight = 1100.0 * 9.81 * np.pi * radius(s) ** 2
+            return [np.sin(theta), bending / stiffness, -shear * np.cos(theta), weight]
+
+        start = [0.0, 0.0, moment, force]
+        return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        z, theta, bending, _ = span(unknown)
+        return np.array([z + 0.12 - radius(unknown[0]), np.sin(theta) + 4e-3 / 1.2, bending])
+
+    found = fsolve(missed, [0.41, -0.07, -0.7], xtol=1e-13)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)
+    assert_allclose(contact.start * 1.2, found[0], rtol=0, atol=1e-7)
+    # What lies on the table is straight and bears no shear: the reaction at lift-off is that of the free span.
+    assert_allclose(contact.ends[0], span(found)[3], rtol=1e-5, atol=0)
+    check_complementary(tapered, 1e-8)
+    volume = np.pi * 1.2 * (9e-3**2 + 9e-3 * 5e-3 + 5e-3**2) / 3
+    check_forces_sum(tapered, np.array([0.0, 0.0, -1100.0 * 9.81 * volume]))
+
+
+def test_from_a_solution_no_rod_passes_through_a_bar() -> None:
+    """Newton's method alone would end below the bar, where nothing touches."""
+    planar = ROD.replace('"kirchhoff"', '"planar"') + PUSH
+    bar = (
+        '[[obstacles]]\nname = "bar"\nkind = "capsule"\nfrom = [0.8, -1, -0.07]\nto = [0.8, 1, -0.07]\nradius = 0.05\n'
+    )
+    scene = parse_scene(planar + bar)
+    model = build(scene, discretise(scene, 4))
+    clear = solve(model, {"push.force": [0.0, 0.0, -0.02]})
+    assert clear.contacts == ()
+    pushed = solve(model, {"push.force": [0.0, 0.0, -0.5]}, start=clear)
+    assert [contact.obstacle for contact in pushed.contacts] == ["bar"]
+    check_complementary(pushed, 1e-6)
 
 
 @pytest.mark.slow

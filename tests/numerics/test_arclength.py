@@ -15,7 +15,7 @@ from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, bracketed_zero
 from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
 
-EIGENVALUES = Monitor(lambda jacobian, _: np.linalg.eigvalsh((jacobian + jacobian.T) / 2), feels_limits=True)
+EIGENVALUES = Monitor(lambda _y, jacobian, _: np.linalg.eigvalsh((jacobian + jacobian.T) / 2), feels_limits=True)
 MONITORS = pytest.mark.parametrize("monitor", [EIGENVALUES, DETERMINANT], ids=["eigenvalues", "determinant"])
 
 

@@ -21,7 +21,7 @@ from cosserat_casadi.loads.load import coefficients
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
-from cosserat_casadi.paths.follow import EquilibriumPath
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath
 from cosserat_casadi.paths.refine import follow_scene_path
 from cosserat_casadi.results.path_file import path_table, path_text
 from cosserat_casadi.scene import Scene, read_scene

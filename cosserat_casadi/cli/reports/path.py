@@ -13,7 +13,7 @@ from rich.table import Table
 
 from cosserat_casadi.cli.reports.format import digits, print_plain, print_written, title_line
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.paths.equilibrium_path import CONTACT_WORDS, EquilibriumPath, PathEvent
 
 
 def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path]) -> None:
@@ -30,7 +30,10 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
 
 
 def _merit_sentence(path: EquilibriumPath) -> str:
-    parts = [f"{len(path.factor)} points", f"{len(path.events)} limit points and bifurcations"]
+    changes = sum(event.contact is not None for event in path.events)
+    parts = [f"{len(path.factor)} points", f"{len(path.events) - changes} limit points and bifurcations"]
+    if path.model.scene.obstacles:
+        parts.append(f"{changes} changes of contact")
     if path.error_estimate is not None:
         parts.append(f"estimated error of events and end {path.error_estimate:.1e}")
     for name, d in path.model.discretisation.items():
@@ -85,6 +88,9 @@ def _table_rows(path: EquilibriumPath, abscissae: dict[str, float]) -> list[_Tab
 
 
 def _event_kind(event: PathEvent) -> str:
+    contact = event.contact
+    if contact is not None:
+        return f"{CONTACT_WORDS[event.kind]}, {contact.rod} X = {contact.start:.4g} on {contact.obstacle}"
     if event.multiplicity == 1:
         return event.kind
     return f"{event.kind}, {event.multiplicity}-fold"

@@ -106,24 +106,24 @@ class Placed:
 
     @cached_property
     def _spread(self) -> tuple[FloatArray, FloatArray]:
-        """Constant part of the inputs, shape (m,), and matrix from the forces to them, (m, k)."""
+        """Matrices from the inputs of the scene to all inputs, shape (m, m − k), and from the forces, (m, k)."""
         size = self.model.inputs.size
         others = np.setdiff1d(np.arange(size), self.force_entries)
-        constant = np.zeros(size)
-        constant[others] = self.given
-        matrix = np.zeros((size, len(self.force_entries)))
-        matrix[self.force_entries, np.arange(len(self.force_entries))] = self.force_units
-        return constant, matrix
+        by_given = np.zeros((size, len(others)))
+        by_given[others, np.arange(len(others))] = 1.0
+        by_forces = np.zeros((size, len(self.force_entries)))
+        by_forces[self.force_entries, np.arange(len(self.force_entries))] = self.force_units
+        return by_given, by_forces
 
     def inputs(self, forces: FloatArray) -> FloatArray:
         """Stacked inputs of the model for forces without unit, shape (k,)."""
-        constant, matrix = self._spread
-        return np.asarray(constant + matrix @ forces)
+        by_given, by_forces = self._spread
+        return np.asarray(by_given @ self.given + by_forces @ forces)
 
-    def written_inputs(self, forces: Matrix) -> Matrix:
-        """The same as expressions."""
-        constant, matrix = self._spread
-        return ca.DM(constant) + ca.sparsify(ca.DM(matrix)) @ forces
+    def written_inputs(self, given: Matrix, forces: Matrix) -> Matrix:
+        """The same as expressions of the stacked inputs of the scene too."""
+        by_given, by_forces = self._spread
+        return ca.sparsify(ca.DM(by_given)) @ given + ca.sparsify(ca.DM(by_forces)) @ forces
 
     def fitting_forces(self, x: FloatArray) -> FloatArray:
         """Forces that balance a shape best, shape (k,): its balance is linear in them."""
@@ -243,6 +243,52 @@ class Distances:
 
 
 @dataclass(frozen=True)
+class Written:
+    """The equations of a state as expressions.
+
+    Attributes:
+        unknowns: symbols of x, f and p.
+        given: symbol of the stacked inputs of the scene without contacts.
+        state: the contacts, at expressions of p.
+        system: rods whose elements end there.
+        modes: polynomials of the curvature of each rod, by name.
+    """
+
+    unknowns: tuple[ca.MX, ca.MX, ca.MX]
+    given: ca.MX
+    state: ContactState
+    system: System
+    modes: Mapping[str, int]
+
+    @property
+    def arguments(self) -> list[ca.MX]:
+        """What functions of the equations take."""
+        return [*self.unknowns, self.given]
+
+    @cached_property
+    def _balance(self) -> SceneEquations:
+        return SceneEquations(self.system)
+
+    @cached_property
+    def _gaps(self) -> Matrix:
+        return gap_rows(self.system, self.state, self.modes)
+
+    @property
+    def residual(self) -> Matrix:
+        """Balance, then gaps."""
+        return ca.vertcat(self._balance.residual, self._gaps)
+
+    @property
+    def jacobian(self) -> Matrix:
+        """Its derivative with z: that of the balance with x is written out; what the contacts add is small."""
+        _, f, p = self.unknowns
+        balance = self._balance.residual
+        by_others = ca.horzcat(ca.jacobian(balance, f), ca.jacobian(balance, p))
+        gaps_by_all = ca.horzcat(*[ca.jacobian(self._gaps, part) for part in self.unknowns])
+        return ca.vertcat(ca.horzcat(self._balance.jacobian, by_others), gaps_by_all)
+
+
+@dataclass(frozen=True)
 class ContactEquations:
     """Equations of one state in z = (x, f, p).
 
@@ -258,12 +304,12 @@ class ContactEquations:
     grids: Grids
     state: ContactState
 
-    def placed(self, state: ContactState) -> Placed:
-        """The model of the contacts at places that are known."""
+    def placed(self, state: ContactState, given: FloatArray | None = None) -> Placed:
+        """The model of the contacts at places that are known, for other inputs of the scene where they are given."""
         modes = self.grids.bending_modes(self.scene)
         loaded = with_contacts(self.scene, state, modes)
         model = build(loaded, self.grids.discretisation(loaded))
-        return Placed(model, state, self.given, modes)
+        return Placed(model, state, self.given if given is None else given, modes)
 
     @cached_property
     def nominal(self) -> Placed:
@@ -277,32 +323,38 @@ class ContactEquations:
         return x, f, p
 
     @cached_property
-    def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """Z ↦ residual, and z ↦ its derivative."""
+    def written(self) -> Written:
+        """The equations as expressions."""
         nominal = self.nominal
         x = ca.MX.sym("x", nominal.model.size)
         f = ca.MX.sym("f", len(nominal.force_units))
         p = ca.MX.sym("p", len(self.state.places))
+        given = ca.MX.sym("given", len(self.given))
         # One expression for each place: what ends there is found by it.
         state = self.state.at([p[i] for i in range(p.shape[0])])
-        discrete = self._written(state) if p.shape[0] else nominal.model.discrete
-        system = System(discrete, Arguments(x, nominal.written_inputs(f)))
-        written = SceneEquations(system)
-        balance = written.residual
-        gaps = gap_rows(system, state, nominal.modes)
-        residual = ca.Function("residual", [x, f, p], [ca.vertcat(balance, gaps)])
-        # The Jacobian of the balance is written out; what the contacts add is small.
-        by_others = ca.horzcat(ca.jacobian(balance, f), ca.jacobian(balance, p))
-        gaps_by_all = ca.horzcat(*[ca.jacobian(gaps, part) for part in (x, f, p)])
-        jacobian = ca.vertcat(ca.horzcat(written.jacobian, by_others), gaps_by_all)
-        return residual, ca.Function("jacobian", [x, f, p], [jacobian])
+        discrete = self._discrete_at(state) if p.shape[0] else nominal.model.discrete
+        system = System(discrete, Arguments(x, nominal.written_inputs(given, f)))
+        return Written((x, f, p), given, state, system, nominal.modes)
 
-    def _written(self, state: ContactState) -> DiscreteScene:
+    @cached_property
+    def _functions(self) -> tuple[ca.Function, ca.Function]:
+        """(x, f, p, inputs) ↦ residual, and ↦ its derivative with z."""
+        written = self.written
+        residual = ca.Function("residual", written.arguments, [written.residual])
+        return residual, ca.Function("jacobian", written.arguments, [written.jacobian])
+
+    @cached_property
+    def _rate(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ derivative of the residual with the inputs."""
+        written = self.written
+        return ca.Function("rate", written.arguments, [ca.jacobian(written.residual, written.given)])
+
+    def _discrete_at(self, state: ContactState) -> DiscreteScene:
         """The scene whose elements end at expressions."""
         written = with_contacts(self.scene, state, self.nominal.modes)
         return with_numbers(self.nominal.model.discrete, written)
 
-    def _ends(self, rod: str, p: FloatArray) -> FloatArray:
+    def ends(self, rod: str, p: FloatArray) -> FloatArray:
         """Where the elements of a rod end at places of contact p, shape (E + 1,)."""
         breaks = self.nominal.model.discretisation[rod].breaks
         moved = self.state.at(p.tolist())
@@ -313,30 +365,46 @@ class ContactEquations:
     def _places_on(state: ContactState, rod: str) -> list[float]:
         return [float(end) for touch in state.touches if touch.rod == rod for end in touch.ends]
 
-    def fixed_in(self, x: FloatArray, p: FloatArray, placed: Placed) -> FloatArray:
-        """The unknowns of a model whose elements end at p for good: there strains are not counted per moved length."""
-        unmoved = x.copy()
-        for name, rod in placed.model.discrete.rods.items():
-            rates = np.diff(self._ends(name, p)) / np.diff(self.nominal.model.discretisation[name].breaks)
-            first = placed.model.discrete.unknowns.strain(name).start
+    def moved_strains(self, p: FloatArray) -> FloatArray:
+        """What the unknowns of elements that stay are multiplied by to be those of elements moved to p, shape (n,).
+
+        Strains of moved elements are counted per length that has moved; all other unknowns keep their values.
+        """
+        return self._widths(p) / self.nominal_widths
+
+    @cached_property
+    def nominal_widths(self) -> FloatArray:
+        """Width of the element that each strain coordinate is of, where the equations start from; else 1, (n,)."""
+        return self._widths(self.state.places)
+
+    def _widths(self, p: FloatArray) -> FloatArray:
+        model = self.nominal.model
+        widths = np.ones(model.size)
+        for name, rod in model.discrete.rods.items():
+            own = np.diff(self.ends(name, p))
+            first = model.discrete.unknowns.strain(name).start
             for entries in rod.columns.values():
                 modes = (entries.stop - entries.start) // rod.grid.elements
-                own = slice(first + entries.start, first + entries.stop)
-                unmoved[own] /= np.repeat(rates, modes)
-        return unmoved
+                widths[first + entries.start : first + entries.stop] = np.repeat(own, modes)
+        return widths
 
-    def residual(self, z: FloatArray) -> FloatArray:
-        """Balance and gaps; not a number where elements would not follow each other along the rod."""
+    def residual(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Balance and gaps for inputs; not a number where elements would not follow each other along the rod."""
         x, f, p = self.parts(z)
-        if any(np.diff(self._ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
+        if any(np.diff(self.ends(rod, p)).min() < SHORTEST for rod in self.grids.rods):
             return np.full(len(z), np.nan)
-        return column(self._functions[0](x, f, p))
+        return column(self._functions[0](x, f, p, given))
 
-    def jacobian(self, z: FloatArray) -> FloatArray:
-        """Derivative of the residual."""
-        return np.asarray(self._functions[1](*self.parts(z)).full())
+    def jacobian(self, z: FloatArray, given: FloatArray) -> FloatArray:
+        """Derivative of the residual with z."""
+        return np.asarray(self._functions[1](*self.parts(z), given).full())
+
+    def rate(self, z: FloatArray, given: FloatArray, change: FloatArray) -> FloatArray:
+        """Rate of the residual as the inputs change, shape (len(z),)."""
+        by_given = self._rate(*self.parts(z), given).full()
+        return np.asarray(by_given @ change)
 
     @property
     def equations(self) -> Equations:
         """As Newton's method takes them."""
-        return Equations(self.residual, self.jacobian)
+        return Equations(lambda z: self.residual(z, self.given), lambda z: self.jacobian(z, self.given))

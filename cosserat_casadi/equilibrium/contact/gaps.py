@@ -17,6 +17,14 @@ DENSE = np.linspace(0.0, 1.0, 801)
 """Abscissae at which rods are held against obstacles; they are no nodes."""
 
 
+def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
+    """Every rod with every obstacle that it must not enter."""
+    for rod in scene.rods:
+        for obstacle in scene.obstacles:
+            if obstacle.concerns(rod.name):
+                yield rod.name, obstacle
+
+
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
     positions = solution.pose(X, rod).position

@@ -14,13 +14,13 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids, Placed
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.projection import projected
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.numerics.newton import NewtonSettings, newton
+from cosserat_casadi.numerics.newton import NewtonSettings, newton, relative_norm
 from cosserat_casadi.numerics.outcome import Outcome
 
 MOST_STATES = 24
@@ -68,12 +68,7 @@ class Found:
 
     def parts(self) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
         """Each contact, the forces at its ends, and the coefficients of the force along it, without unit."""
-        first = 0
-        for touch in self.state.touches:
-            last = first + len(touch.ends)
-            count = touch.moment_count(self.placed.modes[touch.rod]) if touch.is_line else 0
-            yield touch, self.forces[first:last], self.forces[last : last + count]
-            first = last + count
+        return self.state.with_forces(self.forces, self.placed.modes)
 
     @property
     def largest_force(self) -> float:
@@ -149,14 +144,6 @@ class Penetrated:
         return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
 
-def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
-    """Every rod with every obstacle that it must not enter."""
-    for rod in scene.rods:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name):
-                yield rod.name, obstacle
-
-
 @dataclass
 class Settling:
     """The search for a state that holds.
@@ -210,27 +197,33 @@ class Settling:
     def solve(self, state: ContactState, near: Solution) -> Found | None:
         """Solve the equations of one state from a shape near it; None where Newton's method does not end."""
         equations = ContactEquations(self.scene, self.given, self.grids, state)
+        z = self.solved(equations, near)
+        if z is None:
+            return None
+        return found_at(equations, z, self.given)
+
+    def solved(self, equations: ContactEquations, near: Solution) -> FloatArray | None:
+        """Unknowns, forces and places that solve equations, from a shape near them."""
         x = projected(near, equations.nominal.model)
-        start = np.concatenate([x, equations.nominal.fitting_forces(x), state.places])
+        start = np.concatenate([x, equations.nominal.fitting_forces(x), equations.state.places])
         result = newton(equations.equations, start, self.newton)
         self.iterations += result.iterations
         if result.outcome is not Outcome.CONVERGED:
             return None
-        x, forces, places = equations.parts(result.x)
-        # What only rounding presses does not press.
-        forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
-        placed = equations.placed(state.at(places.tolist()))
-        x = equations.fixed_in(x, places, placed)
-        solution = Solution(
-            placed.model,
-            placed.inputs(forces),
-            x,
-            result.outcome,
-            result.outcome.value,
-            residual_norm=result.residual_norm,
-            iterations=result.iterations,
-        )
-        return Found(placed, x, forces, solution)
+        return result.x
+
+
+def found_at(equations: ContactEquations, z: FloatArray, given: FloatArray) -> Found:
+    """The solution z of the equations of a state, for stacked inputs of its scene."""
+    x, forces, places = equations.parts(z)
+    # What only rounding presses does not press.
+    forces = np.where(np.abs(forces) <= ROUNDING * np.abs(forces).max(initial=0.0), 0.0, forces)
+    placed = equations.placed(equations.state.at(places.tolist()), given)
+    x = x / equations.moved_strains(places)
+    outcome = Outcome.CONVERGED
+    norm = relative_norm(placed.residual(x, forces), np.concatenate([x, forces]))
+    solution = Solution(placed.model, placed.inputs(forces), x, outcome, outcome.value, norm, iterations=0)
+    return Found(placed, x, forces, solution)
 
 
 def _alike(first: ContactState, second: ContactState) -> bool:
@@ -256,7 +249,7 @@ class Change:
 def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
     """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
-    changes = [Change(touch, tuple(_instead_of_pulling(touch))) for touch in pulling]
+    changes = [Change(touch, tuple(instead_of_pulling(touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
         # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
         if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
@@ -295,7 +288,7 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
     return ContactState.of([*kept, *added])
 
 
-def _instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
+def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
     """What a contact that pulls may be instead."""
     if not touch.is_line:
         yield ()
@@ -341,7 +334,7 @@ def _otherwise(state: ContactState) -> Iterator[ContactState]:
     for index, touch in enumerate(state.touches):
         rest = [other for i, other in enumerate(state.touches) if i != index]
         if touch.is_line:
-            for option in _instead_of_pulling(touch):
+            for option in instead_of_pulling(touch):
                 yield ContactState.of([*rest, *option])
         elif touch.end == TIP:
             yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])

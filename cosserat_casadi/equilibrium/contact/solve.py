@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.approach import approach, first_state
 from cosserat_casadi.equilibrium.contact.equations import Grids
+from cosserat_casadi.equilibrium.contact.passage import passes_through
 from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
@@ -39,8 +40,8 @@ def solve_contact(
         scene: with obstacles; parameters have values.
         grids: modes and nodes of every element.
         values: inputs by name.
-        start: a solution of the same rods and obstacles whose contacts are tried first; by default those of the
-            unloaded rods under growing loads.
+        start: a solution of the same rods and obstacles whose contacts are tried first, where that takes no rod through
+            an obstacle; by default, and else, those of the unloaded rods under growing loads.
         newton: limits of the solve of each state.
         progress: told the share of the load path that is done.
     """
@@ -51,7 +52,7 @@ def solve_contact(
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
         found, holds = settling.run(state_in(start.model.scene), start)
-        if found is not None and holds:
+        if found is not None and holds and not passes_through(start, found.solution):
             return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
     settling.iterations += cushioned.iterations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -126,6 +126,22 @@ class ContactState:
             touches.append(touch.moved(places[first:last]))
             first = last
         return ContactState(tuple(touches))
+
+    def with_forces(
+        self, forces: FloatArray, modes: Mapping[str, int]
+    ) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
+        """Each contact, the forces at its ends, and the coefficients of the force along it.
+
+        Args:
+            forces: of all contacts, in the order of the loads.
+            modes: polynomials of the curvature of each rod, by name.
+        """
+        first = 0
+        for touch in self.touches:
+            last = first + len(touch.ends)
+            count = touch.moment_count(modes[touch.rod]) if touch.is_line else 0
+            yield touch, forces[first:last], forces[last : last + count]
+            first = last + count
 
     @property
     def in_order(self) -> bool:

@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium.contact.state import Touch
 from cosserat_casadi.equilibrium.contact.surfaces import surface
 from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
-from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, stability_of, variations
+from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
@@ -123,18 +123,7 @@ def _eigenvalues(found: Found) -> FloatArray:
                 held.append(own[1])
             else:
                 jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
-    return admissible_eigenvalues(*_restricted(jacobian, held, variations(model)))
-
-
-def _restricted(jacobian: FloatArray, held: list[FloatArray], allowed: Variations) -> tuple[FloatArray, Variations]:
-    """A Jacobian with further rows that restrict the variations."""
-    size = len(jacobian)
-    bordered = np.zeros((size + len(held), size + len(held)))
-    bordered[:size, :size] = jacobian
-    if held:
-        bordered[size:, :size] = held
-    further = np.arange(size, size + len(held), dtype=np.int64)
-    return bordered, replace(allowed, held=np.concatenate([allowed.held, further]))
+    return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 
 def _gap_curvature(found: Found, touch: Touch) -> float:

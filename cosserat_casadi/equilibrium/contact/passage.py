@@ -1,0 +1,73 @@
+"""Whether rods would pass through obstacles on the way from one shape to another.
+
+A solve that starts from a solution knows its shape alone: where inputs change much, Newton's method may end behind an
+obstacle, in an equilibrium that the rods could not have come to.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, pairs
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.properties import RodProperties
+
+SECTIONS = DENSE
+"""Abscissae that are looked at."""
+
+STRIDE = 1e-3
+"""Way of a section between two looks, relative to the length of the rod: thinner obstacles may be missed."""
+
+MOST_LOOKS = 400
+"""Most looks on the way."""
+
+DEEP = 1e-3
+"""Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
+
+
+def passes_through(before: Solution, after: Solution) -> bool:
+    """Whether a section is inside an obstacle on the straight way from one shape to the other."""
+    for rod, obstacle in pairs(after.model.scene):
+        start = before.pose(SECTIONS, rod).position
+        end = after.pose(SECTIONS, rod).position
+        if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end):
+            return True
+    return False
+
+
+def is_inside_between(
+    obstacle: scenes.ObstacleRecord, properties: RodProperties, start: FloatArray, end: FloatArray
+) -> bool:
+    """Whether a section of a rod is inside an obstacle on the straight way from its positions to others.
+
+    Args:
+        obstacle: the obstacle.
+        properties: of the rod.
+        start: positions at the abscissae SECTIONS, shape (k, 3), m.
+        end: others, likewise.
+    """
+    gaps_at_start = _gaps(obstacle, properties, start, SECTIONS)
+    gaps_at_end = _gaps(obstacle, properties, end, SECTIONS)
+    ways = np.linalg.norm(end - start, axis=1)
+    # A distance changes by no more than the way: on a shorter one nothing can have come between.
+    doubtful = ways > np.maximum(gaps_at_start, 0.0) + np.maximum(gaps_at_end, 0.0)
+    if not doubtful.any():
+        return False
+    looks = int(np.clip(ways[doubtful].max() / (STRIDE * properties.length), 1, MOST_LOOKS))
+    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None, None]
+    positions = start[doubtful] + shares * (end - start)[doubtful]
+    X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
+    gaps = _gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
+    return bool(gaps.min() < -DEEP * properties.length)
+
+
+def _gaps(
+    obstacle: scenes.ObstacleRecord, properties: RodProperties, positions: FloatArray, X: FloatArray
+) -> FloatArray:
+    """Distances of sections at abscissae X from an obstacle, shape (k,), m."""
+    distances = distance_from(obstacle).map(len(X))(positions.T)
+    return np.asarray(distances.full()[0] - section_radius(properties, X))

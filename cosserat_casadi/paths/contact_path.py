@@ -1,0 +1,358 @@
+"""Equilibrium paths of scenes with obstacles: one arrangement of contacts is followed until it ends, then the next.
+
+See docs/contact.md, "Paths", and transitions.py for how one leads to another.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
+from cosserat_casadi.equilibrium.contact.settle import Settling
+from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
+from cosserat_casadi.equilibrium.contact.state import TIP, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.verdict import judged
+from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.stability import stability_of
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings
+from cosserat_casadi.numerics.events import Arc
+from cosserat_casadi.numerics.newton import NewtonSettings
+from cosserat_casadi.numerics.progress import Progress
+from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
+from cosserat_casadi.paths.margins import Key, margins, violated
+from cosserat_casadi.paths.trace import PathOutcome, Trace, extend
+from cosserat_casadi.paths.transitions import Entry, changes, entered
+
+MOST_CHANGES = 100
+"""Most changes of the arrangement along a path."""
+
+AT_ONCE = 1e-9
+"""Load factor and places within which two changes in a row have led nowhere."""
+
+
+@dataclass(frozen=True)
+class ContactPath(EquilibriumPath):
+    """A path along which contacts come, go, slide and turn from points into lines and back.
+
+    Attributes:
+        x: of each point its unknowns, forces and places of contact: an array of k arrays, for their number changes
+            with the contacts.
+        arrangements: the arrangements of contacts that the path passes, one after the other.
+        arrangement: number of the one that each point belongs to, shape (k,).
+    """
+
+    arrangements: tuple[Arrangement, ...] = ()
+    arrangement: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+
+    def contacts(self, index: int) -> tuple[PathContact, ...]:
+        """The contacts at a point of the path."""
+        arrangement = self.arrangements[self.arrangement[index]]
+        contacts = []
+        for touch, ends, _ in arrangement.parts(self.x[index]):
+            unit = self.model.discrete.tension_unit(touch.rod)
+            forces = tuple((unit * ends).tolist())
+            contacts.append(
+                PathContact(touch.obstacle, touch.rod, float(touch.start), float(touch.end), touch.kind, forces)
+            )
+        return tuple(contacts)
+
+    def tip(self, rod: str | None = None) -> Pose:
+        """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
+        name = self.model.rod_name(rod)
+        poses = [self._pose(index, TIP, name) for index in range(len(self.factor))]
+        return Pose(
+            position=np.array([pose.position[0] for pose in poses]).reshape(-1, 3),
+            rotation=np.array([pose.rotation[0] for pose in poses]).reshape(-1, 3, 3),
+            quaternion=np.array([pose.quaternion[0] for pose in poses]).reshape(-1, 4),
+        )
+
+    def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
+        """Pose of a rod's tip at an event, shapes (1, …)."""
+        name = self.model.rod_name(rod)
+        return self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([TIP]), name)
+
+    def position(self, X: float, rod: str | None = None) -> FloatArray:
+        """Positions of a section at the k points of the path, shape (k, 3), m."""
+        name = self.model.rod_name(rod)
+        positions = [self._pose(index, X, name).position[0] for index in range(len(self.factor))]
+        return np.array(positions).reshape(-1, 3)
+
+    def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
+        """Position of a section at an event, shape (3,), m."""
+        name = self.model.rod_name(rod)
+        return np.asarray(
+            self.arrangements[event.arrangement].poses(event.x, event.factor, np.array([X]), name).position[0]
+        )
+
+    def solution(self, index: int) -> Solution:
+        """A point of the path as a solution with its contacts, judged as any other."""
+        arrangement = self.arrangements[self.arrangement[index]]
+        found = arrangement.found(self.x[index], float(self.factor[index]))
+        return judged(found, holds=True, iterations=0, tolerance=NewtonSettings().tolerance)
+
+    def _pose(self, index: int, X: float, rod: str) -> Pose:
+        arrangement: Arrangement = self.arrangements[self.arrangement[index]]
+        return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
+
+
+@dataclass
+class Guard:
+    """Ends the steps of a path where a margin of its arrangement vanishes.
+
+    Attributes:
+        arrangement: the one that is followed.
+        crossed: the margin that has vanished, with its abscissa; None while all are positive.
+    """
+
+    arrangement: Arrangement
+    crossed: tuple[Key, float] | None = None
+
+    def __call__(self, arc: Arc, end: ArcPoint) -> ArcPoint | None:
+        """The end of a step, or the first point of it at which a margin vanishes; None for a step that is too long."""
+        arrangement = self.arrangement
+        at_start = margins(arrangement, arrangement.z(arc.start), arc.start.load_factor)
+        at_end = margins(arrangement, arrangement.z(end), end.load_factor)
+        first: ArcPoint | None = None
+        for key in violated(at_end, arrangement.tolerance):
+            before = at_start.get(key)
+            if before is None or before.value <= 0.0:
+                # It was zero, to rounding, already where the step begins.
+                zero: ArcPoint | None = arc.start
+            else:
+                zero = self._zero(Arc(arc.curve, arc.start, end), key)
+            if zero is None:
+                return None
+            if first is None or zero.length < first.length:
+                first = zero
+                X = margins(arrangement, arrangement.z(zero), zero.load_factor)[key].X
+                self.crossed = (key, X)
+        if first is not None:
+            return first
+        # It may have come out on the other side of a thin obstacle.
+        if arrangement.goes_through(arc.start, end):
+            return None
+        return end
+
+    def _zero(self, arc: Arc, key: Key) -> ArcPoint | None:
+        """Where a margin vanishes along a step."""
+
+        def value(point: ArcPoint) -> float:
+            found = margins(self.arrangement, self.arrangement.z(point), point.load_factor)
+            return found[key].value
+
+        return arc.zero(value)
+
+
+@dataclass
+class Travel:
+    """What has been followed so far.
+
+    Attributes:
+        settings: limits.
+        branch: number of the bifurcation to leave at, as in :func:`cosserat_casadi.follow_path`; 0 once left.
+        arrangements: in the order of travel.
+        points: with the number of the arrangement of each.
+        events: in the order of travel.
+        outcome: how it ended; None while under way.
+        left_at: index of the first point on the branch.
+        steps: steps that were tried.
+    """
+
+    settings: ArcSettings
+    branch: int
+    arrangements: list[Arrangement]
+    points: list[tuple[int, ArcPoint]] = field(default_factory=list)
+    events: list[PathEvent] = field(default_factory=list)
+    outcome: PathOutcome | None = None
+    left_at: int | None = None
+    steps: int = 0
+
+    def run(self, first: ArcPoint, progress: Progress | None) -> None:
+        """Follow the path from a point of the first arrangement to its end."""
+        point = first
+        for _ in range(MOST_CHANGES):
+            guard = Guard(self.arrangements[-1])
+            self._follow(point, guard, progress)
+            if self.outcome is not None:
+                return
+            entry = self._change(guard)
+            if entry is None:
+                self.outcome = PathOutcome.CONTACT_UNSETTLED
+                return
+            point = entry.point
+        self.outcome = PathOutcome.MAX_STEPS
+
+    def _follow(self, first: ArcPoint, guard: Guard, progress: Progress | None) -> None:
+        """One arrangement, until the path or a margin ends it."""
+        curve = guard.arrangement.curve
+        traced = Trace([first])
+        step = self.settings.first
+        while traced.outcome is None and guard.crossed is None:
+            if self.steps >= self.settings.steps:
+                traced.outcome = PathOutcome.MAX_STEPS
+                break
+            step = extend(curve, traced, step, self._to_leave_at(traced), guard)
+            self.steps += 1
+            if progress is not None:
+                progress(float(np.clip(traced.points[-1].load_factor, 0.0, 1.0)))
+        self._keep(traced)
+
+    def _to_leave_at(self, traced: Trace) -> int:
+        """Number, counted in this arrangement, of the bifurcation to leave at."""
+        if not self.branch or traced.branch is not None:
+            return 0
+        before = sum(event.kind == "bifurcation" for event in self.events)
+        return int(np.sign(self.branch)) * (abs(self.branch) - before)
+
+    def _keep(self, traced: Trace) -> None:
+        """Add what was traced of the last arrangement."""
+        number = len(self.arrangements) - 1
+        arrangement = self.arrangements[-1]
+        begun = len(self.points)
+        lengths = np.array([point.length for point in traced.points])
+        for event in traced.events:
+            position = begun + int(np.searchsorted(lengths, event.point.length, side="right"))
+            z = arrangement.z(event.point)
+            self.events.append(
+                PathEvent(event.kind, event.point.load_factor, z, event.multiplicity, position, arrangement=number)
+            )
+        self.points += [(number, point) for point in traced.points]
+        if traced.branch is not None:
+            self.left_at = begun + traced.branch
+            self.branch = 0
+        self.outcome = traced.outcome
+
+    def _change(self, guard: Guard) -> Entry | None:
+        """Enter the next arrangement; None where none is valid."""
+        assert guard.crossed is not None
+        key, X = guard.crossed
+        arrangement = self.arrangements[-1]
+        _, last = self.points[-1]
+        for change in changes(arrangement, arrangement.z(last), key, X):
+            entry = entered(arrangement, last, change)
+            if entry is None:
+                continue
+            self._keep_change(entry, last)
+            self.arrangements.append(entry.arrangement)
+            return entry
+        return None
+
+    def _keep_change(self, entry: Entry, last: ArcPoint) -> None:
+        """Add the event of a change: its equilibrium is the last point before it, or the first one beyond."""
+        number = len(self.arrangements) - 1
+        point = last
+        arrangement = self.arrangements[-1]
+        beyond = len(self.points)
+        if entry.is_event:
+            number += 1
+            point = entry.point
+            arrangement = entry.arrangement
+            beyond += 1
+        touch = entry.change.touch
+        if entry.is_event:
+            touch = entry.arrangement.state(arrangement.z(point)).touches[entry.change.grows.number]
+        self.events.append(
+            PathEvent(
+                entry.change.kind,
+                point.load_factor,
+                arrangement.z(point),
+                1,
+                beyond,
+                arrangement=number,
+                contact=PathContact(touch.obstacle, touch.rod, float(touch.start), float(touch.end), touch.kind, ()),
+            )
+        )
+
+
+def follow_contact_path(
+    model: Model,
+    name: str,
+    base: FloatArray,
+    change: FloatArray,
+    *,
+    branch: int = 0,
+    settings: ArcSettings | None = None,
+    progress: Progress | None = None,
+) -> ContactPath:
+    """Follow the equilibrium of a scene with obstacles, from one arrangement of contacts to the next.
+
+    Args:
+        model: of the scene.
+        name: the input that grows.
+        base: stacked inputs at load factor 0.
+        change: what is added to them at 1.
+        branch: as in :func:`cosserat_casadi.follow_path`.
+        settings: limits.
+        progress: receives the largest factor reached.
+    """
+    limits = settings or ArcSettings()
+    scene = without_contacts(model.scene)
+    grids = Grids(model.discretisation)
+    values = model.inputs.unpack(base)
+    potential = model.has_potential(base) and model.has_potential(base + change)
+    empty = ContactPath(
+        model=model,
+        name=name,
+        value=np.zeros(0),
+        base=base,
+        change=change,
+        outcome=PathOutcome.NO_START,
+        message=PathOutcome.NO_START.value,
+        factor=np.zeros(0),
+        x=np.zeros(0),
+        smallest_eigenvalue=np.zeros(0) if potential else None,
+        neutral=np.zeros(0, dtype=np.bool_) if potential else None,
+        events=(),
+    )
+    start = solve_contact(scene, grids, values)
+    if not start.converged:
+        return replace(empty, message=f"{empty.message} {start.message}")
+    state = state_in(start.model.scene)
+    settling = Settling(scene, base, grids, NewtonSettings(), max(scene.accuracy.tolerance, LEAST_TOLERANCE))
+    equations = ContactEquations(scene, base, grids, state)
+    z = settling.solved(equations, start)
+    if z is None:
+        return empty
+    arrangement = Arrangement(equations, change, potential, limits, z, 0.0)
+    growing_load = np.append(np.zeros(len(z)), 1.0)
+    first = arrangement.curve.point(arrangement.y(z, 0.0), growing_load, 0.0)
+    if first is None:
+        return empty
+    travel = Travel(limits, branch, [arrangement])
+    travel.run(first, progress)
+    return _record(empty, travel)
+
+
+def _record(empty: ContactPath, travel: Travel) -> ContactPath:
+    """What was followed as arrays."""
+    outcome = travel.outcome or PathOutcome.MAX_STEPS
+    numbers = np.array([number for number, _ in travel.points], dtype=np.int64)
+    factors = np.array([point.load_factor for _, point in travel.points])
+    unknowns = np.empty(len(travel.points), dtype=object)
+    for index, (number, point) in enumerate(travel.points):
+        unknowns[index] = travel.arrangements[number].z(point)
+    smallest = empty.smallest_eigenvalue
+    neutral = empty.neutral
+    if smallest is not None:
+        tests = [stability_of(point.spectrum) for _, point in travel.points]
+        smallest = np.array([test.smallest_eigenvalue for test in tests])
+        neutral = np.array([test.neutral for test in tests], dtype=np.bool_)
+    return replace(
+        empty,
+        outcome=outcome,
+        message=outcome.value,
+        factor=factors,
+        x=unknowns,
+        smallest_eigenvalue=smallest,
+        neutral=neutral,
+        events=tuple(travel.events),
+        branch=travel.left_at,
+        arrangements=tuple(travel.arrangements),
+        arrangement=numbers,
+    )

@@ -1,0 +1,229 @@
+"""Equilibria along one input as data: points, events, stability, and what may be asked of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.equilibrium.load_path import column
+from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.newton import relative_norm
+from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.paths.trace import PathOutcome
+
+
+@dataclass(frozen=True)
+class PathContact:
+    """A contact along a path.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        start: abscissa X at which it begins.
+        end: abscissa at which it ends; the same for a point.
+        kind: "point" or "line".
+        ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
+    """
+
+    obstacle: str
+    rod: str
+    start: float
+    end: float
+    kind: str
+    ends: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class PathEvent:
+    """A limit point, a bifurcation, or a change of the contacts of a path.
+
+    Attributes:
+        kind: "limit" or "bifurcation"; or "touch", "lift_off", "point_to_line", "line_to_point", "slide_to_tip" or
+            "slide_from_tip" of a contact.
+        factor: share of the input at which it lies.
+        x: unknowns there, shape (model.size,).
+        multiplicity: independent directions in which the equilibrium is neutral there.
+        position: index of the first point of the path that lies beyond it.
+        arrangement: number of the arrangement of contacts that its unknowns belong to.
+        contact: the contact that changes, as it is there; None where none does.
+    """
+
+    kind: str
+    factor: float
+    x: FloatArray
+    multiplicity: int
+    position: int
+    arrangement: int = 0
+    contact: PathContact | None = None
+
+
+CONTACT_WORDS = {
+    "touch": "touch",
+    "lift_off": "lift-off",
+    "point_to_line": "point to line",
+    "line_to_point": "line to point",
+    "slide_to_tip": "slide to the tip",
+    "slide_from_tip": "slide from the tip",
+}
+"""Kinds of events that are changes of contact, in words."""
+
+
+@dataclass(frozen=True)
+class EquilibriumPath:
+    """Equilibria of a model along one of its inputs.
+
+    Attributes:
+        model: the model.
+        name: the input that is followed.
+        value: its value at factor 1, shaped as the input.
+        base: stacked inputs at factor 0, shape (model.inputs.size,).
+        change: stacked inputs at factor 1 less those at factor 0, shape (model.inputs.size,).
+        outcome: how the path ended.
+        message: a sentence for the user.
+        factor: share of the value at each of k points in the order of travel, shape (k,).
+        x: unknowns, shape (k, model.size).
+        smallest_eigenvalue: of the second variation in units of EI/ℓ, shape (k,); None where loads have no potential.
+        neutral: whether a variation costs no energy while none releases any, shape (k,); None likewise.
+        events: limit points and bifurcations in the order of travel.
+        branch: index of the first point on the branch that was switched to; None on the first path.
+        error_estimate: estimated error of the events' factors, relative, and of the tips there and at the end,
+            relative to the lengths; None if not estimated.
+    """
+
+    model: Model
+    name: str
+    value: FloatArray
+    base: FloatArray
+    change: FloatArray
+    outcome: PathOutcome
+    message: str
+    factor: FloatArray
+    x: FloatArray
+    smallest_eigenvalue: FloatArray | None
+    neutral: npt.NDArray[np.bool_] | None
+    events: tuple[PathEvent, ...]
+    branch: int | None = None
+    error_estimate: float | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether factor 1 was reached as asked."""
+        return self.outcome is PathOutcome.CONVERGED
+
+    @property
+    def stable(self) -> npt.NDArray[np.bool_] | None:
+        """Whether every variation of a point that is not neutral costs energy, shape (k,); None where meaningless."""
+        if self.smallest_eigenvalue is None or self.neutral is None:
+            return None
+        every_variation_costs = self.smallest_eigenvalue > 0.0
+        return every_variation_costs | self.neutral
+
+    def inputs(self, factor: float) -> FloatArray:
+        """Stacked inputs at a factor."""
+        change = factor * self.change
+        return self.base + change
+
+    def contacts(self, index: int) -> tuple[PathContact, ...]:
+        """The contacts at a point of the path; none in a scene without obstacles."""
+        return ()
+
+    def tip(self, rod: str | None = None) -> Pose:
+        """Poses of a rod's tip at the k points of the path; the name may be left out where there is one rod."""
+        name = self.model.rod_name(rod)
+        return self._tips(name, self.factor, self.x)
+
+    def event_tip(self, event: PathEvent, rod: str | None = None) -> Pose:
+        """Pose of a rod's tip at an event, shapes (1, …)."""
+        name = self.model.rod_name(rod)
+        return self._tips(name, [event.factor], [event.x])
+
+    def section(self, rod: str | None = None) -> float:
+        """Abscissa of the section whose way tells most of the path.
+
+        The tip of a free rod; of a rod held at its tip where the followed load acts, or its middle.
+        """
+        name = self.model.rod_name(rod)
+        scene = self.model.scene
+        tip_is_free = all(holder.rod != name for holder in (*scene.supports, *scene.joints))
+        if tip_is_free:
+            return 1.0
+        # The tip of a held rod does not move, so that its way tells nothing.
+        load_name = next(entry.owner for entry, _ in self.model.inputs if entry.name == self.name)
+        load = next(load for load in scene.causes if load.name == load_name)
+        if getattr(load, "rod", name) != name:
+            return 0.5
+        return float(getattr(load, "at", 0.5))
+
+    def position(self, X: float, rod: str | None = None) -> FloatArray:
+        """Positions of a section at the k points of the path, shape (k, 3), m."""
+        name = self.model.rod_name(rod)
+        return self._positions(name, X, self.factor, self.x)
+
+    def event_position(self, event: PathEvent, X: float, rod: str | None = None) -> FloatArray:
+        """Position of a section at an event, shape (3,), m."""
+        name = self.model.rod_name(rod)
+        positions = self._positions(name, X, [event.factor], [event.x])
+        return np.asarray(positions[0])
+
+    def solution(self, index: int) -> Solution:
+        """A point of the path as a solution, whose shape, strain and wrenches may be asked for."""
+        x = self.x[index]
+        inputs = self.inputs(float(self.factor[index]))
+        residual = column(self.model.residual(x, inputs))
+        solution = Solution(
+            self.model,
+            inputs,
+            x,
+            Outcome.CONVERGED,
+            Outcome.CONVERGED.value,
+            residual_norm=relative_norm(residual, x),
+            iterations=0,
+        )
+        stable = self.stable
+        if stable is None or self.smallest_eigenvalue is None:
+            return solution
+        return replace(
+            solution,
+            smallest_eigenvalue=float(self.smallest_eigenvalue[index]),
+            stable=bool(stable[index]),
+        )
+
+    def _tips(self, rod: str, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> Pose:
+        """Poses of a rod's tip at k equilibria.
+
+        Args:
+            rod: name of the rod.
+            factors: factor of each equilibrium.
+            unknowns: unknowns of each, shape (model.size,).
+        """
+        tip = self.model.tip[rod]
+        positions = []
+        quaternions = []
+        rotations = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            # The length and the base of a rod may be inputs.
+            inputs = self.inputs(factor)
+            position, quaternion, rotation = tip(x, inputs)
+            positions.append(position.full()[:, 0])
+            quaternions.append(quaternion.full()[:, 0])
+            rotations.append(rotation.full())
+        return Pose(
+            position=np.array(positions).reshape(-1, 3),
+            rotation=np.array(rotations).reshape(-1, 3, 3),
+            quaternion=np.array(quaternions).reshape(-1, 4),
+        )
+
+    def _positions(self, rod: str, X: float, factors: Iterable[float], unknowns: Iterable[FloatArray]) -> FloatArray:
+        """Positions of a section at k equilibria, shape (k, 3), m; arguments as in :meth:`_tips`."""
+        section_pose = self.model.shape[rod]
+        positions = []
+        for factor, x in zip(factors, unknowns, strict=True):
+            inputs = self.inputs(factor)
+            position, _ = section_pose(x, inputs, X)
+            positions.append(position.full()[:, 0])
+        return np.array(positions).reshape(-1, 3)

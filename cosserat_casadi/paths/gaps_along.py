@@ -1,0 +1,93 @@
+"""Distance of a rod from an obstacle as a function of the abscissa, from the positions of its nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class GapsAlong:
+    """Distance of a rod's surface from an obstacle along the rod, over its length.
+
+    Attributes:
+        rod: name of the rod.
+        obstacle: the obstacle.
+        ends: abscissae of the ends of its elements, shape (E + 1,).
+        positions: of the nodes of each element, shape (E, N + 1, 3), m.
+        tangents: their derivatives with X, shape (E, N + 1, 3), m.
+        bends: second derivatives, but for what lies along the tangent, shape (E, N + 1, 3), m.
+        radii: of the sections at base and tip, between which the radius is linear, shape (2,), m.
+        length: of the rod, m.
+    """
+
+    rod: str
+    obstacle: scenes.ObstacleRecord
+    ends: FloatArray
+    positions: FloatArray
+    tangents: FloatArray
+    bends: FloatArray
+    radii: FloatArray
+    length: float
+
+    @property
+    def pair(self) -> tuple[str, str]:
+        """Names of rod and obstacle."""
+        return self.rod, self.obstacle.name
+
+    @property
+    def _intervals(self) -> int:
+        count: int = self.positions.shape[1]
+        return count - 1
+
+    def abscissae(self, local: FloatArray) -> FloatArray:
+        """Abscissae of points of every element, given in [0, 1] along it, shape (E, k)."""
+        return np.asarray(self.ends[:-1, None] + np.diff(self.ends)[:, None] * local)
+
+    def values(self, local: FloatArray) -> FloatArray:
+        """Distances there, shape (E, k)."""
+        X = self.abscissae(local)
+        positions = chebyshev.interpolation_matrix(self._intervals, local) @ self.positions
+        distances = distance_from(self.obstacle).map(X.size)(positions.reshape(-1, 3).T).full()[0]
+        return np.asarray((distances.reshape(X.shape) - self._radius(X)) / self.length)
+
+    def distances(self, X: FloatArray) -> FloatArray:
+        """Distances at abscissae X, shape (k,)."""
+        elements, local = self._located(X)
+        weights = chebyshev.interpolation_matrix(self._intervals, local)
+        positions = np.einsum("kn,knj->kj", weights, self.positions[elements])
+        distances = distance_from(self.obstacle).map(len(X))(positions.T).full()[0]
+        return np.asarray((distances - self._radius(X)) / self.length)
+
+    def _located(self, X: FloatArray) -> tuple[npt.NDArray[np.int64], FloatArray]:
+        """The element of each abscissa, and the place in it, in [0, 1]; an end is of the element that it ends."""
+        elements = np.searchsorted(self.ends[1:-1], X, side="left").astype(np.int64)
+        widths = np.diff(self.ends)[elements]
+        # The ends of elements are places of contact: a place that was computed lies on one to the last digit.
+        return elements, np.clip((X - self.ends[elements]) / widths, 0.0, 1.0)
+
+    def at(self, X: float) -> tuple[float, float, float]:
+        """Distance and its first and second derivative with X, at an end of an element those from the base's side."""
+        elements, local = self._located(np.array([X]))
+        element = elements[0]
+        weights = chebyshev.interpolation_matrix(self._intervals, local)[0]
+        position = weights @ self.positions[element]
+        first = weights @ self.tangents[element]
+        second = weights @ self.bends[element]
+        distance, gradient, hessian = (part.full() for part in surface(self.obstacle)(position))
+        normal = gradient[:, 0]
+        gap = float(distance[0, 0]) - float(self._radius(np.array(X)))
+        slope = float(normal @ first) - float(self.radii[1] - self.radii[0])
+        curvature = float(first @ hessian @ first + normal @ second)
+        return gap / self.length, slope / self.length, curvature / self.length
+
+    def _radius(self, X: FloatArray) -> FloatArray:
+        base, tip = self.radii
+        return np.asarray(base + X * (tip - base))

@@ -1,0 +1,173 @@
+"""What keeps an arrangement of contacts valid: numbers that are positive while it is, each with what it belongs to.
+
+Signorini's conditions between two changes of the arrangement: no section is inside an obstacle, no contact pulls, and
+what touches at a point stays a point between base and tip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.settle import AT_TIP, SAMPLES
+from cosserat_casadi.equilibrium.contact.state import TIP
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.paths.arrangement import Arrangement
+from cosserat_casadi.paths.gaps_along import GapsAlong
+
+OPEN = 0.005
+"""Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
+
+NEAR = 0.01
+"""Distance along the rod from a contact within which its own margins watch the gap."""
+
+PER_ELEMENT = 48
+"""Intervals between the abscissae of an element at which gaps are looked at."""
+
+NARROWINGS = 3
+"""Times that the section which is nearest to an obstacle is looked for more closely."""
+
+POLISHING = 4
+"""Newton steps to it then."""
+
+ROUNDING = 1e-9
+"""Difference of distances, over the length, that is put down to rounding."""
+
+
+class Watch(Enum):
+    """What a margin is of."""
+
+    GAP = "least distance of a rod from an obstacle, beside its contacts"
+    FORCE = "force at a point, or at an end of a line times its length"
+    PRESSURE = "least force per length along a line"
+    CURVATURE = "second derivative of the gap at a point: below zero the rod lies down"
+    SLOPE = "fall of the gap towards a tip that touches: below zero a section inwards is nearer"
+    TO_TIP = "distance of the last moving place of a contact from the tip"
+    WIDTH = "length of a line of contact"
+
+
+@dataclass(frozen=True)
+class Key:
+    """Name of a margin.
+
+    Attributes:
+        watch: what it is of.
+        number: of the contact in the arrangement; −1 for a gap.
+        end: number of the end of a line whose force it is.
+        pair: rod and obstacle.
+    """
+
+    watch: Watch
+    number: int
+    pair: tuple[str, str]
+    end: int = 0
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A margin at a point of a path.
+
+    Attributes:
+        value: without unit, positive where the arrangement is valid.
+        X: abscissa that it belongs to.
+    """
+
+    value: float
+    X: float
+
+
+def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict[Key, Margin]:
+    """All margins of an arrangement at z and λ."""
+    gaps = arrangement.gaps(z, load_factor)
+    found: dict[Key, Margin] = {}
+    parts = list(arrangement.parts(z))
+    largest = 1.0
+    for _, ends, line in parts:
+        largest = max(largest, float(np.abs(ends).max()), float(np.abs(line).max(initial=0.0)))
+    for number, (touch, ends, line) in enumerate(parts):
+        pair = (touch.rod, touch.obstacle)
+        # What errors of the moment make of the forces of a short line is as large as it is short.
+        lever = touch.end - touch.start if touch.is_line else 1.0
+        for end, (force, X) in enumerate(zip(ends, touch.ends, strict=True)):
+            found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
+        if touch.moving:
+            last = float(touch.moving[-1])
+            found[Key(Watch.TO_TIP, number, pair)] = Margin(TIP - last - OPEN, last)
+        if touch.is_line:
+            width = touch.end - touch.start
+            pressure = chebyshev.legendre_polynomials(len(line), SAMPLES) @ line
+            weakest = float(pressure.min()) * width / largest
+            at = float(touch.start + width * SAMPLES[int(pressure.argmin())])
+            found[Key(Watch.PRESSURE, number, pair)] = Margin(weakest, at)
+            found[Key(Watch.WIDTH, number, pair)] = Margin(width - OPEN, float(touch.start))
+        elif touch.moving:
+            _, _, curvature = gaps[pair].at(touch.start)
+            found[Key(Watch.CURVATURE, number, pair)] = Margin(curvature, float(touch.start))
+        else:
+            _, slope, _ = gaps[pair].at(TIP)
+            found[Key(Watch.SLOPE, number, pair)] = Margin(-slope, TIP)
+    for pair, gap in gaps.items():
+        taken = [(touch.start, touch.end) for touch, _, _ in parts if (touch.rod, touch.obstacle) == pair]
+        X = nearest(gap, taken)
+        if X is not None:
+            distance, _, _ = gap.at(X)
+            found[Key(Watch.GAP, -1, pair)] = Margin(distance, X)
+    return found
+
+
+def nearest(gaps: GapsAlong, taken: list[tuple[float, float]]) -> float | None:
+    """Abscissa of the section that is nearest to an obstacle, out of reach of stretches that touch it already."""
+    local = np.linspace(0.0, 1.0, PER_ELEMENT + 1)
+    X = gaps.abscissae(local)
+    free = np.ones(X.shape, dtype=bool)
+    for start, end in taken:
+        free &= (start - NEAR > X) | (end + NEAR < X)
+    # The clamp touches what it is fixed to.
+    free[0, 0] = False
+    if not free.any():
+        return None
+    values = np.where(free, gaps.values(local), np.inf)
+    element, index = np.unravel_index(int(values.argmin()), values.shape)
+    start = float(X[element, index])
+    spacing = float(gaps.ends[element + 1] - gaps.ends[element]) / PER_ELEMENT
+    polished = _polished(gaps, start, spacing)
+    # A tip comes down on itself, not on a section beside it.
+    tip_is_nearest = values[-1, -1] <= values[element, index] + ROUNDING
+    if polished > TIP - AT_TIP and tip_is_nearest:
+        return TIP
+    if any(first - NEAR <= polished <= last + NEAR for first, last in taken):
+        return start
+    return polished
+
+
+def _polished(gaps: GapsAlong, start: float, spacing: float) -> float:
+    """Where the gap is least near an abscissa, which is nearer to it than a spacing."""
+    X = start
+    reach = spacing
+    # Beside a thin obstacle the gap has a corner, almost: Newton's method needs to start close to it.
+    for _ in range(NARROWINGS):
+        around = np.clip(X + reach * np.linspace(-1.0, 1.0, 9), 0.0, TIP)
+        X = float(around[gaps.distances(around).argmin()])
+        reach /= 4
+    least, slope, curvature = gaps.at(X)
+    for _ in range(POLISHING):
+        if curvature <= 0.0:
+            return X
+        closer = float(np.clip(X - slope / curvature, max(X - reach, 0.0), min(X + reach, TIP)))
+        distance, slope, curvature = gaps.at(closer)
+        if distance > least:
+            return X
+        X = closer
+        least = distance
+    return X
+
+
+def violated(found: dict[Key, Margin], tolerance: float) -> Iterator[Key]:
+    """The margins below zero by more than a tolerance."""
+    for key, margin in found.items():
+        if margin.value < -tolerance:
+            yield key

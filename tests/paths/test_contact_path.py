@@ -1,0 +1,287 @@
+"""Paths of rods that touch obstacles: the events between arrangements of contacts against shooting."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, fsolve
+
+from cosserat_casadi import build, discretise, follow_path, follow_scene_path, parse_scene, path_result, solve
+from cosserat_casadi.paths.contact_path import ContactPath
+from cosserat_casadi.plots.path_plot import plot_path
+from tests.commands import cosserat
+
+BENDING, LENGTH, WEIGHT, HEIGHT = 0.03, 1.2, 0.981, 0.08
+
+TABLE = """
+schema = 1
+title = "A heavy rod on a table"
+accuracy = { tolerance = 1e-7 }
+[[rods]]
+name = "rod"
+length = 1.2
+strain = "planar"
+stiffness = { bending_x = 0.03, bending_y = 0.03, torsion = 0.02 }
+linear_density = 0.1
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[loads]]
+name = "lift"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, 0]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 1]
+"""
+
+BAR = """
+schema = 1
+inputs = ["rod.base.position"]
+accuracy = { tolerance = 1e-6 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -3.0]
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.8, -1.0, -0.07]
+to = [0.8, 1.0, -0.07]
+radius = 0.05
+"""
+
+
+def followed(text: str, name: str, value: list[float], modes: int) -> ContactPath:
+    scene = parse_scene(text)
+    path = follow_path(build(scene, discretise(scene, modes)), name, value)
+    assert isinstance(path, ContactPath)
+    return path
+
+
+@pytest.fixture(scope="module")
+def lowered() -> ContactPath:
+    """The weight grows from zero."""
+    return followed(TABLE, "weight.acceleration", [0, 0, -9.81], 8)
+
+
+@pytest.fixture(scope="module")
+def lifted() -> ContactPath:
+    """The tip of the rod that lies there is lifted."""
+    return followed(TABLE, "lift.force", [0, 0, 0.8], 8)
+
+
+def span(length: float, curvature: float, force: float, weight: float) -> np.ndarray:
+    """x, z, θ and κ of a heavy elastica at the end of a span that begins level; force of what is beyond its start."""
+
+    def rate(s: float, y: np.ndarray) -> list[float]:
+        _, _, theta, kappa = y
+        return [np.cos(theta), np.sin(theta), kappa, -(force + weight * s) * np.cos(theta) / BENDING]
+
+    start = [0.0, 0.0, 0.0, curvature]
+    return solve_ivp(rate, (0.0, length), start, method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+
+
+def root(missed: object, guess: list[float]) -> np.ndarray:
+    # What it says of its progress at the last digits is no matter: the root is held against the equations.
+    found, *_ = fsolve(missed, guess, xtol=1e-13, full_output=True)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-10)  # type: ignore[operator]
+    return np.asarray(found)
+
+
+def test_a_rod_comes_to_lie_on_a_table(lowered: ContactPath) -> None:
+    """The tip touches; it carries more and more, until it lies level: from there on a line grows."""
+    assert lowered.converged
+    assert [event.kind for event in lowered.events] == ["touch", "point_to_line"]
+    touch, lies_down = lowered.events
+
+    def at_touch(unknown: np.ndarray) -> list[float]:
+        share, curvature = unknown
+        _, z, _, kappa = span(LENGTH, curvature, -share * WEIGHT * LENGTH, share * WEIGHT)
+        return [z + HEIGHT, kappa]
+
+    share, _ = root(at_touch, [0.0094, -0.1])
+    assert_allclose(touch.factor, share, rtol=1e-8, atol=0)
+
+    def lying_down(unknown: np.ndarray) -> list[float]:
+        share, curvature, reaction = unknown
+        _, z, theta, kappa = span(LENGTH, curvature, reaction - share * WEIGHT * LENGTH, share * WEIGHT)
+        return [z + HEIGHT, theta, kappa]
+
+    share, _, reaction = root(lying_down, [0.085, -0.3, 0.03])
+    assert_allclose(lies_down.factor, share, rtol=1e-8, atol=0)
+    assert lies_down.contact is not None
+    assert (lies_down.contact.obstacle, lies_down.contact.start) == ("table", 1.0)
+    before = lies_down.position - 1
+    assert_allclose(lowered.contacts(before)[0].ends, [reaction], rtol=1e-7, atol=0)
+    (line,) = lowered.contacts(-1)
+    assert (line.kind, line.end) == ("line", 1.0)
+
+
+def test_points_are_equilibria_that_hold(lowered: ContactPath) -> None:
+    """Along the way nothing is inside the table, nothing pulls, and a solve for itself finds the same."""
+    for index in (0, 4, 9, -1):
+        solution = lowered.solution(index)
+        assert solution.converged, solution.message
+        assert solution.stable
+        assert_allclose(solution.smallest_eigenvalue, lowered.smallest_eigenvalue[index], rtol=1e-6, atol=0)
+        assert_allclose(solution.tip().position[0], lowered.tip().position[index], rtol=0, atol=1e-12)
+        assert all(min(contact.ends) > -1e-6 for contact in solution.contacts)
+        z = solution.pose(np.linspace(0.0, 1.0, 501)).position[:, 2]
+        assert z.min() > -HEIGHT - 1e-8
+    end = solve(lowered.model)
+    assert_allclose(end.tip().position[0], lowered.tip().position[-1], rtol=0, atol=1e-10)
+    assert_allclose(end.contacts[0].start, lowered.contacts(-1)[0].start, rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_tip_that_is_lifted(lifted: ContactPath) -> None:
+    """The line shrinks to a point where the spans on either side meet, and the point lets go."""
+    assert lifted.converged
+    assert [event.kind for event in lifted.events] == ["slide_from_tip", "line_to_point", "lift_off"]
+    rises, shrinks, lets_go = lifted.events
+    # Without lift the tip lies there unloaded: it rises at once.
+    assert_allclose(rises.factor, 0.0, rtol=0, atol=1e-9)
+
+    def hanging(unknown: np.ndarray) -> list[float]:
+        length, curvature, force = unknown
+        _, z, theta, kappa = span(length, curvature, force, WEIGHT)
+        return [z + HEIGHT, theta, kappa]
+
+    length, _, _ = root(hanging, [0.6, -1.6, -0.35])
+    free = LENGTH - length
+    lift = brentq(lambda force: span(free, 0.0, force - WEIGHT * free, WEIGHT)[3], 0.1, 0.5, xtol=1e-14)
+    assert_allclose(0.8 * shrinks.factor, lift, rtol=1e-8, atol=0)
+    assert shrinks.contact is not None
+    assert_allclose(shrinks.contact.start * LENGTH, length, rtol=1e-7, atol=0)
+
+    def letting_go(unknown: np.ndarray) -> list[float]:
+        force, curvature, place = unknown
+        _, z, theta, _ = span(place, curvature, force - WEIGHT * LENGTH, WEIGHT)
+        *_, kappa = span(LENGTH, curvature, force - WEIGHT * LENGTH, WEIGHT)
+        return [z + HEIGHT, theta, kappa]
+
+    force, _, place = root(letting_go, [0.6, -3.1, 0.43])
+    assert_allclose(0.8 * lets_go.factor, force, rtol=1e-8, atol=0)
+    assert lets_go.contact is not None
+    assert_allclose(lets_go.contact.start * LENGTH, place, rtol=1e-7, atol=0)
+    assert lifted.contacts(-1) == ()
+
+
+@pytest.mark.slow
+def test_a_rod_is_drawn_over_a_bar() -> None:
+    """Contact slides to the tip; the tip goes round the bar and slips off it where the path turns."""
+    path = followed(BAR, "rod.base.position", [-0.25, 0, 0], 9)
+    kinds = [event.kind for event in path.events]
+    assert kinds[:2] == ["slide_to_tip", "limit"]
+    slide, slip = path.events[:2]
+    assert path.stable is not None
+    assert path.stable[slip.position - 1]
+    assert not path.stable[slip.position + 1]
+
+    def at_tip(unknown: np.ndarray) -> list[float]:
+        shift, curvature, force = unknown
+
+        def rate(s: float, y: np.ndarray) -> list[float]:
+            _, _, theta, kappa = y
+            # What is beyond a section pulls it by the push and by N along the normal at the tip.
+            sideways = -force * np.sin(angle)
+            upwards = force * np.cos(angle) - 3.0
+            return [np.cos(theta), np.sin(theta), kappa, (sideways * np.sin(theta) - upwards * np.cos(theta)) / 0.5]
+
+        def shape(end: float) -> np.ndarray:
+            nonlocal angle
+            angle = end
+            return solve_ivp(rate, (0, 1), [-shift, 0, 0, curvature], method="DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+
+        angle = 0.0
+        angle = brentq(lambda end: shape(end)[2] - end, -1.0, 0.5, xtol=1e-14)
+        x, z, theta, kappa = shape(angle)
+        return [x + 0.05 * np.sin(theta) - 0.8, z - 0.05 * np.cos(theta) + 0.07, kappa]
+
+    shift, _, force = root(at_tip, [0.195, -0.1, 3.0])
+    assert_allclose(0.25 * slide.factor, shift, rtol=1e-8, atol=0)
+    assert_allclose(path.contacts(slide.position)[0].start, 1.0, rtol=0, atol=0)
+    assert_allclose(path.contacts(slide.position - 1)[0].ends, [force], rtol=1e-7, atol=0)
+
+
+def test_no_step_takes_a_rod_through_a_thin_wire() -> None:
+    thin = BAR.replace('inputs = ["rod.base.position"]', 'inputs = ["push.force"]').replace(
+        "radius = 0.05", "radius = 4e-3"
+    )
+    path = followed(thin.replace("-0.07]", "-0.21]"), "push.force", [0, 0, -3.0], 4)
+    assert [event.kind for event in path.events] == ["touch"]
+    assert path.contacts(-1)[0].obstacle == "bar"
+    # How the point slides as the rod moves is part of the second variation.
+    assert path.smallest_eigenvalue is not None
+    assert_allclose(path.smallest_eigenvalue[-1], path.solution(-1).smallest_eigenvalue, rtol=1e-9, atol=0)
+
+
+def test_without_contact_it_is_the_path_of_the_scene_without_obstacles() -> None:
+    low = TABLE.replace("-0.08]", "-5.0]")
+    bare = parse_scene(low[: low.index("[[obstacles]]")])
+    free = follow_path(build(bare, discretise(bare, 5)), "lift.force", [0, 0, 0.3])
+    path = followed(low, "lift.force", [0, 0, 0.3], 5)
+    assert path.events == ()
+    assert_allclose(path.tip().position[-1], free.tip().position[-1], rtol=0, atol=1e-12)
+
+
+def test_files_and_figure_name_the_events(lowered: ContactPath) -> None:
+    data = json.loads(json.dumps(path_result(lowered)))
+    touch, lies_down = data["events"]
+    assert touch["contact"] == {"obstacle": "table", "rod": "rod", "from": 1.0, "to": 1.0, "kind": "point"}
+    assert lies_down["kind"] == "point_to_line"
+    (contact,) = data["path"][-1]["contacts"]
+    assert contact["kind"] == "line"
+    assert len(contact["point_forces"]) == 2
+    assert data["path"][0]["contacts"] == []
+    labels = [text.get_text() for text in plot_path(lowered).axes[0].get_legend().get_texts()]
+    assert {"touch", "point to line"} <= set(labels)
+
+
+@pytest.mark.slow
+def test_scene_path_meets_its_tolerance() -> None:
+    scene = parse_scene(TABLE.replace("1e-7", "1e-6"))
+    path = follow_scene_path(scene, "weight.acceleration", [0, 0, -9.81])
+    assert path.converged
+    assert path.error_estimate is not None
+    assert path.error_estimate < 1e-6
+    assert_allclose(path.events[1].factor, 0.0853380845, rtol=1e-6, atol=0)
+
+
+def test_command(tmp_path: Path) -> None:
+    scene = tmp_path / "table.toml"
+    scene.write_text(TABLE.replace("[[rods]]", "[[rods]]", 1).replace("tolerance = 1e-7", "modes = 5"))
+    arguments = ["--input", "weight.acceleration", "--to", "[0,0,-2]", "--output", "path.json"]
+    ended = cosserat("path", scene.name, *arguments, cwd=tmp_path)
+    assert ended.returncode == 0, ended.stdout
+    assert "2 changes of contact" in ended.stdout.replace("\n", " ")
+    kinds = [event["kind"] for event in json.loads((tmp_path / "path.json").read_text())["events"]]
+    assert kinds == ["touch", "point_to_line"]
+
+
+def test_without_a_next_arrangement_the_path_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Honest where it can go no further: the points before are kept."""
+    monkeypatch.setattr("cosserat_casadi.paths.contact_path.entered", lambda *_: None)
+    path = followed(TABLE, "weight.acceleration", [0, 0, -9.81], 4)
+    assert not path.converged
+    assert path.outcome.label == "contact_unsettled"
+    assert "no arrangement of contacts" in path.message
+    assert len(path.factor) > 2
