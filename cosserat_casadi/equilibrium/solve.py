@@ -125,7 +125,7 @@ def solve(
     """
     model = model.at(parameters)
     limits = settings or ContinuationSettings()
-    if model.scene.obstacles:
+    if model.scene.touches_exactly:
         solution = _in_contact(model, values, start, method, limits, progress)
         if stable:
             check_potential(solution.model, solution.inputs)

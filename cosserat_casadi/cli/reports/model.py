@@ -42,7 +42,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
             f"The solve picks modes and nodes for a tolerance of {scene.accuracy.tolerance:g}; "
             "the figures are for the default ones.",
         )
-    if scene.obstacles:
+    if scene.touches_exactly:
         print_plain(console, "The figures are those of the free rods: where they touch obstacles, contact costs more.")
 
 
