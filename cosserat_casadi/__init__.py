@@ -48,7 +48,7 @@ from cosserat_casadi.results.motion_file import motion_result, write_motion
 from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict, with_exact_contact
 from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
 
 __version__ = version("cosserat-casadi")
@@ -121,6 +121,7 @@ __all__ = [
     "solve_scene",
     "sweep_scene",
     "tune",
+    "with_exact_contact",
     "write_acados",
     "write_fmu",
     "write_motion",

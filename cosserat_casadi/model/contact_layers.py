@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import ceil, sqrt
+from math import ceil, inf, sqrt
 
 import numpy as np
 
@@ -89,6 +89,12 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
         return []
     wanted = ceil(sqrt(rod.length / min(widths)) / ELEMENT_FACTOR)
     return list(map(float, np.linspace(0.0, 1.0, min(wanted, MOST_ELEMENTS) + 1)))
+
+
+def thinnest(scene: scenes.Scene) -> float:
+    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any."""
+    thicknesses = [obstacle.thickness for obstacle in scene.obstacles if obstacle.is_smooth]
+    return min(thicknesses, default=inf) / min(rod.length for rod in scene.rods)
 
 
 def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:

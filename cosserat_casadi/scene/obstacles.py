@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
+from math import inf
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -72,6 +73,11 @@ class ObstacleRecord(Entry):
     )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
+
+    @property
+    def thickness(self) -> float:
+        """How far a rod has to go to be outside of it again, on its other side, m; infinite where it has none."""
+        return inf
 
     @property
     def is_smooth(self) -> bool:
@@ -207,6 +213,11 @@ rods = ["finger"]
     centre: Vector = Field(description="its centre in world axes, m")
     radius: Positive = Field(description="its radius, m")
 
+    @property
+    def thickness(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
+
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """It is thicker than its width."""
@@ -232,6 +243,11 @@ rods = ["finger"]
     start: Vector = Field(alias="from", description="start of its axis in world axes, m")
     end: Vector = Field(alias="to", description="end of its axis in world axes, m")
     radius: Positive = Field(description="its radius, m")
+
+    @property
+    def thickness(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:

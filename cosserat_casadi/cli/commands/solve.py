@@ -15,7 +15,7 @@ from cosserat_casadi.cli.options import SceneFile, Settings, check_outputs, give
 from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import read_scene, with_exact_contact
 
 
 def solve(
@@ -27,11 +27,18 @@ def solve(
     stable: Annotated[
         bool, typer.Option("--stable", help="Find a stable equilibrium: where the rod is unstable, let it settle.")
     ] = False,
+    exact: Annotated[
+        bool,
+        typer.Option("--exact-contact", help="Leave the widths of obstacles out: rods touch them exactly."),
+    ] = False,
 ) -> None:
     """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
     # A file that cannot be written is refused before the solve, not after it.
     check_outputs(output, plot)
-    solution = solve_with_progress(read_scene(scene, tuple(settings or ())), stable=stable)
+    read = read_scene(scene, tuple(settings or ()))
+    if exact:
+        read = with_exact_contact(read)
+    solution = solve_with_progress(read, stable=stable)
     if output is not None:
         write_atomically(output, result_text(solution).encode())
     if plot is not None:
