@@ -43,7 +43,7 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
         SceneError: the scene has obstacles without a width.
     """
     if scene.touches_exactly:
-        problem = f"{what} does not look for exact contact: its rods would pass through them"
+        problem = f"{what} does not look for contact that is exact: its rods would pass through them"
         remedy = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
         raise SceneError(Problem("obstacles", problem, remedy))
 

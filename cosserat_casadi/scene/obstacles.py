@@ -52,7 +52,7 @@ class ObstacleRecord(Entry):
     references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
-    rods: Names | None = Field(None, description="names of the rods that may not enter it; all rods when left out")
+    rods: Names | None = Field(None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named")
     bodies: Names | None = Field(
         None,
         description="with width: names of the bodies that may not enter it, as balls of their radius about their "
@@ -86,7 +86,9 @@ class ObstacleRecord(Entry):
 
     def concerns(self, rod: str) -> bool:
         """Whether the rod of this name may not enter it."""
-        return self.rods is None or rod in self.rods
+        if self.rods is None:
+            return self.bodies is None
+        return rod in self.rods
 
     def concerns_body(self, body: str) -> bool:
         """Whether the body of this name may not enter it."""
@@ -105,7 +107,7 @@ class ObstacleRecord(Entry):
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
         """Rods that are not round, bodies without radius; where contact is exact rods that shear and of assemblies."""
-        named = given.get("rods")
+        named = given.get("rods", [] if "bodies" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
             problem = (
