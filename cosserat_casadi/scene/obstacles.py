@@ -52,7 +52,9 @@ class ObstacleRecord(Entry):
     references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
-    rods: Names | None = Field(None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named")
+    rods: Names | None = Field(
+        None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named"
+    )
     bodies: Names | None = Field(
         None,
         description="with width: names of the bodies that may not enter it, as balls of their radius about their "

@@ -28,7 +28,6 @@ from cosserat_casadi import (
     simulate,
     solve,
     solve_scene,
-    sweep_scene,
     with_exact_contact,
 )
 from cosserat_casadi.control import embedded
@@ -36,6 +35,7 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.trace import traced
 from cosserat_casadi.results.solution_file import result
+from cosserat_casadi.sweep.run import plan_sweep
 from cosserat_casadi.sweep.table import table_of
 from tests.commands import cosserat
 from tests.conftest import ROOT
@@ -159,7 +159,9 @@ def test_law_of_the_force(gap: float, pressing: float, rate: float) -> None:
 def test_a_rod_that_lies_flat_has_the_gap_at_which_its_weight_is_carried() -> None:
     weight = 0.1 * 9.81
     gap = WIDTH - (3 * weight * WIDTH**2 / STIFFNESS) ** (1 / 3)
-    text = ROD + f"""
+    text = (
+        ROD
+        + f"""
 [[loads]]
 name = "weight"
 kind = "gravity"
@@ -172,6 +174,7 @@ normal = [0, 0, 1]
 width = {WIDTH}
 stiffness = {STIFFNESS}
 """
+    )
     lying = solve_scene(parse_scene(text))
     assert lying.converged
     assert lying.stable
@@ -243,7 +246,9 @@ def test_a_rod_that_is_pushed_through_is_no_equilibrium(pressed: Solution) -> No
     assert "'rod' is " in through.message
     assert "widths deep inside 'table'" in through.message
     assert float(soft.contact_depth(through.x, through.inputs)) > 1.0
-    found = solve_scene(parse_scene((ROD + PUSH + TABLE + "stiffness = 1.0\n").replace("modes = 5, nodes = 12", "tolerance = 1e-3")))
+    found = solve_scene(
+        parse_scene((ROD + PUSH + TABLE + "stiffness = 1.0\n").replace("modes = 5, nodes = 12", "tolerance = 1e-3"))
+    )
     assert found.outcome is Outcome.UNRESOLVED
     assert "widths deep" in found.message
 
@@ -269,7 +274,9 @@ width = 5e-3
 SHEARED = ROD.replace('"planar"', '"reissner"').replace(
     "torsion = 0.4", "torsion = 0.4, shear_x = 500, shear_y = 500, extension = 500"
 )
-CARRIED = ROD + """
+CARRIED = (
+    ROD
+    + """
 [[rods]]
 name = "second"
 length = 0.5
@@ -277,7 +284,10 @@ strain = "planar"
 stiffness = { bending_y = 0.3 }
 base = { rod = "rod", at = 1.0 }
 """
-PLATFORM = ROD.replace('"planar"', '"kirchhoff"') + """
+)
+PLATFORM = (
+    ROD.replace('"planar"', '"kirchhoff"')
+    + """
 [[bodies]]
 name = "ball"
 radius = 0.02
@@ -286,6 +296,7 @@ body = "ball"
 rod = "rod"
 kind = "fixed"
 """
+)
 
 
 @pytest.mark.parametrize("assembly", ["sheared", "carried", "body"])
@@ -363,3 +374,118 @@ def test_a_rod_that_falls_flat_bounces_as_a_mass_on_the_law_of_hunt_and_crossley
     lost = -(energy.kinetic + energy.elastic + energy.potential - energy.potential[0])
     assert_allclose(energy.dissipated, lost, rtol=0, atol=1e-5 * energy.kinetic.max())
     assert energy.dissipated[-1] > 0.2 * energy.kinetic.max()
+
+
+TARGET = """
+[[targets]]
+kind = "position"
+rod = "rod"
+at = 1.0
+position = {position}
+"""
+
+
+def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
+    """One equilibrium, by every way that leads there."""
+    model = pressed.model
+    followed = follow_path(model, "push.force", [0.0, 0.0, -0.6], values={"push.force": [0.0, 0.0, -0.1]})
+    assert followed.outcome is PathOutcome.CONVERGED
+    assert_allclose(followed.tip().position[-1], pressed.tip().position[0], rtol=0, atol=1e-9)
+
+    assert plan_sweep(model.scene, table_of({"push.force.z": [-0.3, -0.6]}))
+
+    found = inverse(build(parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + TABLE + TARGET.format(position=pressed.tip().position[0].tolist()))))
+    assert found.solution.converged
+    assert_allclose(found.values["push.force"][2], -0.6, rtol=0, atol=1e-5)
+
+    # The table makes the rod stiff: in contact its lowest vibration is faster.
+    modes = modes_of(pressed, count=1)
+    free = modes_of(solve(build(parse_scene(ROD + PUSH))), count=1)
+    assert modes.modes[0].frequency > 1.5 * free.modes[0].frequency
+    assert linearise(pressed).a.shape[0] > 0
+    embedded(model, pressed)
+
+
+def test_parameters_move_the_rod_and_not_the_table() -> None:
+    text = ROD + PUSH + TABLE + "stiffness = 5e3\n"
+    model = build(parse_scene('parameters = ["rod.stiffness.bending_y"]\n' + text))
+    softer = solve(model, parameters={"rod.stiffness.bending_y": 0.4})
+    expected = solve(build(parse_scene(text.replace("bending_y = 0.5", "bending_y = 0.4"))))
+    assert softer.converged
+    assert_allclose(softer.tip().position, expected.tip().position, rtol=0, atol=1e-8)
+    assert_allclose(softer.contacts[0].force, expected.contacts[0].force, rtol=0, atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("quick_compiler")
+def test_c_presses_and_judges_as_python_does(tmp_path: Path) -> None:
+    """A table that is too soft: unknowns are those of Python, and the status says that they are no contact."""
+    text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 2, nodes = 6")
+    model = build(parse_scene(text + "stiffness = 1.0\n"))
+    expected = solve(model)
+    assert expected.outcome is Outcome.UNRESOLVED
+    export(model, tmp_path / "through", "through")
+    found = load(tmp_path / "through").solve(expected.inputs)
+    assert found.outcome is Outcome.UNRESOLVED
+    assert_allclose(found.x, expected.x, rtol=0, atol=1e-9)
+
+
+def test_a_scene_pays_only_for_the_obstacles_that_it_names() -> None:
+    bare = parse_scene(ROD + PUSH)
+    exact = with_exact_contact(parse_scene(ROD + PUSH + TABLE))
+    smooth = parse_scene(ROD + PUSH + TABLE)
+    counts = []
+    for scene in (bare, exact, smooth):
+        model: Model = build(scene, discretise(bare, 4))
+        functions = (model.residual, model.jacobian, model.resolution_index, model.inverse_dynamics, model.energies)
+        counts.append([model.operations(function) for function in functions])
+    assert counts[0] == counts[1]
+    assert all(free < met for free, met in zip(counts[0], counts[2], strict=True))
+
+
+def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text((ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 3, nodes = 8"))
+    smooth = cosserat("solve", "scene.toml", "--json", cwd=tmp_path)
+    assert smooth.returncode == 0
+    assert '"kind": "smooth"' in smooth.stdout
+    exact = cosserat("solve", "scene.toml", "--json", "--exact-contact", cwd=tmp_path)
+    assert exact.returncode == 0
+    assert '"kind": "point"' in exact.stdout
+    checked = cosserat("check", "scene.toml", cwd=tmp_path)
+    assert "smooth plane" in checked.stdout
+
+
+LUMEN = 'name = "it"\nkind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2]]\nradius = 0.01\nrods = ["rod"]\n'
+
+REFUSED = {
+    "no width": (TABLE.replace("width = 0.01", "stiffness = 10.0"), "obstacles[0].stiffness", "without width contact"),
+    "negative": (TABLE.replace("0.01", "-0.01"), "obstacles[0].width", "must be > 0"),
+    "some without": (
+        TABLE + TABLE.replace('"table"', '"other"').replace("width = 0.01", ""),
+        "obstacles[1].width",
+        "other obstacles have one",
+    ),
+    "thick": (
+        f'[[obstacles]]\nname = "it"\n{OBSTACLES["sphere"]}\nwidth = 0.2\n',
+        "obstacles[0].width",
+        "must be < radius",
+    ),
+    "play": (f"[[obstacles]]\n{LUMEN}width = 0.011\n", "obstacles.it.width", "must be less than the play"),
+    "clamp": (TABLE.replace("-0.06", "0.01"), "obstacles.table", "starts 0.01 m inside it"),
+    "radius": (
+        TABLE + 'bodies = ["ball"]\n' + '[[bodies]]\nname = "ball"\n',
+        "obstacles[0].bodies[0]",
+        "has no radius",
+    ),
+    "body": (TABLE + 'bodies = ["none"]\n', "obstacles[0].bodies[0]", "no body is named"),
+    "exact body": (TABLE.replace("width = 0.01", 'bodies = ["b"]'), "obstacles[0].bodies", "without width contact"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused_scenes(case: str) -> None:
+    text, where, problem = REFUSED[case]
+    with pytest.raises(SceneError) as refused:
+        build(parse_scene(ROD + text))
+    assert any(fault.where == where and problem in fault.problem for fault in refused.value.problems), refused.value
