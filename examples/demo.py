@@ -37,9 +37,10 @@ SCENES = (
     "rod_over_bar",
     "wire_in_vessel",
     "felt_loads",
+    "reach_past_bar",
 )
 
-WITH_TARGETS = ("finger_to_point",)
+WITH_TARGETS = ("finger_to_point", "reach_past_bar")
 
 WITH_MEASUREMENTS = ("wire_from_shapes",)
 
@@ -52,6 +53,7 @@ MOTIONS = (
     "thrown_rod",
     "snapping_arch",
     "seaweed",
+    "dropped_rod",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

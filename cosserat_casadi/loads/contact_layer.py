@@ -49,6 +49,8 @@ class ContactLayerLoad(Load[ContactLayer]):
     """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m."""
 
     record = ContactLayer
+    # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
+    growth = 2
 
     def on_body(self, load: ContactLayer, body: scenes.Body) -> BodyPoint | None:
         """The origin of the body, about which it is a ball."""

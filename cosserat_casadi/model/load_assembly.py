@@ -151,6 +151,7 @@ class RodLoads:
             data=kernel.data(site),
             scale=scale,
             motion=motion,
+            growth=kernel.member.growth,
         )
 
     def _feels_motion(self, kernel: TracedLoad) -> bool:

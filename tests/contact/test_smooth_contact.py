@@ -394,7 +394,17 @@ def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
 
     assert plan_sweep(model.scene, table_of({"push.force.z": [-0.3, -0.6]}))
 
-    found = inverse(build(parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + TABLE + TARGET.format(position=pressed.tip().position[0].tolist()))))
+    found = inverse(
+        build(
+            parse_scene(
+                'inputs = ["push.force"]\n'
+                + ROD
+                + PUSH
+                + TABLE
+                + TARGET.format(position=pressed.tip().position[0].tolist())
+            )
+        )
+    )
     assert found.solution.converged
     assert_allclose(found.values["push.force"][2], -0.6, rtol=0, atol=1e-5)
 
