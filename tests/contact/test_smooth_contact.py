@@ -215,6 +215,7 @@ def test_the_jacobian_is_exact_and_symmetric(pressed: Solution) -> None:
     assert_allclose(jacobian, jacobian.T, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_smooth_contact_becomes_exact_as_the_width_shrinks() -> None:
     """The error is proportional to the width: the layer holds the rod off by a part of it."""
     modes = ["accuracy.modes=4", "accuracy.nodes=12"]
@@ -246,9 +247,12 @@ def test_a_rod_that_is_pushed_through_is_no_equilibrium(pressed: Solution) -> No
     assert "'rod' is " in through.message
     assert "widths deep inside 'table'" in through.message
     assert float(soft.contact_depth(through.x, through.inputs)) > 1.0
-    found = solve_scene(
-        parse_scene((ROD + PUSH + TABLE + "stiffness = 1.0\n").replace("modes = 5, nodes = 12", "tolerance = 1e-3"))
-    )
+
+
+@pytest.mark.slow
+def test_no_tolerance_is_met_by_a_rod_that_is_pushed_through() -> None:
+    text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "tolerance = 1e-3")
+    found = solve_scene(parse_scene(text + "stiffness = 1.0\n"))
     assert found.outcome is Outcome.UNRESOLVED
     assert "widths deep" in found.message
 
@@ -299,6 +303,7 @@ kind = "fixed"
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("assembly", ["sheared", "carried", "body"])
 def test_rods_that_exact_contact_leaves_out(assembly: str) -> None:
     text = {
@@ -394,17 +399,8 @@ def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
 
     assert plan_sweep(model.scene, table_of({"push.force.z": [-0.3, -0.6]}))
 
-    found = inverse(
-        build(
-            parse_scene(
-                'inputs = ["push.force"]\n'
-                + ROD
-                + PUSH
-                + TABLE
-                + TARGET.format(position=pressed.tip().position[0].tolist())
-            )
-        )
-    )
+    target = TARGET.format(position=pressed.tip().position[0].tolist())
+    found = inverse(build(parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + TABLE + target)))
     assert found.solution.converged
     assert_allclose(found.values["push.force"][2], -0.6, rtol=0, atol=1e-5)
 
@@ -412,8 +408,8 @@ def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
     modes = modes_of(pressed, count=1)
     free = modes_of(solve(build(parse_scene(ROD + PUSH))), count=1)
     assert modes.modes[0].frequency > 1.5 * free.modes[0].frequency
-    assert linearise(pressed).a.shape[0] > 0
-    embedded(model, pressed)
+    assert np.all(linearise(pressed).eigenvalues.real < 1e-6)
+    assert embedded(model, pressed) is not None
 
 
 def test_parameters_move_the_rod_and_not_the_table() -> None:
@@ -453,6 +449,7 @@ def test_a_scene_pays_only_for_the_obstacles_that_it_names() -> None:
     assert all(free < met for free, met in zip(counts[0], counts[2], strict=True))
 
 
+@pytest.mark.slow
 def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
     file = tmp_path / "scene.toml"
     file.write_text((ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 3, nodes = 8"))
