@@ -496,3 +496,43 @@ def test_refused_scenes(case: str) -> None:
     with pytest.raises(SceneError) as refused:
         build(parse_scene(ROD + text))
     assert any(fault.where == where and problem in fault.problem for fault in refused.value.problems), refused.value
+
+
+GROWING = """
+schema = 1
+inputs = ["rod.length"]
+accuracy = { modes = 3, nodes = 8, tolerance = 1e-3 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+material = { youngs_modulus = 1e7, poisson_ratio = 0.4, density = 1000.0 }
+section = { shape = "circle", radius = 5e-3 }
+base = { position = [0, 0, 0.04], tangent = [1, 0, -0.2] }
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 1]
+width = 0.02
+stiffness = 2e3
+damping = 2.0
+[simulation]
+duration = 0.2
+frames = 21
+tolerance = 1e-4
+[[motions]]
+input = "rod.length"
+times = [0.0, 0.2]
+values = [0.5, 0.6]
+interpolation = "cubic"
+"""
+
+
+@pytest.mark.slow
+def test_energy_of_a_rod_that_is_pushed_out_onto_a_table_balances() -> None:
+    """Where a length moves no load counts as potential: the power of contact is work, without what it dissipates."""
+    motion = simulate(build(parse_scene(GROWING).with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    assert motion.energy.dissipated[-1] > 1e-3 * np.abs(motion.energy.work).max()
+    assert np.abs(motion.energy.imbalance).max() < 1e-4
