@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.contact.surfaces import surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 
 GAUSS_POINTS = 24
 """Points at which the force along a stretch is summed."""
@@ -43,6 +44,20 @@ def _too_deep(contacts: list[Contact]) -> str:
         f" {worst.rod!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give the "
         "obstacle more width or stiffness."
     )
+
+
+def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """How deep nodes and bodies are inside smooth obstacles in several states, in widths, shape (k,).
+
+    Args:
+        model: of a scene with smooth obstacles.
+        x: unknowns, shape (k, model.size).
+        inputs: stacked inputs, shape (k, model.inputs.size).
+    """
+    if not len(x):
+        return np.zeros(0)
+    depths: FloatArray = model.contact_depth.map(len(x))(x.T, inputs.T).full()[0]
+    return depths
 
 
 def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
+from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -358,11 +359,11 @@ def unresolved(history: History, duration: float) -> bool:
 
 def _too_deep(history: History, duration: float) -> str:
     """A sentence where what is not resolved is contact: rods are deeper inside obstacles than their width."""
-    if not any(obstacle.is_smooth for obstacle in history.model.scene.obstacles):
+    if not history.model.scene.obstacles:
         return ""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
-    depths = history.model.contact_depth.map(len(times))(x.T, inputs.T).full()[0]
+    depths = depths_along(history.model, x, inputs)
     worst = int(np.argmax(depths))
     if depths[worst] <= 1.0:
         return ""

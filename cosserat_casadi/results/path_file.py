@@ -10,6 +10,7 @@ from typing import Any
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.follow import EquilibriumPath, PathEvent
+from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -55,6 +56,8 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
         "path": _point_entries(path),
         "events": [_event_entry(path, event) for event in path.events],
     }
+    if path.model.scene.obstacles:
+        data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
     plain_data: dict[str, Any] = plain(data)
     return plain_data
 

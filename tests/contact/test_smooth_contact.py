@@ -34,6 +34,7 @@ from cosserat_casadi.control import embedded
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
 from cosserat_casadi.loads.trace import traced
+from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result
 from cosserat_casadi.sweep.run import plan_sweep
 from cosserat_casadi.sweep.table import table_of
@@ -536,3 +537,15 @@ def test_energy_of_a_rod_that_is_pushed_out_onto_a_table_balances() -> None:
     assert motion.converged, motion.message
     assert motion.energy.dissipated[-1] > 1e-3 * np.abs(motion.energy.work).max()
     assert np.abs(motion.energy.imbalance).max() < 1e-4
+
+
+def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
+    soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
+    path = follow_path(soft, "push.force", [0.0, 0.0, -0.6])
+    assert path.outcome is PathOutcome.UNRESOLVED
+    assert "widths deep" in path.message
+    # As one that is not tells how deep it is.
+    fine = follow_path(pressed.model, "push.force", [0.0, 0.0, -0.6])
+    contact = path_result(fine)["contact"]
+    assert contact["widths"] == {"table": WIDTH}
+    assert -1.0 < max(contact["depth"]) < 1.0
