@@ -169,13 +169,6 @@ def _without_exact_contact(name: str, rod: Table, tied: set[str]) -> Iterator[Fa
         yield Fault((), problem, f"{SMOOTH_FORM}; or leave the rod out of rods")
 
 
-def _too_wide(given: Table) -> Iterator[Fault]:
-    """A width that reaches the middle of a ball or a bar: a rod inside would not be seen to be too deep."""
-    width, radius = given.get("width"), given.get("radius")
-    if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
-        yield Fault(("width",), f"must be < radius, {radius:g} m, got {width:g}", "take a small part of the radius")
-
-
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
 """Kinds of obstacles."""
 
@@ -200,8 +193,28 @@ rods = ["finger"]
     )
 
 
+class RoundRecord(ObstacleRecord):
+    """A ball or a bar: what a rod could pass through, and be outside again."""
+
+    radius: Positive = Field(description="its radius, m")
+
+    @property
+    def thickness(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """It is thicker than its width: else a rod in its middle would not be seen to be too deep."""
+        yield from super().conflicts(given)
+        width, radius = given.get("width"), given.get("radius")
+        if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
+            problem = f"must be < radius, {radius:g} m, got {width:g}"
+            yield Fault(("width",), problem, "take a small part of the radius")
+
+
 @OBSTACLES.register
-class Sphere(ObstacleRecord):
+class Sphere(RoundRecord):
     """A ball."""
 
     example: ClassVar[str] = """\
@@ -215,22 +228,10 @@ rods = ["finger"]
 
     kind: Literal["sphere"] = Field(description="ball")
     centre: Vector = Field(description="its centre in world axes, m")
-    radius: Positive = Field(description="its radius, m")
-
-    @property
-    def thickness(self) -> float:
-        """Its diameter, m."""
-        return 2 * self.radius
-
-    @classmethod
-    def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """It is thicker than its width."""
-        yield from super().conflicts(given)
-        yield from _too_wide(given)
 
 
 @OBSTACLES.register
-class Capsule(ObstacleRecord):
+class Capsule(RoundRecord):
     """A round bar with half a ball at either end."""
 
     example: ClassVar[str] = """\
@@ -246,18 +247,11 @@ rods = ["finger"]
     kind: Literal["capsule"] = Field(description="round bar")
     start: Vector = Field(alias="from", description="start of its axis in world axes, m")
     end: Vector = Field(alias="to", description="end of its axis in world axes, m")
-    radius: Positive = Field(description="its radius, m")
-
-    @property
-    def thickness(self) -> float:
-        """Its diameter, m."""
-        return 2 * self.radius
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """An axis has a length."""
         yield from super().conflicts(given)
-        yield from _too_wide(given)
         start = numbers_of(given.get("from"))
         if start and start == numbers_of(given.get("to")):
             yield Fault(("to",), "must differ from from", 'a bar without length is a ball: kind = "sphere"')
