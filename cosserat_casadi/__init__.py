@@ -50,7 +50,7 @@ from cosserat_casadi.results.path_file import path_result
 from cosserat_casadi.results.solution_file import result, write_result
 from cosserat_casadi.results.tubes_file import equilibria_result, tube_path_result, tubes_result
 from cosserat_casadi.rod.discretisation import Discretisation
-from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict
+from cosserat_casadi.scene import Scene, parse_scene, read_scene, scene_from_dict, with_exact_contact
 from cosserat_casadi.sweep import SobolIndices, Sweep, read_sweep, sobol_indices, sobol_table, sweep_scene
 from cosserat_casadi.tubes.equilibria import TubeEquilibria, all_equilibria
 from cosserat_casadi.tubes.model import TubeModel
@@ -140,6 +140,7 @@ __all__ = [
     "tube_path_result",
     "tubes_result",
     "tune",
+    "with_exact_contact",
     "write_acados",
     "write_fmu",
     "write_motion",

@@ -39,9 +39,10 @@ SCENES = (
     "wire_in_vessel",
     "felt_loads",
     "concentric_tubes",
+    "reach_past_bar",
 )
 
-WITH_TARGETS = ("finger_to_point",)
+WITH_TARGETS = ("finger_to_point", "reach_past_bar")
 
 WITH_MEASUREMENTS = ("wire_from_shapes", "released_strip")
 
@@ -54,6 +55,7 @@ MOTIONS = (
     "thrown_rod",
     "snapping_arch",
     "seaweed",
+    "dropped_rod",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

@@ -96,7 +96,7 @@ def assess(solution: Solution, tolerance: float, waves: bool = False) -> Verdict
         waves: whether the scene puts waves along its rods.
     """
     modes, nodes = _uniform(solution)
-    if solution.outcome is Outcome.UNRESOLVED and nodes < MOST_NODES:
+    if solution.outcome is Outcome.UNRESOLVED and nodes < MOST_NODES and not _too_deep(solution):
         return NeedsNodes(_resolving_nodes(solution, nodes))
     if not solution.converged:
         return NoEquilibrium()
@@ -121,6 +121,11 @@ def _uniform(solution: Solution) -> tuple[int, int]:
     discretisations = solution.model.discretisation.values()
     first = next(iter(discretisations))
     return first.modes[0], first.nodes
+
+
+def _too_deep(solution: Solution) -> bool:
+    """Whether a rod is deeper inside an obstacle than its width, which more nodes do not change."""
+    return any(touch.gap is not None and touch.width and touch.gap < -touch.width for touch in solution.contacts)
 
 
 def _resolving_nodes(solution: Solution, nodes: int) -> int:

@@ -116,7 +116,7 @@ def solve_scene(
     # Parameters have the scene's values: what is solved is one scene.
     scene = scene.baked()
     solver = _SceneSolver(scene, values, stable, progress, report)
-    if scene.obstacles:
+    if scene.touches_exactly:
         transport = scene.accuracy.rotation or solver.reference_transport
         in_contact = solve_contact_scene(scene, values, transport, progress, report)
         return noted_unstable(in_contact) if stable else in_contact

@@ -31,11 +31,11 @@ from cosserat_casadi.codegen.structs import (
     result_struct_words,
 )
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import first_step
+from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.numerics.broyden import SINGULAR
-from cosserat_casadi.numerics.continuation import MOST_BENT, ContinuationSettings
+from cosserat_casadi.numerics.continuation import MOST_BENT
 
 SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singular": "1e-7"}
 """Limits of the solver in float: its rounding is 1e-7 of the largest term."""
@@ -153,7 +153,7 @@ def _words(
     weights = model.discrete.unknowns.step_weights
     return {
         **sizes,
-        **_solver_constants(),
+        **_solver_constants(model),
         "step_weights": numbers(weights.tolist()),
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
@@ -210,8 +210,8 @@ def _workspace_kb(sizes: dict[str, Any], linear: dict[str, Any], in_motion: dict
     return f"{workspace_bytes(*counts, room, extra) / 1000:.1f}"
 
 
-def _solver_constants() -> dict[str, Any]:
-    limits = ContinuationSettings()
+def _solver_constants(model: Model) -> dict[str, Any]:
+    limits = continuation_limits(model)
     return {
         "tolerance": limits.newton.tolerance,
         "iterations": limits.newton.iterations,

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi.equilibrium.load_path import column, input_path
+from cosserat_casadi.equilibrium.smooth_contact import with_smooth_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import (
     Stability,
@@ -73,6 +74,7 @@ def judge(
         iterations=iterations,
         load_factor=load_factor,
     )
+    solution = with_smooth_contacts(solution)
     if not solution.converged:
         return solution
     return _with_stability(solution)

@@ -5,16 +5,29 @@ See docs/theory.md, section 9; section 8 for how constraints yield on the way.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.contact_layers import thinnest
 from cosserat_casadi.numerics.broyden import Jacobian
-from cosserat_casadi.numerics.continuation import Path
+from cosserat_casadi.numerics.continuation import ContinuationSettings, Path
 
 FIRST_STEP = 0.25
 """Longest first step where floating frames move: the compliance has fallen to (3/4)³ then."""
+
+
+def continuation_limits(model: Model) -> ContinuationSettings:
+    """Limits of a continuation: in no step does a rod bend so much that it may pass through a smooth obstacle.
+
+    A step as long as one radian of bending moves a section by half the length of the rod at most.
+    """
+    limits = ContinuationSettings()
+    through = 2 * thinnest(model.scene)
+    return replace(limits, longest=min(limits.longest, through))
 
 
 def load_path(model: Model, inputs: FloatArray, p: FloatArray | None = None) -> Path:

@@ -51,12 +51,15 @@ class Contact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod.
+        rod: name of the rod, or of the body.
         start: abscissa X at which contact begins.
         end: abscissa at which it ends; the same for a point.
         force: resultant on the rod, world axes, shape (3,), N.
-        ends: force at the point, or at both ends of a line, along the normals there, N.
-        kind: "point" or "line".
+        ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.
+        kind: "point" or "line"; "smooth" where the obstacle has a width.
+        width: of the obstacle, m; None where contact is exact.
+        of_body: whether it is a body that is pressed.
+        gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
     """
 
     obstacle: str
@@ -66,6 +69,9 @@ class Contact:
     force: FloatArray
     ends: tuple[float, ...]
     kind: str
+    width: float | None = None
+    gap: float | None = None
+    of_body: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,7 +93,7 @@ class Solution:
             and of the lengths of cables over the rod length; of held rods at sections between the ends too; None if not
             estimated.
         shape_error_estimate: the same over all sections, those between nodes included.
-        contacts: where rods touch obstacles, in order along each rod. Their forces are inputs of the model.
+        contacts: where rods touch obstacles, in order along each rod. The forces of exact ones are inputs of the model.
     """
 
     model: Model

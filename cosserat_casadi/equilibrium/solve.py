@@ -16,7 +16,7 @@ from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.solve import solve_contact
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.judge import correct, judge
-from cosserat_casadi.equilibrium.load_path import input_path, load_path
+from cosserat_casadi.equilibrium.load_path import continuation_limits, input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError, SolveError
@@ -124,8 +124,8 @@ def solve(
         ValueError: unknown method, or a start of another model.
     """
     model = model.at(parameters)
-    limits = settings or ContinuationSettings()
-    if model.scene.obstacles:
+    limits = settings or continuation_limits(model)
+    if model.scene.touches_exactly:
         solution = _in_contact(model, values, start, method, limits, progress)
         if stable:
             check_potential(solution.model, solution.inputs)

@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
-from cosserat_casadi.equilibrium.load_path import column, load_path, step_weights
+from cosserat_casadi.equilibrium.load_path import column, continuation_limits, load_path, step_weights
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.continuation import ContinuationSettings, Path, follow
+from cosserat_casadi.numerics.continuation import Path, follow
 from cosserat_casadi.numerics.newton import NewtonSettings
 from cosserat_casadi.numerics.outcome import Outcome
 
@@ -108,7 +108,7 @@ class Equilibria:
             if not self.sought[case]:
                 outcomes.append(Outcome.CONVERGED)
                 continue
-            end = follow(load_path(self.model, inputs[case], given), ContinuationSettings())
+            end = follow(load_path(self.model, inputs[case], given), continuation_limits(self.model))
             x[case] = end.x
             outcomes.append(end.outcome)
         return Point(x, inputs, p, self._inverses(x, inputs, p)), outcomes
@@ -144,7 +144,7 @@ class Equilibria:
         reached = converged & (moved <= MAX_DISTANCE)
         astray = np.flatnonzero(~reached & far)
         for case in astray:
-            end = follow(self._path(near, int(case), inputs[case], p), ContinuationSettings())
+            end = follow(self._path(near, int(case), inputs[case], p), continuation_limits(self.model))
             if end.outcome is Outcome.CONVERGED:
                 x[case] = end.x
                 reached[case] = True

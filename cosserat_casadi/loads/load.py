@@ -122,9 +122,11 @@ class Load(Kind, ABC, Generic[RecordType]):
     Attributes:
         record: the record of the scene, whose word, inputs and units are those of the load.
         kind: the word of the scene format.
+        growth: power of the load factor by which a load that hangs on the pose grows from the unloaded scene.
     """
 
     record: ClassVar[type[LoadRecord]]
+    growth: ClassVar[int] = 1
 
     def wrench(self, load: RecordType, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
         """Force and moment on a section, in the load's axes; by default minus the derivatives of :meth:`energy`.

@@ -13,6 +13,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi.loads.radius import section_radii
 from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -55,8 +56,5 @@ class PenetrationLoad(Load[Penetration]):
 
 
 def section_radius(rod: RodProperties, X: FloatArray) -> FloatArray:
-    """Radius of the sections of a rod at abscissae X, shape (k,), m; zero where it is given by its stiffness."""
-    if rod.diameter is None:
-        return np.zeros(len(X))
-    diameters = np.asarray(rod.diameter(X))
-    return np.broadcast_to(diameters / 2, X.shape)
+    """Radius of the sections of a rod whose sizes are numbers, shape (k,), m."""
+    return known(section_radii(rod, X))

@@ -17,6 +17,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import SectionConstraint
 from cosserat_casadi.maths.numbers import any_symbolic, known
 from cosserat_casadi.model.constraints import FORCE_WEIGHT, PlacedConstraint, placed_constraints, written_constraints
+from cosserat_casadi.model.contact_layers import contact_layers
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName, UnloadedScene
 from cosserat_casadi.model.homotopy import Compliance
 from cosserat_casadi.model.inputs import InputLayout
@@ -113,6 +114,11 @@ class DiscreteScene:
         if any_symbolic([record.base.position, record.base.quaternion, record.base.at]):
             return True
         return record.base.rod is not None and self.moves_unloaded(record.base.rod)
+
+    @cached_property
+    def loads(self) -> tuple[scenes.LoadRecord, ...]:
+        """The loads of the scene, then what its obstacles with a width press with."""
+        return (*self.scene.loads, *contact_layers(self.scene, self.nominal.rods))
 
     @cached_property
     def records(self) -> dict[str, scenes.Rod]:

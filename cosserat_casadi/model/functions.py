@@ -15,6 +15,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.actuator_assembly import rod_actuation
+from cosserat_casadi.model.contact_depth import contact_depths
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.floating_frames import FrameName
@@ -133,8 +134,17 @@ class ModelFunctions:
 
     @scene_function(Output("resolution_index"), kernel="resolution_index")
     def resolution_index(self, written: Expressions) -> list[Matrix]:
-        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual."""
+        """(x, inputs) ↦ a number beyond 1 where the nodes are too few to resolve the rod, whatever its residual.
+
+        Where rods are deeper inside obstacles than their widths it is their depth in widths, if that is more.
+        """
         return [_resolution_index(written)]
+
+    @scene_function(Output("depth"))
+    def contact_depth(self, written: Expressions) -> list[Matrix] | None:
+        """(x, inputs) ↦ how deep nodes and bodies are inside obstacles, in widths; None without smooth contact."""
+        depths = contact_depths(written.system)
+        return [ca.mmax(ca.vertcat(0, *depths))] if depths else None
 
     @owned_functions(
         Owner.ROD,
@@ -359,6 +369,7 @@ def _resolution_index(written: Expressions) -> Matrix:
             indices.append(error / RESOLVED_NORM)
         elif rod.properties.turning_axes:
             indices.append(largest_turn(rod, q, ratio) / RESOLVED_TURN)
+    indices += contact_depths(written.system)
     return ca.mmax(ca.vertcat(*indices))
 
 

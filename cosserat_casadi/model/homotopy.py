@@ -49,7 +49,7 @@ def scaled(load: RodLoad, load_factor: LoadFactor) -> RodLoad:
     if load_factor is None:
         return load
     if isinstance(load, PoseWrench):
-        return replace(load, scale=load_factor * load.scale)
+        return replace(load, scale=load_factor**load.growth * load.scale)
     return _scaled_wrench(load, load_factor)
 
 

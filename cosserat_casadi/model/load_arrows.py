@@ -42,7 +42,7 @@ class DrawnLoad:
     """
 
     member: Load[Any]
-    load: scenes.Load
+    load: scenes.LoadRecord
     label: str
     on_body: bool
     position: Matrix | FloatArray
@@ -85,12 +85,12 @@ class LoadArrows:
 
     def drawn(self) -> Iterator[DrawnLoad]:
         """All loads on all that they act on, in the order of the scene."""
-        for load in self.discrete.scene.loads:
+        for load in self.discrete.loads:
             values = input_values(self.discrete.layout, load, self.inputs)
             yield from self._on_rods(load, values)
             yield from self._on_bodies(load, values)
 
-    def _on_rods(self, load: scenes.Load, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
+    def _on_rods(self, load: scenes.LoadRecord, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
         member = EFFECTS[load.kind]
         at = member.abscissa(load)
         start, end = member.span(load)
@@ -112,7 +112,7 @@ class LoadArrows:
             yield DrawnLoad(member, load, label, False, positions, force, moment)
             label = ""
 
-    def _on_bodies(self, load: scenes.Load, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
+    def _on_bodies(self, load: scenes.LoadRecord, values: dict[str, Matrix]) -> Iterator[DrawnLoad]:
         member = EFFECTS[load.kind]
         for body in self.discrete.scene.bodies:
             point = member.on_body(load, body)
@@ -128,7 +128,7 @@ class LoadArrows:
             yield DrawnLoad(member, load, label, True, start, point.factor * force, point.factor * moment)
 
 
-def _body_label(load: scenes.Load, body: scenes.Body) -> str:
+def _body_label(load: scenes.LoadRecord, body: scenes.Body) -> str:
     """Name of a load, with the body where the load acts on bodies that it does not name, as a weight does."""
     if getattr(load, "body", None) is not None:
         return load.name

@@ -79,11 +79,11 @@ class RodLoads:
     def all(self) -> list[RodLoad]:
         """What all loads do to the rod, in the axes of its base."""
         rod_loads: list[RodLoad] = []
-        for load in self.discrete.scene.loads:
+        for load in self.discrete.loads:
             rod_loads += self.of(load)
         return rod_loads
 
-    def of(self, load: scenes.Load) -> list[RodLoad]:
+    def of(self, load: scenes.LoadRecord) -> list[RodLoad]:
         """What one load does to the rod: nothing where it does not act there."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
@@ -151,6 +151,7 @@ class RodLoads:
             data=kernel.data(site),
             scale=scale,
             motion=motion,
+            growth=kernel.member.growth,
         )
 
     def _feels_motion(self, kernel: TracedLoad) -> bool:
@@ -158,7 +159,7 @@ class RodLoads:
         return self.motion is not None and kernel.moving is not None
 
 
-def _site(discrete: DiscreteScene, rod: str, load: scenes.Load) -> Site:
+def _site(discrete: DiscreteScene, rod: str, load: scenes.LoadRecord) -> Site:
     """Sections of a rod that a load acts on: one, or those of the nodes of its span."""
     discrete_rod = discrete.rods[rod]
     grid = discrete_rod.grid
@@ -222,7 +223,7 @@ def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
             indices.extend(range(span.start, span.stop))
     # What depends on a pose does so whatever its numbers are.
     discrete = discrete.nominal
-    for load in discrete.scene.loads:
+    for load in discrete.loads:
         free = [span for entry, span in layout if entry.owner == load.name and not entry.of_rod]
         if not free:
             continue
@@ -235,7 +236,7 @@ def nonlinear_inputs(discrete: DiscreteScene) -> list[int]:
     return indices
 
 
-def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Matrix]) -> list[TracedLoad]:
+def _kernels(discrete: DiscreteScene, load: scenes.LoadRecord, values: Mapping[str, Matrix]) -> list[TracedLoad]:
     """The kernel of a load for each rod and body that it acts on."""
     member = EFFECTS[load.kind]
     data_sizes = []
@@ -248,7 +249,7 @@ def _kernels(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, Ma
     return [traced(member, load, values, size) for size in data_sizes]
 
 
-def input_values(layout: InputLayout, record: scenes.Load | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
+def input_values(layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, inputs: Matrix) -> dict[str, Matrix]:
     """Inputs of a load or an actuator, and its numbers that are expressions of parameters.
 
     What is zero for good is a matrix that stores nothing.
@@ -263,7 +264,7 @@ def input_values(layout: InputLayout, record: scenes.Load | scenes.Actuator, inp
 
 
 def input_value(
-    layout: InputLayout, record: scenes.Load | scenes.Actuator, field: str, inputs: Matrix
+    layout: InputLayout, record: scenes.LoadRecord | scenes.Actuator, field: str, inputs: Matrix
 ) -> Matrix | None:
     """One input of a load or an actuator; None where it is zero for good."""
     entries = layout.of_load(record.name, field)
@@ -289,6 +290,7 @@ class BodyLoad:
         aligns: whether it can hold the orientation of the body: a force that keeps its direction, or a load that
             depends on the pose.
         stiffness: 6×6 derivative of [force; moment] with the [δr; δθ] of the point; None for a dead load or a follower.
+        energy: 1×1, J; None for a load that is not given by one.
     """
 
     position: tuple[Scalar, Scalar, Scalar]
@@ -298,6 +300,7 @@ class BodyLoad:
     follower: bool
     aligns: bool
     stiffness: Matrix | None = None
+    energy: Matrix | None = None
 
     def scaled(self, load_factor: LoadFactor) -> BodyLoad:
         """The load at a load factor."""
@@ -363,13 +366,13 @@ class BodyLoads:
     def all(self) -> list[BodyLoad]:
         """What all loads do to the body."""
         body_loads = []
-        for load in self.discrete.scene.loads:
+        for load in self.discrete.loads:
             body_load = self.of(load)
             if body_load is not None:
                 body_loads.append(body_load)
         return body_loads
 
-    def of(self, load: scenes.Load) -> BodyLoad | None:
+    def of(self, load: scenes.LoadRecord) -> BodyLoad | None:
         """What one load does to the body; None where it does not act there, or is zero for good."""
         point = EFFECTS[load.kind].on_body(load, self.body)
         if point is None:
@@ -407,6 +410,9 @@ class BodyLoads:
         arguments = [self.position + arm, self.rotation, *base, parameters, profiles]
         force, moment = section_kernel.wrench.call(arguments)
         (stiffness,) = section_kernel.stiffness.call(arguments)
+        energy = None
+        if section_kernel.energy is not None:
+            energy = point.factor * section_kernel.energy(*arguments)
         return BodyLoad(
             position=point.position,
             arm=arm,
@@ -415,6 +421,7 @@ class BodyLoads:
             follower=False,
             aligns=True,
             stiffness=point.factor * stiffness,
+            energy=energy,
         )
 
     def _arm(self, point: BodyPoint) -> Matrix:
@@ -427,8 +434,8 @@ class BodyLoads:
 def loads_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
     """Whether all loads of a scene have a potential at these inputs."""
     values = load_values(discrete.scene, discrete.layout, inputs)
-    for load in discrete.scene.loads:
-        numbers = values[load.name]
+    for load in discrete.loads:
+        numbers = values.get(load.name, {})
         if not _has_potential_on_bodies(discrete, load, numbers):
             return False
         if not all(_has_potential_on_rod(discrete, rod, load, numbers) for rod in discrete.rods):
@@ -436,7 +443,9 @@ def loads_have_potential(discrete: DiscreteScene, inputs: FloatArray) -> bool:
     return True
 
 
-def _has_potential_on_bodies(discrete: DiscreteScene, load: scenes.Load, values: Mapping[str, FloatArray]) -> bool:
+def _has_potential_on_bodies(
+    discrete: DiscreteScene, load: scenes.LoadRecord, values: Mapping[str, FloatArray]
+) -> bool:
     """Whether a load has a potential on the bodies that it acts on; it has on none."""
     member = EFFECTS[load.kind]
     if all(member.on_body(load, body) is None for body in discrete.scene.bodies):
@@ -445,7 +454,7 @@ def _has_potential_on_bodies(discrete: DiscreteScene, load: scenes.Load, values:
 
 
 def _has_potential_on_rod(
-    discrete: DiscreteScene, rod: str, load: scenes.Load, values: Mapping[str, FloatArray]
+    discrete: DiscreteScene, rod: str, load: scenes.LoadRecord, values: Mapping[str, FloatArray]
 ) -> bool:
     """Whether a load has a potential on a rod, be it that it does not act there."""
     if not EFFECTS[load.kind].acts_on(load, rod):
@@ -462,7 +471,7 @@ def _turns_about_one_axis(discrete: DiscreteScene, rod: str) -> bool:
     return len(discrete.rods[rod].properties.turning_axes) < 2
 
 
-def is_dead_force(discrete: DiscreteScene, load: scenes.Load) -> bool:
+def is_dead_force(discrete: DiscreteScene, load: scenes.LoadRecord) -> bool:
     """Whether a load is a force of fixed direction and no moment, whatever its inputs: it has the energy −Σ f·r."""
     # Ones, since what the inputs may change need not stay zero; a moment that they may not change stores nothing.
     values = input_values(discrete.layout, load, ca.DM.ones(discrete.layout.size, 1))

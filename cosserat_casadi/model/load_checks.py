@@ -29,7 +29,7 @@ def check_loads(discrete: DiscreteScene) -> None:
 
 
 def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
-    for load in discrete.scene.loads:
+    for load in discrete.loads:
         member = EFFECTS[load.kind]
         for rod, discrete_rod in discrete.rods.items():
             if member.acts_on(load, rod):

@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.contact_layer import ContactLayer
 from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
@@ -52,30 +53,37 @@ class MotionEnergy:
 
     @cached_property
     def load_is_dead(self) -> FloatArray:
-        """One for every load that is a force of fixed direction, and so has an energy, else zero; shape (loads,)."""
-        flags = [is_dead_force(self.system.discrete, load) for load in self._loads]
+        """One for every load whose energy is told, else zero, shape (loads,): dead forces and smooth contact."""
+        flags = [_is_contact(load) or is_dead_force(self.system.discrete, load) for load in self._loads]
         return np.asarray(flags, dtype=float)
 
     @cached_property
     def of_loads(self) -> Matrix:
-        """Energy −Σ f·r of each load, (loads)×1, J: zero for a load that is no dead force."""
+        """Energy of each load, (loads)×1, J: −Σ f·r of a dead force, that of smooth contact, zero of any other."""
         energies = []
         for load, dead in zip(self._loads, self.load_is_dead, strict=True):
             energy = ca.DM(1, 1)
-            if dead:
+            if _is_contact(load):
+                energy = self._contact_energy(load)
+            elif dead:
                 energy = self._energy_of(load)
             energies.append(energy)
         return ca.vertcat(*energies)
 
     @cached_property
     def dissipated_power(self) -> Matrix:
-        """Power that the viscous stress of the rods turns into heat, 1×1, W."""
-        return _sum([viscosity.dissipated_power for viscosity in self.system.viscosities.values()])
+        """Power that the viscous stress of the rods and the damping of contact turn into heat, 1×1, W."""
+        of_rods = [viscosity.dissipated_power for viscosity in self.system.viscosities.values()]
+        # What contact presses with at rest is stored: what it takes beyond that is lost.
+        of_contact = [
+            self._power_of(load, resting=True) - self._power_of(load) for load in self._loads if _is_damped(load)
+        ]
+        return _sum([*of_rods, *of_contact])
 
     @cached_property
     def load_powers(self) -> Matrix:
-        """Power of each load, (loads)×1, W."""
-        return ca.vertcat(*[self._power_of(load) for load in self._loads])
+        """Power of each load, (loads)×1, W; of contact that which it stores, without what its damping takes."""
+        return ca.vertcat(*[self._power_of(load, resting=_is_damped(load)) for load in self._loads])
 
     @cached_property
     def actuator_powers(self) -> Matrix:
@@ -127,8 +135,8 @@ class MotionEnergy:
         return linear, angular
 
     @property
-    def _loads(self) -> tuple[scenes.Load, ...]:
-        return self.system.discrete.scene.loads
+    def _loads(self) -> tuple[scenes.LoadRecord, ...]:
+        return self.system.discrete.loads
 
     @property
     def _motion(self) -> MotionArguments:
@@ -145,10 +153,11 @@ class MotionEnergy:
 
     # Loads
 
-    def _on_rods(self, load: scenes.Load) -> Iterator[tuple[str, Wrench]]:
-        """The rods that a load acts on with its wrenches at this instant, base axes."""
+    def _on_rods(self, load: scenes.LoadRecord, *, resting: bool = False) -> Iterator[tuple[str, Wrench]]:
+        """The rods that a load acts on with its wrenches at this instant, base axes; or those if the rods rested."""
+        of_load = self.system.resting_loads_of if resting else self.system.loads_of
         for rod in self.system.discrete.rods:
-            for wrench in self.system.loads_of(load, rod):
+            for wrench in of_load(load, rod):
                 yield rod, self._frozen(rod, wrench)
 
     def _frozen(self, rod: str, load: RodLoad) -> Wrench:
@@ -156,7 +165,7 @@ class MotionEnergy:
             return LoadedSections(load, self.system.shapes[rod]).frozen
         return load
 
-    def _on_bodies(self, load: scenes.Load) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
+    def _on_bodies(self, load: scenes.LoadRecord) -> Iterator[tuple[Pose, FrameMotion, BodyLoad]]:
         """The bodies that a load acts on, where they are and how they move, world axes."""
         for name, frame_motion in self.system.frame_motions.items():
             body = frame_motion.frame.body
@@ -168,16 +177,30 @@ class MotionEnergy:
             if body_load is not None:
                 yield pose, frame_motion.motion, body_load
 
-    def _power_of(self, load: scenes.Load) -> Matrix:
+    def _power_of(self, load: scenes.LoadRecord, *, resting: bool = False) -> Matrix:
         powers = []
-        for rod, wrench in self._on_rods(load):
+        for rod, wrench in self._on_rods(load, resting=resting):
             powers.append(self._wrench_power(self.system.motions[rod], wrench))
         for _, motion, body_load in self._on_bodies(load):
             twist = ca.vertcat(motion.angular_velocity, motion.velocity)
             powers.append(ca.dot(body_load.wrench, twist))
         return _sum(powers)
 
-    def _energy_of(self, load: scenes.Load) -> Matrix:
+    def _contact_energy(self, load: scenes.LoadRecord) -> Matrix:
+        """What an obstacle with a width stores."""
+        energies = []
+        for rod in self.system.discrete.rods:
+            for wrench in self.system.resting_loads_of(load, rod):
+                assert isinstance(wrench, PoseWrench), "the force of contact hangs on the place of its section"
+                energy = LoadedSections(wrench, self.system.shapes[rod]).energy
+                assert energy is not None, "contact is given by its energy"
+                energies.append(energy)
+        for _, _, body_load in self._on_bodies(load):
+            assert body_load.energy is not None, "contact is given by its energy"
+            energies.append(body_load.energy)
+        return _sum(energies)
+
+    def _energy_of(self, load: scenes.LoadRecord) -> Matrix:
         """Minus the work of dead forces from the origin of the world."""
         energies = []
         for rod, wrench in self._on_rods(load):
@@ -234,6 +257,16 @@ class MotionEnergy:
             # The rod that comes along has the speed of its section already.
             powers.append(inertia.kinetic_energy / inertia.ratio * rates.ratio_rate)
         return _sum(powers)
+
+
+def _is_contact(load: scenes.LoadRecord) -> bool:
+    """Whether a load is the push of an obstacle with a width."""
+    return isinstance(load, ContactLayer)
+
+
+def _is_damped(load: scenes.LoadRecord) -> bool:
+    """Whether it is one that takes energy."""
+    return isinstance(load, ContactLayer) and load.is_damped
 
 
 def _sum(terms: list[Matrix]) -> Matrix:

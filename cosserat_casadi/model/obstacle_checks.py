@@ -33,18 +33,18 @@ def check_obstacles(discrete: DiscreteScene) -> None:
 
 
 def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
-    """Refuse a scene with obstacles where contact is not looked for.
+    """Refuse a scene with obstacles that are touched exactly where such contact is not looked for.
 
     Args:
         scene: the scene.
         what: what is asked of it, such as "a motion".
 
     Raises:
-        SceneError: the scene has obstacles.
+        SceneError: the scene has obstacles without a width.
     """
-    if scene.obstacles:
-        problem = f"{what} does not look for contact: its rods would pass through them"
-        remedy = "solve the scene, where contact at rest is found, or leave them out"
+    if scene.touches_exactly:
+        problem = f"{what} does not look for contact that is exact: its rods would pass through them"
+        remedy = "give each a width, m, for a contact that is smooth; or solve the scene, or leave them out"
         raise SceneError(Problem("obstacles", problem, remedy))
 
 
@@ -52,7 +52,10 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
     for rod in discrete.scene.rods:
         properties = discrete.rods[rod.name].properties
         radii = section_radius(properties, LOOKED_AT)
-        held = {"starts": (known(base_pose(rod)[0]), float(radii[0]))}
+        held = {}
+        # Where a carried rod starts is for its carrier to say.
+        if rod.base.rod is None:
+            held["starts"] = (known(base_pose(rod)[0]), float(radii[0]))
         for support in discrete.scene.supports:
             if support.rod == rod.name:
                 held["is held"] = (np.asarray(support.position, dtype=float), float(radii[-1]))

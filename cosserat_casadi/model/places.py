@@ -16,6 +16,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.numbers import Scalar, as_vector, is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.contact_layers import joined_ends, layer_ends
 from cosserat_casadi.model.registry import EFFECTS
 
 NARROWEST = 1e-6
@@ -35,8 +36,10 @@ def places_on(scene: scenes.Scene, rod: str) -> list[Scalar]:
 
 
 def element_ends(scene: scenes.Scene, rod: str) -> tuple[float, ...]:
-    """Abscissae at which a rod is cut: its ends and the places on it."""
-    return tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
+    """Abscissae at which a rod is cut: its ends, the places on it, and where contact asks for elements."""
+    asked_for = tuple(sorted({0.0, 1.0, *map(float, places_on(scene, rod))}))
+    (record,) = [record for record in scene.rods if record.name == rod]
+    return joined_ends(asked_for, layer_ends(scene, record))
 
 
 def moved_ends(

@@ -61,6 +61,15 @@ def price_of_load(scene: scenes.Scene, load: str) -> int:
     return loaded.operations(loaded.residual) - bare.operations(bare.residual)
 
 
+def price_of_obstacle(scene: scenes.Scene, obstacle: str) -> int:
+    """Operations that an obstacle with a width adds to the residual, with the elements that it asks for."""
+    baked = scene.baked()
+    kept = tuple(other for other in baked.obstacles if other.name != obstacle)
+    bare = build(baked.model_copy(update={"obstacles": kept}))
+    met = build(baked)
+    return met.operations(met.residual) - bare.operations(bare.residual)
+
+
 def without_load(scene: scenes.Scene, name: str) -> scenes.Scene:
     """The scene without one of its loads or actuators, and without the inputs that were its."""
     loads = tuple(load for load in scene.loads if load.name != name)

@@ -8,6 +8,7 @@ from cosserat_casadi.actuators.actuator import Actuator
 from cosserat_casadi.actuators.chamber import ChamberActuator
 from cosserat_casadi.actuators.tendon import TendonActuator
 from cosserat_casadi.loads.body_wrench import BodyWrenchLoad
+from cosserat_casadi.loads.contact_layer import ContactLayerLoad
 from cosserat_casadi.loads.contact_line import ContactLineLoad
 from cosserat_casadi.loads.contact_point import ContactPointLoad
 from cosserat_casadi.loads.distributed_wrench import DistributedWrenchLoad
@@ -54,6 +55,6 @@ for shipped in (
 ):
     register(shipped)
 
-for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad):
-    # What the search for contact adds to a scene: no scene file names it, so that the scene format does not know it.
+for found in (ContactPointLoad, ContactLineLoad, PenetrationLoad, ContactLayerLoad):
+    # What obstacles press with: no scene file names it as a load, so that the scene format does not know it.
     EFFECTS[found.kind] = found()

@@ -6,7 +6,7 @@ rows and columns (model/assembly.py), never instructions to the rods themselves.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import casadi as ca
@@ -386,9 +386,13 @@ class System:
         loads = self._rod_loads(rod).all()
         return [scaled(load, self.arguments.load_factor) for load in loads]
 
-    def loads_of(self, load: scenes.Load, rod: str) -> list[RodLoad]:
+    def loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
         """What one load of the scene does to a rod, base frame."""
         return self._rod_loads(rod).of(load)
+
+    def resting_loads_of(self, load: scenes.LoadRecord, rod: str) -> list[RodLoad]:
+        """What one load would do to a rod that rests in this shape, base frame."""
+        return replace(self._rod_loads(rod), motion=None).of(load)
 
     def _rod_loads(self, rod: str) -> RodLoads:
         base = RodBase(self.base(rod).position, self._base_R_world(rod))

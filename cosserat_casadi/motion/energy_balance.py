@@ -62,9 +62,9 @@ def _still(model: Model, moving: frozenset[str]) -> FloatArray:
     lengths = {entry.name for entry, _ in model.inputs if entry.of_rod and entry.field == "length"}
     # A rod that grows is weighed by more and more of it.
     if lengths & moving:
-        return np.zeros(len(model.scene.loads))
+        return np.zeros(len(model.discrete.loads))
     owners = {entry.owner for entry, _ in model.inputs if entry.name in moving and not entry.of_rod}
-    return np.array([float(load.name not in owners) for load in model.scene.loads])
+    return np.array([float(load.name not in owners) for load in model.discrete.loads])
 
 
 def _integrals(history: History, times: FloatArray, working: FloatArray) -> tuple[FloatArray, FloatArray]:

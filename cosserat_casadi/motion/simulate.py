@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
+from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
@@ -356,6 +357,22 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
+def _too_deep(history: History, duration: float) -> str:
+    """A sentence where what is not resolved is contact: rods are deeper inside obstacles than their width."""
+    if not history.model.scene.obstacles:
+        return ""
+    times = watched_times(history, duration)
+    x, inputs = history.rough_positions(times)
+    depths = depths_along(history.model, x, inputs)
+    worst = int(np.argmax(depths))
+    if depths[worst] <= 1.0:
+        return ""
+    return (
+        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle, too deep to be "
+        "contact: give the obstacle more width or stiffness."
+    )
+
+
 def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
@@ -369,7 +386,7 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
     message = message_of(history, outcome)
     if unresolved(history, simulator.simulation.duration):
         outcome = MotionOutcome.UNRESOLVED
-        message = message_of(history, outcome)
+        message = message_of(history, outcome) + _too_deep(history, simulator.simulation.duration)
     elif not error <= bound:
         outcome = MotionOutcome.UNRESOLVED
         found = f"The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."

@@ -103,8 +103,8 @@ class Energies:
     Attributes:
         kinetic: of rods and bodies.
         elastic: of the rods.
-        potential: of dead forces and gravity.
-        dissipated: by the rods' damping since the start.
+        potential: of dead forces, gravity and smooth contact.
+        dissipated: by the damping of rods and of smooth contact since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
         impacts: lost since the start where slack cables snapped taut.
         imbalance: what is left over of the balance of the other six, relative to the largest energy; without unit.

@@ -144,6 +144,10 @@ class LumenObstacle(Obstacle[Lumen]):
         line, radii = centre_line.at(s)
         where = f"obstacles.{obstacle.name}"
         narrowest = float(radii.min())
+        # A smooth wall that reaches the middle of the lumen would press the rod from all sides there.
+        if obstacle.width is not None and radius < narrowest <= radius + obstacle.width:
+            problem = f"must be less than the play of the rod, {narrowest - radius:.4g} m, got {obstacle.width:.4g}"
+            yield Problem(f"{where}.width", problem, "take a small part of the play")
         if narrowest <= radius:
             at = line[int(np.argmin(radii))]
             problem = f"has the radius {narrowest:.4g} m at {np.round(at, 6).tolist()}, its rod {radius:.4g} m"

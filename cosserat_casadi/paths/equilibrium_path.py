@@ -123,6 +123,11 @@ class EquilibriumPath:
         every_variation_costs = self.smallest_eigenvalue > 0.0
         return every_variation_costs | self.neutral
 
+    @property
+    def all_inputs(self) -> FloatArray:
+        """Stacked inputs at all points, shape (k, model.inputs.size)."""
+        return self.base + self.factor[:, None] * self.change
+
     def inputs(self, factor: float) -> FloatArray:
         """Stacked inputs at a factor."""
         change = factor * self.change

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import input_path
+from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.typing import FloatArray
@@ -194,7 +195,7 @@ def follow_path(
     """
     model = model.at()
     followed = _followed(model, name, value, values)
-    if model.scene.obstacles:
+    if model.scene.touches_exactly:
         path = follow_contact_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )
@@ -207,7 +208,23 @@ def follow_path(
         return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
     traced = trace(curve, branch=branch, progress=progress)
-    return followed.record(traced)
+    return _unless_too_deep(followed.record(traced))
+
+
+def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:
+    """The path; not resolved where rods are deeper inside smooth obstacles than their width on the way."""
+    if not path.converged or not path.model.scene.obstacles:
+        return path
+    depths = depths_along(path.model, path.x, path.all_inputs)
+    too_deep = np.flatnonzero(depths > 1.0)
+    if not len(too_deep):
+        return path
+    message = (
+        f"{PathOutcome.UNRESOLVED.value} From factor {path.factor[too_deep[0]]:.6g} on a rod is up to "
+        f"{depths.max():.3g} widths deep inside an obstacle, too deep to be contact: give the obstacle more width or "
+        "stiffness."
+    )
+    return replace(path, outcome=PathOutcome.UNRESOLVED, message=message)
 
 
 def _followed(model: Model, name: str, value: npt.ArrayLike, values: Mapping[str, npt.ArrayLike] | None) -> _Followed:

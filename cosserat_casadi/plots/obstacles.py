@@ -69,9 +69,12 @@ def _mark_contacts(canvas: Canvas, solution: Solution) -> None:
     """Mark points of contact, and draw stretches that lie on an obstacle once more."""
     label: str | None = "contact"
     for contact in solution.contacts:
-        X = np.linspace(contact.start, contact.end, 41 if contact.kind == "line" else 1)
+        if contact.of_body:
+            continue
+        is_stretch = contact.start < contact.end
+        X = np.linspace(contact.start, contact.end, 41 if is_stretch else 1)
         points = solution.pose(X, contact.rod).position
-        if contact.kind == "line":
+        if is_stretch:
             canvas.line(points, color="black", linewidth=1.6, zorder=8)
         canvas.markers(points[[0, -1]], marker="o", markersize=5, color="black", zorder=9, label=label)
         # The legend names contacts once.

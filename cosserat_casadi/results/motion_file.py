@@ -21,6 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.poses import Poses
 from cosserat_casadi.motion.trajectory import Motion
+from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 from cosserat_casadi.results.solution_file import listed_abscissae
 from cosserat_casadi.sweep.outcome_file import arrow_module
@@ -105,6 +106,8 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
         data["bodies"] = {body.name: _pose_entry(motion.body(body.name)) for body in scene.bodies}
     if scene.actuators:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
+    if scene.obstacles:
+        data["contact"] = contact_entry(model, motion.x, motion.inputs)
     data["energy"] = asdict(motion.energy)
     return data
 

@@ -10,6 +10,7 @@ from typing import Any
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
+from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -55,6 +56,9 @@ def path_result(path: EquilibriumPath) -> dict[str, Any]:
         "path": _point_entries(path),
         "events": [_event_entry(path, event) for event in path.events],
     }
+    scene = path.model.scene
+    if scene.obstacles and not scene.touches_exactly:
+        data["contact"] = contact_entry(path.model, path.x, path.all_inputs)
     plain_data: dict[str, Any] = plain(data)
     return plain_data
 
@@ -98,8 +102,8 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
             **_stability_entry(path, index),
             "rods": {name: points.entry(index) for name, points in rods.items()},
         }
-        # Of scenes without obstacles there is nothing to say.
-        if path.model.scene.obstacles:
+        # How deep rods are inside smooth obstacles is told of the whole path.
+        if path.model.scene.touches_exactly:
             entry["contacts"] = [
                 {**_contact_entry(contact), "point_forces": contact.ends} for contact in path.contacts(index)
             ]

@@ -88,16 +88,21 @@ def _body_entry(solution: Solution, name: str) -> dict[str, Any]:
 
 
 def _contact_entry(contact: Contact) -> dict[str, Any]:
-    """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line."""
-    return {
-        "obstacle": contact.obstacle,
-        "rod": contact.rod,
-        "from": contact.start,
-        "to": contact.end,
-        "force": contact.force,
-        "kind": contact.kind,
-        "point_forces": contact.ends,
-    }
+    """Where a rod touches, and the forces on it: the resultant, and those at the point or at both ends of a line.
+
+    Of a smooth contact, which has no such ends, the width of the obstacle and the smallest gap.
+    """
+    entry: dict[str, Any] = {"obstacle": contact.obstacle}
+    if contact.of_body:
+        entry["body"] = contact.rod
+    else:
+        entry |= {"rod": contact.rod, "from": contact.start, "to": contact.end}
+    entry |= {"force": contact.force, "kind": contact.kind}
+    if contact.width is None:
+        entry["point_forces"] = contact.ends
+    else:
+        entry |= {"width": contact.width, "gap": contact.gap}
+    return entry
 
 
 def listed_abscissae(breaks: tuple[float, ...]) -> FloatArray:

@@ -74,6 +74,7 @@ class PoseWrench:
         data: what it depends on at its sections, shape (d, k).
         scale: factor on force, moment and energy.
         motion: of the rod; None at rest, and for a kernel that does not depend on rates.
+        growth: power of the load factor by which it grows on the way from the unloaded scene.
     """
 
     at: Scalar | None
@@ -85,6 +86,7 @@ class PoseWrench:
     data: Numbers
     scale: Matrix | float
     motion: RodMotion | None = None
+    growth: int = 1
 
     def __post_init__(self) -> None:
         check_shape("base_position", self.base_position, 3, 1)

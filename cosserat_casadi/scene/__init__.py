@@ -21,6 +21,7 @@ from cosserat_casadi.scene.constraints import (
     Support,
     SupportRecord,
 )
+from cosserat_casadi.scene.exact_contact import with_exact_contact
 from cosserat_casadi.scene.families import Family
 from cosserat_casadi.scene.flow import Flow
 from cosserat_casadi.scene.foundation import Foundation
@@ -135,4 +136,5 @@ __all__ = [
     "parse_scene",
     "read_scene",
     "scene_from_dict",
+    "with_exact_contact",
 ]

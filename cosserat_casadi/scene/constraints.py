@@ -22,6 +22,7 @@ from cosserat_casadi.scene.values import (
     Direction,
     Name,
     NotNegative,
+    Positive,
     Quadruple,
     Quaternion,
     Triple,
@@ -170,6 +171,10 @@ mass = 0.1
         (0.0, 0.0, 0.0),
         description="moments of inertia about the centre of mass in the axes of the body, kg m²; three, or the rows of "
         "a symmetric matrix",
+    )
+
+    radius: Positive | None = Field(
+        None, description="radius of the ball about its origin that keeps from obstacles which name it, m"
     )
 
     @property

@@ -37,6 +37,7 @@ UNITS = (
     "Pa",
     "rad",
     "Hz",
+    "s/m",
     "s",
 )
 """Units as descriptions of keys give them, longest first where one begins another."""

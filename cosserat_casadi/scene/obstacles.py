@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
+from math import inf
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -23,6 +24,7 @@ from cosserat_casadi.scene.values import (
     Name,
     Names,
     NotEmpty,
+    NotNegative,
     Positive,
     Vector,
     numbers_of,
@@ -31,35 +33,97 @@ from cosserat_casadi.scene.values import (
 SHEARS = {3, 4}
 """Indices of the shears among the strains."""
 
+SMOOTH_KEYS = ("width", "stiffness", "damping", "bodies")
+"""Keys of an obstacle whose contact is smooth."""
+
+SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
+"""What to do where exact contact is not found."""
+
 FEWEST_POINTS = 2
 """Points of a lumen that make a line."""
 
 
 class ObstacleRecord(Entry):
-    """What the centre lines of rods keep away from, by the radius of their sections."""
+    """What the centre lines of rods keep away from, by the radius of their sections.
 
-    references: ClassVar[Mapping[str, str]] = {"rods": "rods"}
+    Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
+    """
+
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
-    rods: Names | None = Field(None, description="names of the rods that may not enter it; all rods when left out")
+    rods: Names | None = Field(
+        None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named"
+    )
+    bodies: Names | None = Field(
+        None,
+        description="with width: names of the bodies that may not enter it, as balls of their radius about their "
+        "origin; none when left out",
+    )
+    width: Positive | None = Field(
+        None,
+        description="gap from which on it pushes, smoothly, m; when left out rods touch it exactly, which is found at "
+        "rest alone",
+    )
+    stiffness: Positive | None = Field(
+        None,
+        description="with width: rate of the force per length with the gap where the gap is zero, N/m²; "
+        "30 EI/(L² width²) of each rod when left out",
+    )
+    damping: NotNegative = Field(
+        0.0, description="with width: share by which it pushes more in motion, per speed of approach, s/m"
+    )
     if TYPE_CHECKING:
         kind: str  # each member declares its own word, where it stands among its keys
 
+    @property
+    def thickness(self) -> float:
+        """How far a rod has to go to be outside of it again, on its other side, m; infinite where it has none."""
+        return inf
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether it pushes smoothly, from a width on."""
+        return self.width is not None
+
     def concerns(self, rod: str) -> bool:
         """Whether the rod of this name may not enter it."""
-        return self.rods is None or rod in self.rods
+        if self.rods is None:
+            return self.bodies is None
+        return rod in self.rods
+
+    def concerns_body(self, body: str) -> bool:
+        """Whether the body of this name may not enter it."""
+        return self.bodies is not None and body in self.bodies
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """What says how a smooth contact pushes asks for its width."""
+        if "width" in given:
+            return
+        for key in SMOOTH_KEYS[1:]:
+            if key in given:
+                problem = "is of a contact that is smooth: without width contact is exact"
+                yield Fault((key,), problem, "give width, m, or leave it out")
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that shear, that are not round, and rods of assemblies."""
-        named = given.get("rods")
+        """Rods that are not round, bodies without radius; where contact is exact rods that shear and of assemblies."""
+        named = given.get("rods", [] if "bodies" in given else None)
+        exact = "width" not in given
+        if exact and any("width" in other for _, other in scene.tables("obstacles")):
+            problem = (
+                "missing: other obstacles have one, and contact is exact with all obstacles of a scene or with none"
+            )
+            yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
+        yield from _unfit_bodies(given, scene)
         tied = _tied_rods(scene)
         for name, (_, rod) in scene.named("rods").items():
-            if not isinstance(named, list | tuple) or name in named:
-                yield from _unfit_rod(name, rod)
-                if name in tied:
-                    problem = f"the rod {name!r} is one of an assembly, or free: its contact is not found"
-                    yield Fault((), problem, "leave it out of rods, or give it a base in the world and no joint")
+            if isinstance(named, list | tuple) and name not in named:
+                continue
+            yield from _not_round(name, rod)
+            if exact:
+                yield from _without_exact_contact(name, rod, tied)
 
 
 def _tied_rods(scene: SceneTables) -> set[str]:
@@ -72,17 +136,37 @@ def _tied_rods(scene: SceneTables) -> set[str]:
     return {name for name in tied if isinstance(name, str)}
 
 
-def _unfit_rod(name: str, rod: Table) -> Iterator[Fault]:
-    """What in a rod keeps its contact from being found."""
-    if SHEARS & set(admitted_strains(rod.get("strain"))):
-        # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
-        # contact spreads over a stretch as short as the section is high, which is not resolved.
-        problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
-        yield Fault((), problem, 'take strain = "kirchhoff", or a list without shear, or leave the rod out of rods')
+def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
+    """Bodies that have no radius to keep."""
+    bodies = given.get("bodies")
+    if not isinstance(bodies, list | tuple):
+        return
+    known = scene.named("bodies")
+    for i, name in enumerate(bodies):
+        # A name that nothing has is refused with the other references.
+        if isinstance(name, str) and name in known and "radius" not in known[name][1]:
+            yield Fault(("bodies", i), f"the body {name!r} has no radius to keep", "give the body a radius, m")
+
+
+def _not_round(name: str, rod: Table) -> Iterator[Fault]:
+    """A section that has no radius to keep."""
     section = rod.get("section")
     if isinstance(section, Mapping) and section.get("shape") not in ("circle", "annulus"):
         problem = f"the section of the rod {name!r} is not round: it has no radius to keep"
         yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
+
+
+def _without_exact_contact(name: str, rod: Table, tied: set[str]) -> Iterator[Fault]:
+    """What in a rod keeps its exact contact from being found; a smooth one needs none of it."""
+    if SHEARS & set(admitted_strains(rod.get("strain"))):
+        # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
+        # contact spreads over a stretch as short as the section is high, which is not resolved.
+        problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
+        remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
+        yield Fault((), problem, remedy)
+    if name in tied:
+        problem = f"the rod {name!r} is one of an assembly, or free: its exact contact is not found"
+        yield Fault((), problem, f"{SMOOTH_FORM}; or leave the rod out of rods")
 
 
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
@@ -109,8 +193,28 @@ rods = ["finger"]
     )
 
 
+class RoundRecord(ObstacleRecord):
+    """A ball or a bar: what a rod could pass through, and be outside again."""
+
+    radius: Positive = Field(description="its radius, m")
+
+    @property
+    def thickness(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
+
+    @classmethod
+    def conflicts(cls, given: Table) -> Iterator[Fault]:
+        """It is thicker than its width: else a rod in its middle would not be seen to be too deep."""
+        yield from super().conflicts(given)
+        width, radius = given.get("width"), given.get("radius")
+        if isinstance(width, int | float) and isinstance(radius, int | float) and 0 < radius <= width:
+            problem = f"must be < radius, {radius:g} m, got {width:g}"
+            yield Fault(("width",), problem, "take a small part of the radius")
+
+
 @OBSTACLES.register
-class Sphere(ObstacleRecord):
+class Sphere(RoundRecord):
     """A ball."""
 
     example: ClassVar[str] = """\
@@ -124,11 +228,10 @@ rods = ["finger"]
 
     kind: Literal["sphere"] = Field(description="ball")
     centre: Vector = Field(description="its centre in world axes, m")
-    radius: Positive = Field(description="its radius, m")
 
 
 @OBSTACLES.register
-class Capsule(ObstacleRecord):
+class Capsule(RoundRecord):
     """A round bar with half a ball at either end."""
 
     example: ClassVar[str] = """\
@@ -144,11 +247,11 @@ rods = ["finger"]
     kind: Literal["capsule"] = Field(description="round bar")
     start: Vector = Field(alias="from", description="start of its axis in world axes, m")
     end: Vector = Field(alias="to", description="end of its axis in world axes, m")
-    radius: Positive = Field(description="its radius, m")
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """An axis has a length."""
+        yield from super().conflicts(given)
         start = numbers_of(given.get("from"))
         if start and start == numbers_of(given.get("to")):
             yield Fault(("to",), "must differ from from", 'a bar without length is a ball: kind = "sphere"')
@@ -193,6 +296,7 @@ rods = ["finger"]
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
         """Two points at least, neighbours apart, and as many radii."""
+        yield from super().conflicts(given)
         points = given.get("points")
         if not isinstance(points, list | tuple) or not points:
             return

@@ -13,7 +13,7 @@ from cosserat_casadi.scene.faults import Path, shown
 from cosserat_casadi.scene.spelling import closest
 from cosserat_casadi.scene.toml import keys_are_too_deep
 
-NAMED_LISTS = ("supports", "joints", "bodies", "rods", "actuators", "loads", "tubes")
+NAMED_LISTS = ("obstacles", "supports", "joints", "bodies", "rods", "actuators", "loads", "tubes")
 """Lists whose entries may begin a key by their name; of entries with one name, the last list's goes first."""
 
 

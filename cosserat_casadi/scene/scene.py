@@ -151,6 +151,11 @@ inputs = ["push.force", "cable.tension"]
         records[holder.index] = numbers.written(records[holder.index], values)
         return self.model_copy(update={holder.table: tuple(records)})
 
+    @property
+    def touches_exactly(self) -> bool:
+        """Whether rods touch obstacles exactly, which is found at rest alone."""
+        return any(not obstacle.is_smooth for obstacle in self.obstacles)
+
     def baked(self) -> Scene:
         """The scene without parameters: every number is a constant of its model."""
         if not self.parameters:

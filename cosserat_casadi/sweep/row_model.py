@@ -40,7 +40,7 @@ class RowModel:
             # From the unloaded scene each: what a row gives must not depend on those before. Where rods touch obstacles
             # that takes too long, and the contacts of the row before are tried first; a chunk always has the same rows.
             solution = solve(model, model.inputs.unpack(row), start=near)
-            if model.scene.obstacles and solution.converged:
+            if model.scene.touches_exactly and solution.converged:
                 near = solution
             rows.append(result_row(solution, width, stability=self.stability))
         return np.array(rows).reshape(len(inputs), width)

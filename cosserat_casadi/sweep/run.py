@@ -141,7 +141,7 @@ def plan_sweep(
     if problems or plan is None:
         raise SceneError(*problems)
     # Rows that look for contact are solved in Python.
-    if not scene.obstacles:
+    if not scene.touches_exactly:
         # Both raise where a library could not be generated or compiled.
         scene_names(NAME, scene)
         find_compiler()

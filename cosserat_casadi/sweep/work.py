@@ -82,7 +82,7 @@ def chunks(variants: Variants, compiled_from: int = COMPILED_FROM) -> list[Chunk
     for index, entry in enumerate(variants.entries):
         few = len(entry.rows) < compiled_from and variants.parameters and not variants.arguments
         # Compiled C does not look for contact.
-        if few or entry.scene.obstacles:
+        if few or entry.scene.touches_exactly:
             modelled += [(index, int(row)) for row in entry.rows]
             continue
         for rows in _cut(entry.rows, COMPILED_ROWS):

@@ -17,7 +17,7 @@ from cosserat_casadi.cli.reports.solution import print_solution, print_unstable
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.results.solution_file import result_text
-from cosserat_casadi.scene import read_scene
+from cosserat_casadi.scene import read_scene, with_exact_contact
 
 
 def solve(
@@ -32,6 +32,10 @@ def solve(
     every: Annotated[
         bool, typer.Option("--all", help="Of concentric tubes: find all equilibria, each called stable or not.")
     ] = False,
+    exact: Annotated[
+        bool,
+        typer.Option("--exact-contact", help="Leave the widths of obstacles out: rods touch them exactly."),
+    ] = False,
 ) -> None:
     """Find the equilibrium of a scene. Exit codes: 0 solved, 2 refused, 3 none found; with --stable: no stable one."""
     # A file that cannot be written is refused before the solve, not after it.
@@ -42,6 +46,8 @@ def solve(
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:
             raise SceneError(Problem("--all", "is for concentric tubes", "leave it out"))
+        if exact:
+            read = with_exact_contact(read)
     if problems:
         raise SceneError(*problems)
     if read.tubes:

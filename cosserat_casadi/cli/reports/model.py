@@ -15,7 +15,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.load_cases import CaseLayout
-from cosserat_casadi.model.price import price, price_of_load
+from cosserat_casadi.model.price import price, price_of_load, price_of_obstacle
 from cosserat_casadi.scene.varying import VaryingValue
 
 
@@ -24,7 +24,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
     scene = model.scene
     print_plain(console, f"{title_line(scene.title)}: the scene is valid.")
     console.print(discretisation_table(model))
-    if scene.causes:
+    if scene.causes or any(obstacle.is_smooth for obstacle in scene.obstacles):
         console.print(_load_table(model))
     _print_varying(console, varying)
     _print_parameters(console, model)
@@ -42,7 +42,7 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
             f"The solve picks modes and nodes for a tolerance of {scene.accuracy.tolerance:g}; "
             "the figures are for the default ones.",
         )
-    if scene.obstacles:
+    if scene.touches_exactly:
         print_plain(console, "The figures are those of the free rods: where they touch obstacles, contact costs more.")
 
 
@@ -157,4 +157,8 @@ def _load_table(model: Model) -> Table:
         free_inputs = ", ".join(fields) or "none"
         cost = price_of_load(model.scene, cause.name)
         table.add_row(escape(cause.name), cause.kind, free_inputs, f"{cost:,} operations")
+    for obstacle in model.scene.obstacles:
+        if obstacle.is_smooth:
+            cost = price_of_obstacle(model.scene, obstacle.name)
+            table.add_row(escape(obstacle.name), f"smooth {obstacle.kind}", "none", f"{cost:,} operations")
     return table

@@ -32,7 +32,7 @@ def print_path(console: Console, path: EquilibriumPath, written: Sequence[Path])
 def _merit_sentence(path: EquilibriumPath) -> str:
     changes = sum(event.contact is not None for event in path.events)
     parts = [f"{len(path.factor)} points", f"{len(path.events) - changes} limit points and bifurcations"]
-    if path.model.scene.obstacles:
+    if path.model.scene.touches_exactly:
         parts.append(f"{changes} changes of contact")
     if path.error_estimate is not None:
         parts.append(f"estimated error of events and end {path.error_estimate:.1e}")

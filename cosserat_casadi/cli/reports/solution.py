@@ -133,8 +133,12 @@ def _contact_table(solution: Solution) -> Table:
         table.add_column(f"force {axis}, N", justify="right")
     for contact in solution.contacts:
         where = f"at X = {contact.start:.6g}"
-        if contact.kind == "line":
+        if contact.of_body:
+            where = "body"
+        elif contact.start < contact.end:
             where = f"X = {contact.start:.6g} to {contact.end:.6g}"
+        if contact.width is not None:
+            where += f", smooth: gap {contact.gap:.3g} m of width {contact.width:.3g} m"
         table.add_row(escape(contact.obstacle), escape(contact.rod), where, *digits(contact.force))
     if not solution.contacts:
         table.add_row("none touched", "", "", "", "", "")

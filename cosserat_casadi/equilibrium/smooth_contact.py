@@ -1,0 +1,115 @@
+"""Where rods and bodies are pressed by obstacles that have a width, and how hard."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, normals, runs
+from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.solution import Contact, Solution
+from cosserat_casadi.loads.contact_layer import ContactLayer, pressure
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+GAUSS_POINTS = 24
+"""Points at which the force along a stretch is summed."""
+
+
+def with_smooth_contacts(solution: Solution) -> Solution:
+    """The solution with the stretches that smooth obstacles press; as it is in a scene without them."""
+    layers = smooth_layers(solution)
+    if not layers or not np.all(np.isfinite(solution.x)):
+        return solution
+    contacts = [contact for layer in layers for contact in _contacts(solution, layer)]
+    order = [*solution.model.discrete.rods, *solution.model.body]
+    contacts.sort(key=lambda contact: (contact.of_body, order.index(contact.rod), contact.start))
+    return replace(solution, contacts=tuple(contacts), message=solution.message + _too_deep(contacts))
+
+
+def smooth_layers(solution: Solution) -> list[ContactLayer]:
+    """The push of each obstacle with a width on each rod and body that it concerns."""
+    return [load for load in solution.model.discrete.loads if isinstance(load, ContactLayer)]
+
+
+def _too_deep(contacts: list[Contact]) -> str:
+    """A sentence on the contact that is deepest, where it is deeper than its width; else nothing."""
+    depths = [-contact.gap / contact.width for contact in contacts if contact.gap is not None and contact.width]
+    if max(depths, default=0.0) <= 1.0:
+        return ""
+    worst = contacts[int(np.argmax(depths))]
+    return (
+        f" {worst.rod!r} is {max(depths):.3g} widths deep inside {worst.obstacle!r}, too deep to be contact: give the "
+        "obstacle more width or stiffness."
+    )
+
+
+def depths_along(model: Model, x: FloatArray, inputs: FloatArray) -> FloatArray:
+    """How deep nodes and bodies are inside smooth obstacles in several states, in widths, shape (k,).
+
+    Args:
+        model: of a scene with smooth obstacles.
+        x: unknowns, shape (k, model.size).
+        inputs: stacked inputs, shape (k, model.inputs.size).
+    """
+    if not len(x):
+        return np.zeros(0)
+    depths: FloatArray = model.contact_depth.map(len(x))(x.T, inputs.T).full()[0]
+    return depths
+
+
+def _contacts(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
+    if layer.rod is None:
+        yield from _body_contact(solution, layer)
+        return
+    length = _length(solution, layer.rod)
+    gaps = _gaps(solution, layer, DENSE)
+    width = layer.obstacle.width
+    for part in runs(gaps < width):
+        start = _crossing(gaps - width, part.start - 1, part.start)
+        end = _crossing(gaps - width, part.stop - 1, part.stop)
+        # The force vanishes smoothly at both ends, or ends with the rod.
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        X = start + (end - start) * (nodes + 1) / 2
+        per_length = pressure(layer, _gaps(solution, layer, X))
+        along = normals(solution, layer.rod, layer.obstacle, X)
+        force = length * (end - start) / 2 * ((weights * per_length) @ along)
+        yield Contact(layer.obstacle.name, layer.rod, start, end, force, (), "smooth", width, float(gaps[part].min()))
+
+
+def _body_contact(solution: Solution, layer: ContactLayer) -> Iterator[Contact]:
+    """The contact of a body, at its origin."""
+    assert layer.body is not None
+    position = solution.body(layer.body).position[0]
+    distance, gradient, _ = surface(layer.obstacle)(position)
+    gap = float(distance) - layer.radius
+    if gap < layer.obstacle.width:
+        force = float(pressure(layer, np.array([gap]))[0]) * gradient.full()[:, 0]
+        width = layer.obstacle.width
+        yield Contact(layer.obstacle.name, layer.body, 0.0, 0.0, force, (), "smooth", width, gap, of_body=True)
+
+
+def _gaps(solution: Solution, layer: ContactLayer, X: FloatArray) -> FloatArray:
+    """Gaps along a rod, shape (k,), m."""
+    assert layer.rod is not None
+    relative = gap_along(solution, layer.rod, layer.obstacle, X)
+    # They are told relative to the length that the rod has in the scene.
+    return relative * solution.model.discrete.rods[layer.rod].properties.length
+
+
+def _length(solution: Solution, rod: str) -> float:
+    """Length of a rod for the inputs of a solution, m."""
+    model = solution.model
+    return model.discrete.rods[rod].properties.length * model.length_ratio(rod, solution.inputs)
+
+
+def _crossing(values: FloatArray, before: int, after: int) -> float:
+    """Abscissa between two neighbours of :data:`DENSE` at which values change sign; the end of the rod beyond it."""
+    if before < 0:
+        return float(DENSE[0])
+    if after >= len(values):
+        return float(DENSE[-1])
+    share = values[before] / (values[before] - values[after])
+    return float(DENSE[before] + share * (DENSE[after] - DENSE[before]))

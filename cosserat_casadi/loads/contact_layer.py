@@ -1,0 +1,95 @@
+"""The push of an obstacle that has a width: smooth contact, a load like any other.
+
+With the gap g = d(r) − ρ between a section of radius ρ and the obstacle, the width w and the stiffness k
+
+    u = k (w − g)₊⁴ / (12 w²),    f = −du/dg = k (w − g)₊³ / (3 w²),    df/dg = −k at g = 0,
+
+per length of the rod. From the gap w on there is no force; where the gap is zero it is k w/3. Energy, force and
+stiffness are continuous, and so is the derivative of the stiffness but for its kink at g = w.
+
+In motion the force is f (1 − δ ġ): what it takes, δ f ġ² per time, is never negative. K. H. Hunt and F. R. E. Crossley,
+J. Appl. Mech. 42 (1975) 440. It pulls only where a rod leaves faster than 1/δ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal, final
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
+from cosserat_casadi.loads.radius import section_radii
+from cosserat_casadi.maths.numbers import Numbers, stacked_rows
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.obstacles.registry import SURFACES
+from cosserat_casadi.scene.loads import LoadRecord
+
+
+class ContactLayer(LoadRecord):
+    """An obstacle with a width in front of one rod, or of a body that is a ball; no scene file names this load."""
+
+    kind: Literal["contact_layer"] = "contact_layer"
+    obstacle: Any
+    stiffness: float
+    rod: str | None = None
+    body: str | None = None
+    radius: float = 0.0
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether it takes energy in motion; loads on bodies do not know how they move."""
+        return self.body is None and self.obstacle.damping > 0.0
+
+
+@final
+class ContactLayerLoad(Load[ContactLayer]):
+    """k (w − g)₊³ / (3 w²) along the normal of the obstacle: per length of a rod, or on a body, where k is in N/m."""
+
+    record = ContactLayer
+    # A straight rod in a bent lumen lies many widths outside: it is led in by a force that is next to nothing at first.
+    growth = 2
+
+    def on_body(self, load: ContactLayer, body: scenes.Body) -> BodyPoint | None:
+        """The origin of the body, about which it is a ball."""
+        return BodyPoint() if load.body == body.name else None
+
+    def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix:
+        """K (w − g)₊⁴ / (12 w²), J/m, or J of a body."""
+        width = load.obstacle.width
+        energy: Matrix = load.stiffness / (12 * width**2) * _depth(load, section) ** 4
+        return energy
+
+    def wrench(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
+        """Force along the normal, N/m, or N on a body; without friction it has no moment about the centre."""
+        width = load.obstacle.width
+        normal = ca.gradient(SURFACES[load.obstacle.kind].distance(load.obstacle, section.position), section.position)
+        pressing = load.stiffness / (3 * width**2) * _depth(load, section) ** 3
+        # At rest the velocity stores nothing, and nothing is added.
+        if load.is_damped and section.velocity.nnz():
+            pressing = pressing * (1 - load.obstacle.damping * ca.dot(normal, section.velocity))
+        return pressing * normal, ca.DM(3, 1)
+
+    def profiles(self, load: ContactLayer, rod: object, X: Numbers, columns: int) -> Numbers:
+        """One all along the rod."""
+        return np.ones((columns, X.shape[0]))
+
+    def data(self, load: ContactLayer, site: Site) -> Numbers:
+        """Radius of the sections, m."""
+        return stacked_rows([section_radii(site.rod, site.X)])
+
+
+def _depth(load: ContactLayer, section: Section) -> Matrix:
+    """(w − g)₊, m: how deep a section is in the layer in front of the obstacle."""
+    radius = load.radius if load.body is not None else section.data[0]
+    gap = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position) - radius
+    depth: Matrix = ca.fmax(load.obstacle.width - gap, 0.0)
+    return depth
+
+
+def pressure(layer: ContactLayer, gaps: FloatArray) -> FloatArray:
+    """Force at rest for gaps in m: per length, N/m, or on a body, N."""
+    width = layer.obstacle.width
+    return np.asarray(layer.stiffness / (3 * width**2) * np.maximum(width - gaps, 0.0) ** 3)

@@ -1,0 +1,48 @@
+"""How deep rods and bodies are inside obstacles that have a width."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.loads.radius import section_radii
+from cosserat_casadi.maths.numbers import as_matrix
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.floating_frames import FrameName
+from cosserat_casadi.model.system import System
+from cosserat_casadi.obstacles.registry import SURFACES
+
+
+def contact_depths(system: System) -> list[Matrix]:
+    """Depth of each rod, at the node where it is deepest, and of each body, relative to the width, 1×1 each.
+
+    Negative outside of an obstacle; nothing without smooth contact.
+    """
+    return [_depth(system, load) for load in system.discrete.loads if isinstance(load, ContactLayer)]
+
+
+def _depth(system: System, layer: ContactLayer) -> Matrix:
+    if layer.body is not None:
+        positions = system.frame(FrameName("body", layer.body)).position
+        radii: Matrix | float = layer.radius
+    else:
+        assert layer.rod is not None, "a layer is in front of a rod or a body"
+        positions = _node_positions(system, layer.rod)
+        rod = system.discrete.rods[layer.rod]
+        radii = as_matrix(section_radii(rod.properties, rod.grid.nodes_at(np.arange(rod.grid.size)))).T
+    point = ca.SX.sym("point", 3)
+    distance = ca.SX(SURFACES[layer.obstacle.kind].distance(layer.obstacle, point))
+    function = ca.Function("distance", [point], ca.cse([distance]))
+    gaps = function.map(positions.shape[1])(positions) - radii
+    depth: Matrix = -ca.mmin(gaps) / layer.obstacle.width
+    return depth
+
+
+def _node_positions(system: System, rod: str) -> Matrix:
+    """World positions of the nodes of a rod, 3×M, m."""
+    base = system.base(rod)
+    rod_shape = system.shapes[rod]
+    from_base = quaternion_to_matrix(base.quaternion) @ rod_shape.position
+    return ca.repmat(ca.MX(base.position), 1, rod_shape.rod.grid.size) + from_base

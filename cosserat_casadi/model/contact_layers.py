@@ -1,0 +1,106 @@
+"""Obstacles with a width as loads on the rods that may not enter them, and the elements that resolve them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import ceil, inf, sqrt
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.contact_layer import ContactLayer
+from cosserat_casadi.rod.strain import DiscreteRod
+
+SURFACE_FORCE = 10.0
+"""Force per length where the gap is zero, relative to EI/(L² width), of an obstacle that is given no stiffness.
+
+A tip that meets the obstacle at a slope of 0.3 then presses with 8 EI/L² before its gap is zero, three times what
+buckles the rod.
+"""
+
+ELEMENT_FACTOR = 3.0
+"""Length of an element over √(L width), the stretch that is pressed where a rod of curvature 2/L touches a plane."""
+
+MOST_ELEMENTS = 12
+"""Elements that contact alone asks for: beyond them modes are the cheaper means."""
+
+NARROW = 0.2
+"""Share of an element from an end that a load asks for within which contact asks for none."""
+
+
+def contact_layers(scene: scenes.Scene, rods: Mapping[str, DiscreteRod]) -> Iterator[ContactLayer]:
+    """The push of each obstacle with a width on each rod that may not enter it.
+
+    Args:
+        scene: the scene.
+        rods: by name, with the numbers that scale the equations.
+    """
+    smooth = [obstacle for obstacle in scene.obstacles if obstacle.is_smooth]
+    for obstacle in smooth:
+        for name, rod in rods.items():
+            if obstacle.concerns(name):
+                stiffness = _stiffness(obstacle, rod)
+                label = f"{obstacle.name} on {name}"
+                yield ContactLayer.model_construct(name=label, obstacle=obstacle, stiffness=stiffness, rod=name)
+        for body in scene.bodies:
+            if obstacle.concerns_body(body.name):
+                stiffness = _body_stiffness(obstacle, body, rods)
+                yield ContactLayer.model_construct(
+                    name=f"{obstacle.name} on {body.name}",
+                    obstacle=obstacle,
+                    stiffness=stiffness,
+                    body=body.name,
+                    radius=_radius(body),
+                )
+
+
+def _stiffness(obstacle: scenes.ObstacleRecord, rod: DiscreteRod) -> float:
+    """Stiffness of an obstacle for a rod, N/m²."""
+    if obstacle.stiffness is not None:
+        return obstacle.stiffness
+    assert obstacle.width is not None
+    # The force per length is stiffness · width / 3 where the gap is zero.
+    return 3 * SURFACE_FORCE * _bending_force(rod) / obstacle.width**2
+
+
+def _body_stiffness(obstacle: scenes.ObstacleRecord, body: scenes.Body, rods: Mapping[str, DiscreteRod]) -> float:
+    """Stiffness of an obstacle for a body, N/m: where it is given, that of a rod as long as the body is thick."""
+    assert obstacle.width is not None
+    if obstacle.stiffness is not None:
+        return obstacle.stiffness * 2 * _radius(body)
+    return 3 * SURFACE_FORCE * max(map(_bending_force, rods.values())) / obstacle.width
+
+
+def _bending_force(rod: DiscreteRod) -> float:
+    """EI/L² of a rod, N."""
+    return float(rod.energy_unit / rod.properties.length)
+
+
+def _radius(body: scenes.Body) -> float:
+    """Radius of a body that an obstacle names, m."""
+    assert body.radius is not None, "the rules of the scene ask for one"
+    return body.radius
+
+
+def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
+    """Abscissae at which elements end so that they are about as long as the stretches that obstacles press."""
+    widths = [obstacle.width for obstacle in scene.obstacles if obstacle.width and obstacle.concerns(rod.name)]
+    if not widths:
+        return []
+    wanted = ceil(sqrt(rod.length / min(widths)) / ELEMENT_FACTOR)
+    return list(map(float, np.linspace(0.0, 1.0, min(wanted, MOST_ELEMENTS) + 1)))
+
+
+def thinnest(scene: scenes.Scene) -> float:
+    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any."""
+    thicknesses = [obstacle.thickness for obstacle in scene.obstacles if obstacle.is_smooth]
+    return min(thicknesses, default=inf) / min(rod.length for rod in scene.rods)
+
+
+def joined_ends(asked_for: tuple[float, ...], further: list[float]) -> tuple[float, ...]:
+    """Ends that loads ask for, and those of contact that are not next to one of them."""
+    if not further:
+        return asked_for
+    nearest = NARROW / (len(further) - 1)
+    apart = [end for end in further if min(abs(end - own) for own in asked_for) > nearest]
+    return tuple(sorted([*asked_for, *apart]))

@@ -1,0 +1,24 @@
+"""What a file of many states tells of smooth contact."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cosserat_casadi.equilibrium.smooth_contact import depths_along
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+
+def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
+    """That contact is smooth, the widths of the obstacles, m, and how deep rods and bodies are in them, in widths.
+
+    Args:
+        model: of a scene with smooth obstacles.
+        x: unknowns, shape (k, model.size).
+        inputs: stacked inputs, shape (k, model.inputs.size).
+    """
+    return {
+        "kind": "smooth",
+        "widths": {obstacle.name: obstacle.width for obstacle in model.scene.obstacles},
+        "depth": depths_along(model, x, inputs),
+    }

@@ -1,0 +1,551 @@
+"""Obstacles with a width: kernels, closed forms, convergence to exact contact, motion, and all that takes loads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import (
+    Model,
+    Outcome,
+    PathOutcome,
+    Solution,
+    build,
+    discretise,
+    export,
+    follow_path,
+    inverse,
+    linearise,
+    load,
+    modes_of,
+    parse_scene,
+    read_scene,
+    simulate,
+    solve,
+    solve_scene,
+    with_exact_contact,
+)
+from cosserat_casadi.control import embedded
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.loads.contact_layer import ContactLayer, ContactLayerLoad
+from cosserat_casadi.loads.trace import traced
+from cosserat_casadi.results.path_file import path_result
+from cosserat_casadi.results.solution_file import result
+from cosserat_casadi.sweep.run import plan_sweep
+from cosserat_casadi.sweep.table import table_of
+from tests.commands import cosserat
+from tests.conftest import ROOT
+
+EXAMPLES = ROOT / "examples"
+WIDTH = 0.01
+STIFFNESS = 600.0
+
+ROD = """
+schema = 1
+accuracy = { modes = 5, nodes = 12 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+linear_density = 0.1
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+"""
+
+PUSH = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -0.6]
+"""
+
+TABLE = f"""
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.06]
+normal = [0, 0, 1]
+width = {WIDTH}
+"""
+
+OBSTACLES = {
+    "plane": 'kind = "plane"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]',
+    "sphere": 'kind = "sphere"\ncentre = [0, 0, 0]\nradius = 0.1',
+    "capsule": 'kind = "capsule"\nfrom = [0, -0.2, 0]\nto = [0, 0.2, 0]\nradius = 0.1',
+    "lumen": 'kind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2], [0.05, 0, 0.4]]\nradius = 0.1',
+}
+
+
+def layer_of(obstacle: str) -> ContactLayer:
+    """The layer in front of an obstacle of the origin."""
+    scene = parse_scene(f'{ROD}[[obstacles]]\nname = "it"\n{OBSTACLES[obstacle]}\nwidth = {WIDTH}\n')
+    return ContactLayer.model_construct(name="layer", obstacle=scene.obstacles[0], stiffness=STIFFNESS, rod="rod")
+
+
+def kernels(obstacle: str) -> tuple[ca.Function, ca.Function, ca.Function]:
+    """Energy, force and stiffness of a layer as functions of the point; sections have a radius of 2 mm."""
+    kernel = traced(ContactLayerLoad(), layer_of(obstacle), {}, 1).kernel
+    point = ca.SX.sym("point", 3)
+    origin = [ca.DM.eye(3), ca.DM.zeros(3, 1), ca.DM.eye(3), ca.DM(0, 1), ca.vertcat(1, 1, 2e-3)]
+    force, _ = kernel.wrench(point, *origin)
+    assert kernel.energy is not None
+    results = [kernel.energy(point, *origin), force, kernel.stiffness(point, *origin)]
+    energy, force, stiffness = (ca.Function("kernel", [point], [value]) for value in results)
+    return energy, force, stiffness
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES)
+def test_kernels_are_derivatives_of_their_energy(obstacle: str) -> None:
+    energy, force, stiffness = kernels(obstacle)
+    scale = {"plane": 0.005, "lumen": 0.095}.get(obstacle, 0.105)
+    rng = np.random.default_rng(17)
+    pressed = 0
+    for _ in range(20):
+        direction = rng.normal(size=3)
+        direction[1 if obstacle in ("capsule", "lumen") else 0] *= 0.05
+        point = scale * direction / np.linalg.norm(direction)
+        if obstacle == "lumen":
+            point = np.array([scale * np.cos(direction[1]), scale * np.sin(direction[1]), 0.05])
+        steps = 1e-6 * np.eye(3)
+        slope = [float(energy(point + step) - energy(point - step)) / 2e-6 for step in steps]
+        assert_allclose(force(point).full()[:, 0], np.negative(slope), rtol=0, atol=1e-7)
+        rate = np.transpose([(force(point + step) - force(point - step)).full()[:, 0] / 2e-6 for step in steps])
+        matrix = stiffness(point).full()[:3, :3]
+        assert_allclose(matrix, rate, rtol=1e-5, atol=1e-4)
+        assert_allclose(matrix, matrix.T, rtol=0, atol=1e-10)
+        pressed += float(energy(point)) > 0.0
+    assert pressed > 3
+
+
+@pytest.mark.parametrize("obstacle", OBSTACLES)
+def test_kernels_are_finite_everywhere(obstacle: str) -> None:
+    # Centres, axes, ends of axes, beyond the ends of a lumen, edges of the layer, and far away.
+    points = [[0, 0, 0], [0, 0.2, 0], [0, 0, 0.2], [0.05, 0, 0.4], [0, 0, -3.0], [0, 0, 0.112], [1e4, -1e4, 1e4]]
+    for kernel in kernels(obstacle):
+        hessian = ca.Function("second", *_second(kernel))
+        for point in points:
+            assert np.all(np.isfinite(kernel(point).full()))
+            assert np.all(np.isfinite(hessian(point).full()))
+
+
+def _second(kernel: ca.Function) -> tuple[list[ca.SX], list[ca.SX]]:
+    point = ca.SX.sym("point", 3)
+    return [point], [ca.jacobian(ca.jacobian(ca.vec(kernel(point)), point), point)]
+
+
+@pytest.mark.parametrize(
+    ("gap", "pressing", "rate"),
+    [
+        (0.0, STIFFNESS * WIDTH / 3, STIFFNESS),
+        (WIDTH, 0.0, 0.0),
+        (5 * WIDTH, 0.0, 0.0),
+        (-WIDTH, STIFFNESS * WIDTH * 8 / 3, 4 * STIFFNESS),
+    ],
+)
+def test_law_of_the_force(gap: float, pressing: float, rate: float) -> None:
+    """Nothing from the width on; k w/3 at the surface, where it grows by k."""
+    energy, force, stiffness = kernels("plane")
+    point = [0.0, 0.0, gap + 2e-3]
+    assert_allclose(force(point).full()[:, 0], [0.0, 0.0, pressing], rtol=1e-12, atol=1e-12)
+    assert_allclose(stiffness(point).full()[2, 2], -rate, rtol=1e-12, atol=1e-9)
+    assert_allclose(float(energy(point)), pressing * (WIDTH - gap) / 4, rtol=1e-12, atol=1e-15)
+
+
+def test_a_rod_that_lies_flat_has_the_gap_at_which_its_weight_is_carried() -> None:
+    weight = 0.1 * 9.81
+    gap = WIDTH - (3 * weight * WIDTH**2 / STIFFNESS) ** (1 / 3)
+    text = (
+        ROD
+        + f"""
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, {-gap!r}]
+normal = [0, 0, 1]
+width = {WIDTH}
+stiffness = {STIFFNESS}
+"""
+    )
+    lying = solve_scene(parse_scene(text))
+    assert lying.converged
+    assert lying.stable
+    assert_allclose(lying.pose([0.3, 1.0]).position[:, 2], 0.0, rtol=0, atol=1e-12)
+    (contact,) = lying.contacts
+    assert (contact.kind, contact.start, contact.end, contact.width) == ("smooth", 0.0, 1.0, WIDTH)
+    assert contact.gap is not None
+    assert_allclose(contact.gap, gap, rtol=0, atol=1e-12)
+    assert_allclose(contact.force, [0.0, 0.0, weight], rtol=0, atol=1e-9)
+    entry = result(lying)["contacts"][0]
+    assert (entry["kind"], entry["width"], entry["from"], entry["to"]) == ("smooth", WIDTH, 0.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def pressed() -> Solution:
+    """A rod whose tip is pushed onto a table."""
+    return solve(build(parse_scene(ROD + PUSH + TABLE)))
+
+
+def check_balance(solution: Solution, load: list[float], atol: float) -> None:
+    """The clamp bears what loads and contacts leave."""
+    forces = sum((contact.force for contact in solution.contacts), np.array(load))
+    assert_allclose(solution.base_wrench().force, -forces, rtol=0, atol=atol)
+
+
+def test_the_jacobian_is_exact_and_symmetric(pressed: Solution) -> None:
+    model, x, inputs = pressed.model, pressed.x, pressed.inputs
+    assert pressed.converged
+    assert pressed.stable
+    check_balance(pressed, [0.0, 0.0, -0.6], 2e-3)
+    jacobian = model.jacobian(x, inputs)[0].full()
+    step = 1e-6
+    columns = [
+        (model.residual(x + step * unit, inputs) - model.residual(x - step * unit, inputs)).full()[:, 0] / (2 * step)
+        for unit in np.eye(model.size)
+    ]
+    assert_allclose(jacobian, np.transpose(columns), rtol=0, atol=1e-6)
+    assert_allclose(jacobian, jacobian.T, rtol=0, atol=1e-12)
+
+
+@pytest.mark.slow
+def test_smooth_contact_becomes_exact_as_the_width_shrinks() -> None:
+    """The error is proportional to the width: the layer holds the rod off by a part of it."""
+    modes = ["accuracy.modes=4", "accuracy.nodes=12"]
+    scene = read_scene(EXAMPLES / "rod_over_bar.toml", modes)
+    exact = solve(build(scene))
+    (point,) = exact.contacts
+    widths = [0.04, 0.02, 0.01]
+    tips = []
+    forces = []
+    for width in widths:
+        smooth = solve(build(read_scene(EXAMPLES / "rod_over_bar.toml", [*modes, f"bar.width={width}"])))
+        assert smooth.converged
+        (contact,) = smooth.contacts
+        assert contact.start < point.start < contact.end
+        tips.append(float(np.linalg.norm(smooth.tip().position - exact.tip().position)))
+        forces.append(float(np.linalg.norm(contact.force - point.force)))
+    rates = np.log2(np.array(tips[:-1]) / tips[1:])
+    assert np.all(rates > 0.7), rates
+    assert tips[-1] < 1.5 * widths[-1]
+    assert forces[0] > forces[1] > forces[2]
+    # The same scene without its widths is the exact one.
+    assert with_exact_contact(smooth.model.scene) == scene
+
+
+def test_a_rod_that_is_pushed_through_is_no_equilibrium(pressed: Solution) -> None:
+    soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
+    through = solve(soft)
+    assert through.outcome is Outcome.UNRESOLVED
+    assert "'rod' is " in through.message
+    assert "widths deep inside 'table'" in through.message
+    assert float(soft.contact_depth(through.x, through.inputs)) > 1.0
+
+
+@pytest.mark.slow
+def test_no_tolerance_is_met_by_a_rod_that_is_pushed_through() -> None:
+    text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "tolerance = 1e-3")
+    found = solve_scene(parse_scene(text + "stiffness = 1.0\n"))
+    assert found.outcome is Outcome.UNRESOLVED
+    assert "widths deep" in found.message
+
+
+def test_no_step_of_the_load_path_passes_through_a_thin_bar() -> None:
+    """A push that would bend the free rod far beyond a bar of two centimetres ends at the bar."""
+    bar = """
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.9, -1, -0.05]
+to = [0.9, 1, -0.05]
+radius = 0.01
+width = 5e-3
+"""
+    held = solve(build(parse_scene((ROD + PUSH + bar).replace("-0.6", "-1.5"))))
+    assert held.converged
+    (contact,) = held.contacts
+    assert contact.force[2] > 0.5
+    assert held.pose([contact.start]).position[0, 2] > -0.05
+
+
+SHEARED = ROD.replace('"planar"', '"reissner"').replace(
+    "torsion = 0.4", "torsion = 0.4, shear_x = 500, shear_y = 500, extension = 500"
+)
+CARRIED = (
+    ROD
+    + """
+[[rods]]
+name = "second"
+length = 0.5
+strain = "planar"
+stiffness = { bending_y = 0.3 }
+base = { rod = "rod", at = 1.0 }
+"""
+)
+PLATFORM = (
+    ROD.replace('"planar"', '"kirchhoff"')
+    + """
+[[bodies]]
+name = "ball"
+radius = 0.02
+[[joints]]
+body = "ball"
+rod = "rod"
+kind = "fixed"
+"""
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("assembly", ["sheared", "carried", "body"])
+def test_rods_that_exact_contact_leaves_out(assembly: str) -> None:
+    text = {
+        "sheared": SHEARED + PUSH + TABLE,
+        "carried": CARRIED + PUSH.replace('rod = "rod"', 'rod = "second"') + TABLE,
+        "body": PLATFORM + PUSH + TABLE + 'bodies = ["ball"]\n',
+    }[assembly]
+    held = solve(build(parse_scene(text)))
+    assert held.converged
+    assert held.stable
+    contact = held.contacts[-1]
+    assert contact.force[2] > 0.1
+    assert contact.of_body == (assembly == "body")
+    forces = sum((contact.force for contact in held.contacts), np.array([0.0, 0.0, -0.6]))
+    assert_allclose(held.base_wrench("rod").force, -forces, rtol=0, atol=5e-3 if assembly != "body" else 1e-9)
+    with pytest.raises(SceneError) as refused:
+        with_exact_contact(parse_scene(text))
+    if assembly != "body":
+        assert any("give the obstacle a width" in problem.remedy for problem in refused.value.problems)
+
+
+BALL = """
+schema = 1
+accuracy = { modes = 1, nodes = 4 }
+[[rods]]
+name = "rod"
+length = 0.2
+strain = "planar"
+material = { youngs_modulus = 1e9, poisson_ratio = 0.4, density = 1000.0 }
+section = { shape = "circle", radius = 5e-3 }
+base = { position = [0, 0, 0], tangent = [1, 0, 0], free = true }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.02]
+normal = [0, 0, 1]
+width = 0.01
+stiffness = 2e3
+damping = 0.8
+[simulation]
+duration = 0.16
+frames = 17
+start = "unloaded"
+tolerance = 1e-6
+"""
+
+
+def test_a_rod_that_falls_flat_bounces_as_a_mass_on_the_law_of_hunt_and_crossley() -> None:
+    scene = parse_scene(BALL)
+    motion = simulate(build(scene, moving=True))
+    assert motion.converged, motion.message
+
+    mass = 1000.0 * np.pi * 5e-3**2
+
+    def rates(_: float, state: np.ndarray) -> list[float]:
+        height, speed = state
+        pressing = 2e3 / (3 * 0.01**2) * max(0.01 - (height + 0.02 - 5e-3), 0.0) ** 3
+        return [speed, -9.81 + pressing * (1 - 0.8 * speed) / mass]
+
+    bounce = solve_ivp(rates, (0.0, 0.16), [0.0, 0.0], t_eval=motion.times, rtol=1e-10, atol=1e-13, max_step=1e-3)
+    assert np.any(bounce.y[1] > 0.1)
+    assert_allclose(motion.tip().position[:, 2], bounce.y[0], rtol=0, atol=2e-5)
+
+    # What is stored in the layer is potential energy, and what the contact takes is dissipated: no work is done.
+    energy = motion.energy
+    assert_allclose(energy.work, 0.0, rtol=0, atol=1e-15)
+    assert np.abs(energy.imbalance).max() < 1e-4
+    assert np.all(np.diff(energy.dissipated) >= -1e-9)
+    lost = -(energy.kinetic + energy.elastic + energy.potential - energy.potential[0])
+    assert_allclose(energy.dissipated, lost, rtol=0, atol=1e-5 * energy.kinetic.max())
+    assert energy.dissipated[-1] > 0.2 * energy.kinetic.max()
+
+
+TARGET = """
+[[targets]]
+kind = "position"
+rod = "rod"
+at = 1.0
+position = {position}
+"""
+
+
+def test_what_takes_loads_takes_smooth_contact(pressed: Solution) -> None:
+    """One equilibrium, by every way that leads there."""
+    model = pressed.model
+    followed = follow_path(model, "push.force", [0.0, 0.0, -0.6], values={"push.force": [0.0, 0.0, -0.1]})
+    assert followed.outcome is PathOutcome.CONVERGED
+    assert_allclose(followed.tip().position[-1], pressed.tip().position[0], rtol=0, atol=1e-9)
+
+    assert plan_sweep(model.scene, table_of({"push.force.z": [-0.3, -0.6]}))
+
+    target = TARGET.format(position=pressed.tip().position[0].tolist())
+    found = inverse(build(parse_scene('inputs = ["push.force"]\n' + ROD + PUSH + TABLE + target)))
+    assert found.solution.converged
+    assert_allclose(found.values["push.force"][2], -0.6, rtol=0, atol=1e-5)
+
+    # The table makes the rod stiff: in contact its lowest vibration is faster.
+    modes = modes_of(pressed, count=1)
+    free = modes_of(solve(build(parse_scene(ROD + PUSH))), count=1)
+    assert modes.modes[0].frequency > 1.5 * free.modes[0].frequency
+    assert np.all(linearise(pressed).eigenvalues.real < 1e-6)
+    assert embedded(model, pressed) is not None
+
+
+def test_parameters_move_the_rod_and_not_the_table() -> None:
+    text = ROD + PUSH + TABLE + "stiffness = 5e3\n"
+    model = build(parse_scene('parameters = ["rod.stiffness.bending_y"]\n' + text))
+    softer = solve(model, parameters={"rod.stiffness.bending_y": 0.4})
+    expected = solve(build(parse_scene(text.replace("bending_y = 0.5", "bending_y = 0.4"))))
+    assert softer.converged
+    assert_allclose(softer.tip().position, expected.tip().position, rtol=0, atol=1e-8)
+    assert_allclose(softer.contacts[0].force, expected.contacts[0].force, rtol=0, atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("quick_compiler")
+def test_c_presses_and_judges_as_python_does(tmp_path: Path) -> None:
+    """A table that is too soft: unknowns are those of Python, and the status says that they are no contact."""
+    text = (ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 2, nodes = 6")
+    model = build(parse_scene(text + "stiffness = 1.0\n"))
+    expected = solve(model)
+    assert expected.outcome is Outcome.UNRESOLVED
+    export(model, tmp_path / "through", "through")
+    found = load(tmp_path / "through").solve(expected.inputs)
+    assert found.outcome is Outcome.UNRESOLVED
+    assert_allclose(found.x, expected.x, rtol=0, atol=1e-9)
+
+
+def test_a_scene_pays_only_for_the_obstacles_that_it_names() -> None:
+    bare = parse_scene(ROD + PUSH)
+    exact = with_exact_contact(parse_scene(ROD + PUSH + TABLE))
+    smooth = parse_scene(ROD + PUSH + TABLE)
+    counts = []
+    for scene in (bare, exact, smooth):
+        model: Model = build(scene, discretise(bare, 4))
+        functions = (model.residual, model.jacobian, model.resolution_index, model.inverse_dynamics, model.energies)
+        counts.append([model.operations(function) for function in functions])
+    assert counts[0] == counts[1]
+    assert all(free < met for free, met in zip(counts[0], counts[2], strict=True))
+
+
+@pytest.mark.slow
+def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
+    file = tmp_path / "scene.toml"
+    file.write_text((ROD + PUSH + TABLE).replace("modes = 5, nodes = 12", "modes = 3, nodes = 8"))
+    smooth = cosserat("solve", "scene.toml", "--json", cwd=tmp_path)
+    assert smooth.returncode == 0
+    assert '"kind": "smooth"' in smooth.stdout
+    exact = cosserat("solve", "scene.toml", "--json", "--exact-contact", cwd=tmp_path)
+    assert exact.returncode == 0
+    assert '"kind": "point"' in exact.stdout
+    checked = cosserat("check", "scene.toml", cwd=tmp_path)
+    assert "smooth plane" in checked.stdout
+
+
+LUMEN = 'name = "it"\nkind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2]]\nradius = 0.01\nrods = ["rod"]\n'
+
+REFUSED = {
+    "no width": (TABLE.replace("width = 0.01", "stiffness = 10.0"), "obstacles[0].stiffness", "without width contact"),
+    "negative": (TABLE.replace("0.01", "-0.01"), "obstacles[0].width", "must be > 0"),
+    "some without": (
+        TABLE + TABLE.replace('"table"', '"other"').replace("width = 0.01", ""),
+        "obstacles[1].width",
+        "other obstacles have one",
+    ),
+    "thick": (
+        f'[[obstacles]]\nname = "it"\n{OBSTACLES["sphere"]}\nwidth = 0.2\n',
+        "obstacles[0].width",
+        "must be < radius",
+    ),
+    "play": (f"[[obstacles]]\n{LUMEN}width = 0.011\n", "obstacles.it.width", "must be less than the play"),
+    "clamp": (TABLE.replace("-0.06", "0.01"), "obstacles.table", "starts 0.01 m inside it"),
+    "radius": (
+        TABLE + 'bodies = ["ball"]\n' + '[[bodies]]\nname = "ball"\n',
+        "obstacles[0].bodies[0]",
+        "has no radius",
+    ),
+    "body": (TABLE + 'bodies = ["none"]\n', "obstacles[0].bodies[0]", "no body is named"),
+    "exact body": (TABLE.replace("width = 0.01", 'bodies = ["b"]'), "obstacles[0].bodies", "without width contact"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused_scenes(case: str) -> None:
+    text, where, problem = REFUSED[case]
+    with pytest.raises(SceneError) as refused:
+        build(parse_scene(ROD + text))
+    assert any(fault.where == where and problem in fault.problem for fault in refused.value.problems), refused.value
+
+
+GROWING = """
+schema = 1
+inputs = ["rod.length"]
+accuracy = { modes = 3, nodes = 8, tolerance = 1e-3 }
+[[rods]]
+name = "rod"
+length = 0.5
+strain = "planar"
+material = { youngs_modulus = 1e7, poisson_ratio = 0.4, density = 1000.0 }
+section = { shape = "circle", radius = 5e-3 }
+base = { position = [0, 0, 0.04], tangent = [1, 0, -0.2] }
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 1]
+width = 0.02
+stiffness = 2e3
+damping = 2.0
+[simulation]
+duration = 0.2
+frames = 21
+tolerance = 1e-4
+[[motions]]
+input = "rod.length"
+times = [0.0, 0.2]
+values = [0.5, 0.6]
+interpolation = "cubic"
+"""
+
+
+@pytest.mark.slow
+def test_energy_of_a_rod_that_is_pushed_out_onto_a_table_balances() -> None:
+    """Where a length moves no load counts as potential: the power of contact is work, without what it dissipates."""
+    motion = simulate(build(parse_scene(GROWING).with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    assert motion.energy.dissipated[-1] > 1e-3 * np.abs(motion.energy.work).max()
+    assert np.abs(motion.energy.imbalance).max() < 1e-4
+
+
+def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
+    soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
+    path = follow_path(soft, "push.force", [0.0, 0.0, -0.6])
+    assert path.outcome is PathOutcome.UNRESOLVED
+    assert "widths deep" in path.message
+    # As one that is not tells how deep it is.
+    fine = follow_path(pressed.model, "push.force", [0.0, 0.0, -0.6])
+    contact = path_result(fine)["contact"]
+    assert contact["widths"] == {"table": WIDTH}
+    assert -1.0 < max(contact["depth"]) < 1.0
