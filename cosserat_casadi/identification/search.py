@@ -20,7 +20,7 @@ from cosserat_casadi.identification.found import Identification, LeftOut, Row
 from cosserat_casadi.identification.misfit import Misfit, MisfitState
 from cosserat_casadi.identification.report import Ending
 from cosserat_casadi.identification.statistics import Statistics, statistics
-from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
+from cosserat_casadi.identification.unknowns import UnknownLayout, refuse_row_parameters, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
@@ -79,6 +79,7 @@ def identify(
         SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
     """
     refuse_obstacles(model.scene, "an identification")
+    refuse_row_parameters(model.scene)
     scene = model.scene
     options = scene.identification
     layout = unknown_layout(model)
@@ -125,6 +126,7 @@ def identify_scene(
         SceneError: as in :func:`identify`.
     """
     refuse_obstacles(scene, "an identification")
+    refuse_row_parameters(scene)
     completed = scene.with_unknowns()
     draft = build(completed)
     # All that is refused is refused before time is spent on a discretisation.
