@@ -2,8 +2,8 @@
 
 A steel strip stands in a clamp; a pin at its tip is pushed along a guide. Four Legendre coefficients of its unloaded
 curvature, its thickness and its length are chosen. The equilibria are no variables of the optimisation: each is
-followed from the one before it, on one branch, in compiled C, and its derivatives with the design come from the implicit
-function theorem. So the optimiser cannot change branches unnoticed, and sees nothing but the design.
+followed from the one before it, on one branch, in compiled C, and its derivatives with the design come from the
+implicit function theorem. So the optimiser cannot change branches unnoticed, and sees nothing but the design.
 """
 
 from __future__ import annotations

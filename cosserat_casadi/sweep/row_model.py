@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,8 +11,12 @@ from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discrete_scene import with_numbers
+from cosserat_casadi.model.load_checks import check_loads
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.scene import parse_scene
 
 
@@ -23,10 +27,12 @@ class RowModel:
     Attributes:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
+        measure: text of the scene that eigenvalues are counted in: that of the sweep as it stands. Empty for this one.
     """
 
     scene: str
     stability: bool = False
+    measure: str = ""
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
@@ -36,17 +42,30 @@ class RowModel:
         for row in inputs:
             # From the unloaded scene each: what a row gives must not depend on those before.
             solution = solve(model, model.inputs.unpack(row))
-            rows.append(result_row(solution, width, stability=self.stability))
+            judged = self._counted_in_measure(solution) if self.stability else None
+            rows.append(result_row(solution, width, judged))
         return np.array(rows).reshape(len(inputs), width)
 
+    def _counted_in_measure(self, solution: Solution) -> Solution:
+        """The same equilibrium with the unknowns that it has under the scaling of the measure."""
+        measured = _measured(self.scene, self.measure) if self.measure else None
+        if measured is None or not solution.converged:
+            return solution
+        again = solve(measured, solution.inputs, start=solution.x)
+        if not again.converged:
+            # Its sign is known, but not how large it is there.
+            return replace(solution, smallest_eigenvalue=None)
+        return again
 
-def result_row(solution: Solution, width: int, *, stability: bool = False) -> FloatArray:
+
+def result_row(solution: Solution, width: int, judged: Solution | None = None) -> FloatArray:
     """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
 
     Args:
         solution: of the row.
         width: numbers in the row.
-        stability: whether it ends with the stability of the equilibrium, NaN where the loads have no potential.
+        judged: the same equilibrium in the units of its smallest eigenvalue, where the row ends with its stability:
+            NaN where the loads have no potential.
     """
     row = np.full(width, np.nan)
     outcome = OUTCOMES.index(solution.outcome)
@@ -63,13 +82,28 @@ def result_row(solution: Solution, width: int, *, stability: bool = False) -> Fl
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
-    if stability:
-        judged = (solution.smallest_eigenvalue, solution.stable)
-        numbers += [np.nan if number is None else float(number) for number in judged]
+    if judged is not None:
+        verdict = (judged.smallest_eigenvalue, judged.stable)
+        numbers += [np.nan if number is None else float(number) for number in verdict]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
 
 
 @lru_cache(maxsize=2)
+def _measured(scene: str, measure: str) -> Model | None:
+    """The model of a scene under the scaling of another; None where its loads or its places do not allow that."""
+    own = parse_scene(scene)
+    scaling = _model(measure)
+    if any(len(element_ends(own, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in own.rods):
+        return None
+    discrete = with_numbers(scaling.discrete, own)
+    try:
+        check_loads(discrete)
+    except SceneError:
+        return None
+    return Model(discrete)
+
+
+@lru_cache(maxsize=3)
 def _model(text: str) -> Model:
     return build(parse_scene(text))
