@@ -88,9 +88,9 @@ def variants() -> list[Variant]:
 
 def with_finer_sensors(variant: Variant) -> Variant:
     """The same with a quarter of the noise: intervals are narrower, and the linear model of the posterior better."""
-    measurements = [
+    measurements = tuple(
         measurement.model_copy(update={"sigma": measurement.sigma / 4}) for measurement in variant.scene.measurements
-    ]
+    )
     return Variant(
         f"{variant.title}, a quarter of the noise", variant.scene.model_copy(update={"measurements": measurements})
     )
