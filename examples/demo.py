@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
 from pathlib import Path
 
@@ -40,13 +41,14 @@ SCENES = (
     "felt_loads",
     "concentric_tubes",
     "reach_past_bar",
+    "felt_contact",
 )
 
 WITH_TARGETS = ("finger_to_point", "reach_past_bar")
 
 WITH_MEASUREMENTS = ("wire_from_shapes", "released_strip")
 
-WITH_FELT_LOADS = ("felt_loads",)
+WITH_FELT_LOADS = ("felt_loads", "felt_contact")
 
 MOTIONS = (
     "fishing_rod_cast",
@@ -61,6 +63,9 @@ MOTIONS = (
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}
 """Of the motions that an animation is drawn of too: drawing one takes longer than computing its motion."""
 
+
+PROGRAMS = ("design_spring",)
+"""Which are no command line, and draw a figure in seconds."""
 
 PAGES = ("nitinol_wire", "two_section_robot", "six_rod_platform")
 """Of which a page is written too, that solves them in a browser, where there is a compiler for it."""
@@ -111,6 +116,11 @@ def main() -> int:
         lines += [page_arguments(name, folder) for name in PAGES]
     for arguments in lines:
         worst = max(worst, run(lambda arguments=arguments, **options: app(arguments, **options)))
+        print()
+    for name in PROGRAMS:
+        program = Path(__file__).with_name(f"{name}.py")
+        command = [sys.executable, str(program), "--output", str(folder / f"{name}.png")]
+        worst = max(worst, subprocess.run(command, check=False).returncode)
         print()
     print(f"Results and figures are in {folder.resolve()}.")
     return worst

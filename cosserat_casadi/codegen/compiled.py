@@ -36,6 +36,9 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.function_table import PARAMETERS, SCALAR_ARGUMENTS, Owner
 
+SCENE = "scene.toml"
+"""File of an exported folder: the scene that it was made from."""
+
 OWNED = frozenset(spec.name for spec in FUNCTIONS if spec.public and spec.owner is not Owner.SCENE)
 """Functions of which a scene may have none: one without bodies."""
 
@@ -60,6 +63,7 @@ class Compiled(CompiledMotion):
     library: Path
     manifest: dict[str, Any]
     _names: Names = field(repr=False)
+    _scene: str = field(default="", repr=False)
 
     @cached_property
     def differentiable(self) -> bool:
@@ -112,7 +116,7 @@ class Compiled(CompiledMotion):
     @cached_property
     def parameters(self) -> ListedParameters:
         """Names, units and default values of the parameters; often none."""
-        return listed_parameters(self.manifest.get("parameters", []))
+        return listed_parameters(self.manifest.get("parameters", []), self._scene)
 
     def solve(
         self,
@@ -360,7 +364,15 @@ def load(
     beside = {*VERBATIM, stability_files(names.name)[1]}
     headers += [folder / file for file in described["files"] if file in beside]
     library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
-    return Compiled(library, described, names)
+    return Compiled(library, described, names, _scene_text(folder))
+
+
+def _scene_text(folder: Path) -> str:
+    """Text of the scene of an exported folder; empty where somebody has taken it away."""
+    try:
+        return (folder / SCENE).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return ""
 
 
 def _manifest(folder: Path) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from cosserat_casadi.codegen.kernels import kernel, kernel_sources, kernels
 from cosserat_casadi.codegen.library import library_sources, render
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import model_names
+from cosserat_casadi.codegen.parameters import given_size, input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import loaded, to_compile
 from cosserat_casadi.maths.typing import FloatArray
@@ -54,7 +55,8 @@ class MeasuredCases:
     """Rows of cases.
 
     Attributes:
-        inputs: stacked inputs, the unknown ones with the values to begin with, shape (cases, inputs).
+        inputs: stacked inputs and the parameters behind them, the unknown ones with the values to begin with, shape
+            (cases, inputs + parameters).
         at: abscissae, shape (cases, sections).
         measured: measured numbers, shape (cases, numbers).
         weights: one over the standard deviation of each difference, 0 where it was not measured, (cases, rows).
@@ -132,14 +134,33 @@ class EstimatorLibrary:
         )
 
 
+def _residual_by_unknown(model: Model, indices: Sequence[int]) -> ca.Function:
+    """(x, inputs) ↦ derivatives of the residual with the numbers that are found; behind the inputs stand parameters."""
+    by_all = with_parameters_behind_inputs(input_jacobian(model))
+    x, inputs = by_all.mx_in()
+    by_found = by_all(x, inputs)[:, list(indices)]
+    return ca.Function("by_unknown", [x, inputs], [by_found], ["x", "inputs"], ["by_unknown"])
+
+
+def _passed_parameters(model: Model) -> dict[str, str]:
+    """Arguments by which the functions of a library with parameters take them, and give derivatives with them."""
+    arguments = {
+        "parameters": ", room->inputs + OWN_INPUTS",
+        "trial_parameters": ", room->trial_inputs + OWN_INPUTS",
+        "x_by_parameters": ", room->d_x_d_inputs + N * OWN_INPUTS",
+        "no_poses": ", 0",
+    }
+    return arguments if model.parameters.size else dict.fromkeys(arguments, "")
+
+
 def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int]) -> EstimatorLibrary:
     """Sources of the solver of a model with a function that estimates inputs.
 
     Args:
-        model: without parameters.
+        model: what is measured; its parameters are further inputs here.
         measured: (x, inputs, at, measured) ↦ the differences between model and measurement, and their derivatives with
-            x and with the inputs that are found.
-        indices: of these inputs among the stacked ones.
+            x and with the numbers that are found. Behind the inputs stand the parameters.
+        indices: of these numbers among the stacked inputs and parameters.
 
     Raises:
         ExportError: two things of the scene would have one name in C.
@@ -149,13 +170,19 @@ def estimator_library(model: Model, measured: ca.Function, indices: Sequence[int
     generated = kernel_sources(kernels(model, names, parts), names)
     arguments = measured.mx_in()
     value = ca.Function("value", arguments, measured.call(arguments)[:1])
-    own = [kernel(model, value, f"{NAME}_k_difference"), kernel(model, measured, f"{NAME}_k_measured")]
+    own = [
+        kernel(model, value, f"{NAME}_k_difference"),
+        kernel(model, measured, f"{NAME}_k_measured"),
+        kernel(model, _residual_by_unknown(model, indices), f"{NAME}_k_by_unknown"),
+    ]
     of_measurements = kernel_sources(own, names, f"{NAME}_measured")
     words = {
         "name": names.name,
         "MACRO": names.macro,
         "unknowns": len(indices),
         "indices": numbers(list(indices)),
+        "inputs": given_size(model),
+        **_passed_parameters(model),
         "rows": measured.size1_out(0),
         "sections": measured.nnz_in(2),
         "measured": measured.nnz_in(3),

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.plain import pointer
-from cosserat_casadi.errors import Problem
+from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.stacked import StackedLayout
+from cosserat_casadi.scene import Scene, parse_scene
 
 ParameterValues = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
 """By name, those not named keeping the scene's values; or all of them stacked; None for the scene's."""
@@ -34,7 +36,7 @@ class ListedParameter:
     default: FloatArray
 
     def faults(self, value: FloatArray) -> Iterator[Problem]:
-        """What is wrong with a value; the ranges of the scene are not known here."""
+        """What is wrong with a value but for its range, which the scene judges."""
         if value.size != self.default.size:
             yield Problem(self.name, f"must have {self.default.size} numbers, got {value.size}")
         elif not np.all(np.isfinite(value)):
@@ -43,10 +45,45 @@ class ListedParameter:
 
 @dataclass(frozen=True)
 class ListedParameters(StackedLayout[ListedParameter]):
-    """The parameters of an exported folder, stacked into one vector p."""
+    """The parameters of an exported folder, stacked into one vector p.
+
+    Attributes:
+        scene: text of the scene that the folder was made from, which judges values that are given by name.
+    """
+
+    scene: str = ""
 
     what = "a parameter"
     several = "parameters"
+
+    def pack(self, values: Mapping[str, npt.ArrayLike] | None = None) -> FloatArray:
+        """The stacked vector, from the scene's values and those given here.
+
+        Raises:
+            SceneError: a name is unknown, a value has another shape, or the scene refuses it.
+        """
+        p = super().pack(values)
+        if values:
+            self._judge(p)
+        return p
+
+    def _judge(self, p: FloatArray) -> None:
+        """Ask the scene about values, unless they are those that it was asked about last."""
+        last = p.tobytes()
+        if self._layout is None or self.__dict__.get("_accepted") == last:
+            return
+        scene, layout = self._layout
+        layout.set_in(scene, layout.unpack(p))
+        self.__dict__["_accepted"] = last
+
+    @cached_property
+    def _layout(self) -> tuple[Scene, ParameterLayout] | None:
+        """The scene and its parameters; None where the folder has no scene that can be read."""
+        try:
+            scene = parse_scene(self.scene)
+        except SceneError:
+            return None
+        return scene, parameter_layout(scene)
 
     def stacked(self, values: ParameterValues = None) -> FloatArray:
         """All parameters as one vector, shape (size,).
@@ -92,10 +129,10 @@ class ListedParameters(StackedLayout[ListedParameter]):
         return rows
 
 
-def listed_parameters(entries: Sequence[Mapping[str, Any]]) -> ListedParameters:
-    """The parameters of a manifest."""
+def listed_parameters(entries: Sequence[Mapping[str, Any]], scene: str = "") -> ListedParameters:
+    """The parameters of a manifest, with the text of the scene that judges them."""
     parameters = []
     for entry in entries:
         default = np.array(entry["value"], dtype=float).reshape(entry["shape"], order="F")
         parameters.append(ListedParameter(entry["name"], entry["unit"], default))
-    return ListedParameters(tuple(parameters))
+    return ListedParameters(tuple(parameters), scene)

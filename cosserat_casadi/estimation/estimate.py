@@ -1,6 +1,7 @@
-"""What a robot feels: the inputs of each measured case that explain it best, given what is known beforehand.
+"""What a robot feels: inputs and places of each measured case that explain it best, given what is known beforehand.
 
-The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores. Its covariance is that of
+The maximum a posteriori of each case is found in C, from the unloaded rod, on all cores; where a place along a rod or
+another parameter is unknown, from several values between its bounds. Its covariance is that of
 the linearised model there: S. Särkkä, *Bayesian Filtering and Smoothing*, Cambridge University Press 2013, section
 A.3; the Gaussian approximation of Laplace.
 """
@@ -24,14 +25,25 @@ from cosserat_casadi.codegen.estimator import (
     MeasuredCases,
     estimator_library,
 )
-from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.estimation.beforehand import (
+    cases_within_reach,
+    check_ranges,
+    check_unknowns,
+    expected_values,
+    knowledge_of,
+    of_parameters,
+    row_parameters,
+    stacked_indices,
+    with_row_parameters,
+)
+from cosserat_casadi.estimation.optima import best_of, spread_starts
 from cosserat_casadi.estimation.outcome import NOT_DETERMINED, REASONS, Estimate, what_is_known
 from cosserat_casadi.estimation.stacking import differences, sections_of, stacked
 from cosserat_casadi.identification.cases import Data, read_cases
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
-from cosserat_casadi.scene.measurements import ModeMeasurement
+from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.sweep.local import available_cores
 
 CHUNK = 256
@@ -39,15 +51,6 @@ CHUNK = 256
 
 CHECKED = 3
 """Cases that are solved again on a finer discretisation."""
-
-REACH = 2.0
-"""Deviations of the prior up to which the discretisation is to serve."""
-
-DRAWS = 6
-"""Cases within that reach that it is chosen on."""
-
-SEED = 22
-"""Of these cases: the same scene gives the same discretisation."""
 
 POOR = 2.0
 """Root mean square of the residuals, in standard deviations, beyond which the model does not explain the data."""
@@ -69,31 +72,36 @@ def estimate(
     """What explains each measured case of a model's scene best.
 
     Args:
-        model: of a scene with measurements, whose unknowns are inputs ``per_row``: ``build(scene.with_unknowns())``.
+        model: of a scene with measurements, whose unknowns are ``per_row``: ``build(scene.with_unknowns())``.
         data: columns by measurement, by its name or its file, that stand for the file.
         cores: threads, at least 1; those of this machine by default.
         progress: told what is being done.
 
     Raises:
-        SceneError: a table is refused, or an unknown is no input that is found anew in each row.
+        SceneError: a table is refused, an unknown is not found anew in each row, or the scene refuses a parameter that
+            is between its bounds.
         ExportError: there is no C compiler, or it fails.
     """
     report = progress or _ignore
-    model = model.at()
     check_unknowns(model.scene)
+    model = with_row_parameters(model)
     layout = unknown_layout(model)
+    check_ranges(model, layout)
     cases = read_cases(model.scene, model.inputs, data)
     labels = layout.own_labels
-    indices = [int(index) for entry in layout.own for index in entry.indices]
+    indices = stacked_indices(layout, model.inputs.size)
     sections = sections_of(model, cases)
     table = stacked(model, cases, sections)
     known = knowledge_of(layout)
-    # The search begins at what is expected, or else at the scene's values.
-    expected = np.where(known.weight > 0.0, known.mean, table.inputs[:, indices])
-    table.inputs[:, indices] = expected
+    table.inputs[:, indices] = expected_values(known, table.inputs[:, indices])
     report("Compiling", 0, 0)
     library = estimator_library(model, differences(model, sections, indices, table.at), indices)
-    found = _found(library, table, known, cores or available_cores(), report)
+    tables = start_tables(table, layout, indices, model.scene)
+    runs = _found(library, tables, known, cores or available_cores(), report)
+    found = runs[0]
+    second = None
+    if len(runs) > 1:
+        found, second = best_of(runs)
     told = what_is_known(found, known, labels)
     outcomes = []
     for ending, determined in zip(found.outcome.tolist(), told.determined.tolist(), strict=True):
@@ -114,7 +122,9 @@ def estimate(
         cost=found.cost,
         numbers=np.count_nonzero(table.weights, axis=1),
         x=found.x,
-        inputs=inputs,
+        inputs=inputs[:, : model.inputs.size],
+        parameters=inputs[:, model.inputs.size :],
+        second=second,
         unseen=told.unseen,
     )
     return replace(result, warnings=tuple(_remarks(result, table.weights, known)))
@@ -133,7 +143,7 @@ def estimate_scene(
     discretisation that tells their error.
 
     Args:
-        scene: with measurements, whose unknowns are inputs ``per_row``.
+        scene: with measurements, whose unknowns are ``per_row``.
         data: as in :func:`estimate`.
         cores: as there.
         progress: as there.
@@ -144,102 +154,77 @@ def estimate_scene(
     """
     report = progress or _ignore
     check_unknowns(scene)
-    completed = scene.with_unknowns().baked()
+    completed = scene.with_unknowns().model_copy(update={"parameters": row_parameters(scene)})
     draft = build(completed)
     # All that is refused is refused before time is spent on a discretisation.
     layout = unknown_layout(draft)
+    check_ranges(draft, layout)
     cases = read_cases(completed, draft.inputs, data)
     if not scene.accuracy.fixed:
         report("Choosing the discretisation", 0, 0)
         inputs = np.array([case.inputs for case in cases])
-        completed = tune(completed, [draft.inputs.unpack(row) for row in _reach(layout, inputs)]).scene
+        expected = cases_within_reach(CaseLayout(draft.inputs, draft.parameters), layout, inputs)
+        completed = tune(completed, list(expected)).scene
     result = estimate(build(completed), data, cores=cores, progress=progress)
     return replace(result, checked=tuple(_checked(result, report)))
-
-
-def check_unknowns(scene: scenes.Scene) -> None:
-    """Refuse a scene whose measurements or unknowns an estimate has no use for.
-
-    Raises:
-        SceneError: with every fault.
-    """
-    problems = []
-    if not scene.measurements:
-        problems.append(Problem("measurements", "missing", "say what was measured"))
-    for i, measurement in enumerate(scene.measurements):
-        if isinstance(measurement, ModeMeasurement):
-            problem = f"{measurement.quantity}: an estimate knows equilibria, and none of their vibrations"
-            problems.append(Problem(f"measurements[{i}].quantity", problem, "use cosserat identify"))
-        elif getattr(measurement, "time", None) is not None:
-            problem = "an estimate knows equilibria, and no motion"
-            problems.append(Problem(f"measurements[{i}].time", problem, "leave it out, or use cosserat identify"))
-    if not scene.unknowns:
-        problems.append(Problem("unknowns", "missing", "name what is to be felt"))
-    for i, unknown in enumerate(scene.unknowns):
-        where = f"unknowns[{i}]"
-        if not unknown.per_row:
-            problem = f"{unknown.name} is the same in all rows; an estimate finds what differs from row to row"
-            remedy = "give an input per_row = true; find what is shared with cosserat identify --write before"
-            problems.append(Problem(where, problem, remedy))
-        elif unknown.name.endswith("quaternion"):
-            remedy = "find it with cosserat identify"
-            problems.append(Problem(where, "an orientation is not estimated row by row", remedy))
-    if problems:
-        raise SceneError(*problems)
 
 
 def _ignore(doing: str, done: int, total: int) -> None:
     """Progress that nobody asked for."""
 
 
-def knowledge_of(layout: UnknownLayout) -> Knowledge:
-    """What a scene says of its unknowns beforehand: bounds, priors, typical sizes."""
+def start_tables(
+    table: MeasuredCases, layout: UnknownLayout, indices: Sequence[int], scene: scenes.Scene
+) -> list[MeasuredCases]:
+    """The cases with the values from which each search begins: parameters are spread between their bounds.
+
+    Args:
+        table: the cases, unknown inputs with the values to begin with.
+        layout: of the unknowns.
+        indices: places of their numbers in a row of the inputs.
+        scene: says how many searches are made, where parameters are unknown.
+    """
+    chosen = of_parameters(layout)
+    if not chosen:
+        return [table]
     limits = layout.own_limits
-    typical = np.concatenate([entry.scales for entry in layout.own])
-    # What is known beforehand says best what is much and what is little.
-    deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
-    sizes = np.where(limits.weight > 0.0, deviations, typical)
-    return Knowledge(limits.lower, limits.upper, limits.mean, limits.weight, sizes)
+    columns = [indices[k] for k in chosen]
+    tables = []
+    for values in spread_starts(limits.lower[chosen], limits.upper[chosen], scene.estimation.starts):
+        inputs = table.inputs.copy()
+        inputs[:, columns] = values
+        tables.append(replace(table, inputs=inputs))
+    return tables
 
 
 def _found(
-    library: EstimatorLibrary, cases: MeasuredCases, known: Knowledge, cores: int, report: Progress
-) -> Estimates:
-    """All cases, in chunks on all cores."""
-    count = len(cases.inputs)
-    parts = [cases.part(slice(first, first + CHUNK)) for first in range(0, count, CHUNK)]
-    found = []
+    library: EstimatorLibrary, tables: Sequence[MeasuredCases], known: Knowledge, cores: int, report: Progress
+) -> list[Estimates]:
+    """What was found from each table of starts, in chunks on all cores."""
+    count = len(tables[0].inputs)
+    chunks = [slice(first, first + CHUNK) for first in range(0, count, CHUNK)]
+    parts = [table.part(chunk) for table in tables for chunk in chunks]
+    found: list[Estimates] = []
     done = 0
     with ThreadPoolExecutor(cores) as pool:
         for part in pool.map(lambda chunk: library.estimate(chunk, known), parts):
             found.append(part)
             done += len(part.outcome)
-            report("Estimating", done, count)
+            report("Estimating", done, count * len(tables))
+    each = len(chunks)
+    return [_joined(found[first : first + each]) for first in range(0, len(found), each)]
+
+
+def _joined(parts: Sequence[Estimates]) -> Estimates:
+    """Chunks of cases as one."""
     return Estimates(
-        outcome=np.concatenate([part.outcome for part in found]),
-        iterations=np.concatenate([part.iterations for part in found]),
-        cost=np.concatenate([part.cost for part in found]),
-        unknowns=np.vstack([part.unknowns for part in found]),
-        information=np.vstack([part.information for part in found]),
-        x=np.vstack([part.x for part in found]),
+        outcome=np.concatenate([part.outcome for part in parts]),
+        iterations=np.concatenate([part.iterations for part in parts]),
+        cost=np.concatenate([part.cost for part in parts]),
+        unknowns=np.vstack([part.unknowns for part in parts]),
+        information=np.vstack([part.information for part in parts]),
+        x=np.vstack([part.x for part in parts]),
     )
-
-
-def _reach(layout: UnknownLayout, inputs: FloatArray) -> list[FloatArray]:
-    """Stacked inputs that the discretisation is chosen on: those of some cases, the unknown ones within reach."""
-    limits = layout.own_limits
-    indices = np.concatenate([entry.indices for entry in layout.own])
-    rng = np.random.default_rng(SEED)
-    rows = []
-    for k in range(DRAWS):
-        row = inputs[rng.integers(len(inputs))].copy()
-        signs = rng.choice([-1.0, 1.0], len(indices)) if k else np.zeros(len(indices))
-        deviations = np.where(limits.weight > 0.0, 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0), 0.0)
-        expected = np.where(limits.weight > 0.0, limits.mean, row[indices])
-        reached = expected + REACH * signs * deviations
-        row[indices] = np.clip(reached, limits.lower, limits.upper)
-        rows.append(row)
-    return rows
 
 
 def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | None]]:
@@ -252,8 +237,11 @@ def _checked(result: Estimate, report: Progress) -> Iterator[tuple[int, float | 
     rows = found[np.argsort(-bent, kind="stable")[:CHECKED]].tolist()
     for done, row in enumerate(rows):
         report("Checking rows", done, len(rows))
-        scene = result.model.scene
-        solution = solve_scene(scene, result.model.inputs.unpack(result.inputs[row]))
+        model = result.model
+        scene = model.scene
+        if model.parameters.size:
+            scene = model.parameters.set_in(scene, model.parameters.unpack(result.parameters[row]))
+        solution = solve_scene(scene, model.inputs.unpack(result.inputs[row]))
         yield row, solution.error_estimate if solution.converged else None
 
 
@@ -269,6 +257,12 @@ def _remarks(result: Estimate, weights: FloatArray, known: Knowledge) -> Iterato
     at_bound = (result.values <= known.lower) | (result.values >= known.upper)
     for k in np.flatnonzero(at_bound.any(axis=0)):
         yield f"{result.labels[k]} is at a bound in {int(at_bound[:, k].sum())} rows: its deviation means little there."
+    doubtful = [case for case, is_doubtful in zip(result.cases, result.doubtful, strict=True) if is_doubtful]
+    if doubtful:
+        yield (
+            f"{len(doubtful)} of {seen} rows have another explanation nearly as good, told as the second best: "
+            f"{_named(doubtful)}. Values and deviations there are those of the best alone."
+        )
     measured = max(1, int(np.count_nonzero(weights[result.found])))
     rms = float(np.sqrt(2.0 * np.sum(result.cost[result.found]) / measured))
     if rms > POOR:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.codegen.estimator import ENDINGS, Estimates, Knowledge
+from cosserat_casadi.estimation.optima import SecondBest
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 
@@ -25,6 +26,9 @@ SHOWN_PART = 0.2
 
 NORMAL_95 = 1.959963984540054
 """Deviations that hold 95 % of a normal distribution."""
+
+SURE = 0.95
+"""Share of the posterior mass from which on the best minimum stands for all."""
 
 NOT_DETERMINED = "not_determined"
 """Word for a row whose unknowns neither data nor priors determine."""
@@ -46,6 +50,8 @@ class Estimate:
         numbers: how many were measured in each case, shape (cases,).
         x: the equilibria, shape (cases, size).
         inputs: stacked inputs of each, shape (cases, inputs).
+        parameters: stacked parameters of each, shape (cases, parameters); often none.
+        second: what else explains the rows; None where one search was made for each.
         unseen: directions that the data do not see, in words, with the number of cases in which that is so.
         checked: cases solved again on a finer discretisation: number of the case, estimated error.
         warnings: sentences on what looks wrong.
@@ -62,6 +68,8 @@ class Estimate:
     numbers: npt.NDArray[np.int64]
     x: FloatArray
     inputs: FloatArray
+    parameters: FloatArray
+    second: SecondBest | None
     unseen: dict[str, int]
     checked: tuple[tuple[int, float | None], ...] = ()
     warnings: tuple[str, ...] = field(default=())
@@ -70,6 +78,13 @@ class Estimate:
     def found(self) -> npt.NDArray[np.bool_]:
         """Which cases were found, shape (cases,)."""
         return np.array([outcome == ENDINGS[0] for outcome in self.outcomes])
+
+    @property
+    def doubtful(self) -> npt.NDArray[np.bool_]:
+        """Cases that were found, but might be otherwise: another minimum has a share worth telling, shape (cases,)."""
+        if self.second is None:
+            return np.zeros(len(self.cases), dtype=bool)
+        return self.found & (self.second.share < SURE)
 
     @property
     def sigma(self) -> FloatArray:

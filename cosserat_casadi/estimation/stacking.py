@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.codegen.estimator import MeasuredCases
+from cosserat_casadi.codegen.parameters import given_size
 from cosserat_casadi.identification.cases import Case
 from cosserat_casadi.identification.quantities import difference
 from cosserat_casadi.maths.typing import FloatArray
@@ -31,20 +32,22 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
     """The differences of all measurements as one function.
 
     Args:
-        model: without parameters.
+        model: what is measured.
         sections: rows of each measurement in one case, by its number.
-        indices: of the inputs that are found.
+        indices: of the numbers that are found among the stacked inputs and the parameters behind them.
         abscissae: of all cases, shape (cases, sections); those that are the same in all are constants of the function.
 
     Returns:
-        (x, inputs, at, measured) ↦ differences, and their derivatives with x and with these inputs.
+        (x, inputs, at, measured) ↦ differences, and their derivatives with x and with these numbers. Behind the inputs
+        stand the parameters.
     """
     x = ca.MX.sym("x", model.size)
-    inputs = ca.MX.sym("inputs", model.inputs.size)
+    given = ca.MX.sym("inputs", given_size(model))
+    inputs = given[: model.inputs.size]
+    parameters = given[model.inputs.size :]
     records = {number: model.scene.measurements[number] for number in sections}
     at = ca.MX.sym("at", sum(sections.values()))
     measured = ca.MX.sym("measured", sum(len(records[number].entries) * count for number, count in sections.items()))
-    no_parameters = ca.DM(0, 1)
     results: list[list[ca.MX]] = [[], [], []]
     first_section = 0
     first_number = 0
@@ -57,12 +60,13 @@ def differences(model: Model, sections: dict[int, int], indices: Sequence[int], 
         first_section += count
         first_number += size
         of_record = difference(model, record, count)
-        value, by_x, by_inputs, _ = of_record.call([x, inputs, no_parameters, own_at, own_measured])
-        for stack, result in zip(results, (value, by_x, by_inputs[:, list(indices)]), strict=True):
+        value, by_x, by_inputs, by_parameters = of_record.call([x, inputs, parameters, own_at, own_measured])
+        by_found = ca.horzcat(by_inputs, by_parameters)[:, list(indices)]
+        for stack, result in zip(results, (value, by_x, by_found), strict=True):
             stack.append(result)
     stacked = [ca.densify(ca.vertcat(*stack)) for stack in results]
     names = ["x", "inputs", "at", "measured"]
-    return ca.Function("measured", [x, inputs, at, measured], stacked, names, ["difference", "by_x", "by_unknown"])
+    return ca.Function("measured", [x, given, at, measured], stacked, names, ["difference", "by_x", "by_unknown"])
 
 
 def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> MeasuredCases:
@@ -74,7 +78,8 @@ def stacked(model: Model, cases: Sequence[Case], sections: dict[int, int]) -> Me
         own = _of_measurement(model, number, cases, count)
         for table, part in zip((at, measured, weights), own, strict=True):
             table.append(part)
-    inputs = np.array([case.inputs for case in cases])
+    p = model.parameters.pack()
+    inputs = np.array([np.concatenate([case.inputs, p]) for case in cases])
     return MeasuredCases(inputs, np.hstack(at), np.hstack(measured), np.hstack(weights))
 
 

@@ -15,7 +15,7 @@ from cosserat_casadi.identification.found import Identification
 from cosserat_casadi.identification.measured_modes import check_vibrations
 from cosserat_casadi.identification.motions import StartInputs, check_motions
 from cosserat_casadi.identification.task import SEED, Progress, Task
-from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
+from cosserat_casadi.identification.unknowns import UnknownLayout, refuse_row_parameters, unknown_layout
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.numerics.progress import Report
@@ -50,6 +50,7 @@ def identify(
         SceneError: a table is refused, the model lacks an unknown, or there are fewer data than unknowns.
     """
     refuse_obstacles(model.scene, "an identification")
+    refuse_row_parameters(model.scene)
     scene = model.scene
     options = scene.identification
     layout = unknown_layout(model)
@@ -95,6 +96,7 @@ def identify_scene(
         SceneError: as in :func:`identify`.
     """
     refuse_obstacles(scene, "an identification")
+    refuse_row_parameters(scene)
     completed = scene.with_unknowns()
     draft = build(completed)
     # All that is refused is refused before time is spent on a discretisation.

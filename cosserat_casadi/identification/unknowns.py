@@ -270,6 +270,23 @@ def unknown_layout(model: Model) -> UnknownLayout:
     return UnknownLayout(shared, own, model.parameters.pack())
 
 
+def refuse_row_parameters(scene: scenes.Scene) -> None:
+    """Refuse parameters that are unknown anew in each case: an identification has inputs for that.
+
+    Raises:
+        SceneError: with every such unknown.
+    """
+    problem = "a parameter is the same in all cases of an identification"
+    remedy = "leave per_row out, name an input, or find it with cosserat estimate"
+    refused = [
+        Problem(f"unknowns[{i}].per_row", problem, remedy)
+        for i, unknown in enumerate(scene.unknowns)
+        if unknown.per_row and unknown.parameter is not None
+    ]
+    if refused:
+        raise SceneError(*refused)
+
+
 def _input_indices(model: Model) -> dict[str, list[int]]:
     """Places in the stacked inputs by the name of an input, or of one of its numbers."""
     indices = {name: [index] for name, index in column_indices(model.inputs).items()}

@@ -21,6 +21,9 @@ MOST_PANELS = 12
 COLUMNS = 3
 """Panels in a row."""
 
+SECOND = {"linestyle": "", "marker": "o", "markerfacecolor": "none", "color": CATEGORIES[1], "label": "second best"}
+"""What might explain a row as well."""
+
 
 def save_estimate_plot(found: Estimate, file: str | Path) -> None:
     """Draw an estimate into a file, whole or not at all; the same one gives the same bytes.
@@ -33,7 +36,7 @@ def save_estimate_plot(found: Estimate, file: str | Path) -> None:
 
 
 def plot_estimate(found: Estimate) -> Any:
-    """The matplotlib.figure.Figure of an estimate; rows that were not found are gaps.
+    """The matplotlib.figure.Figure of an estimate; rows that were not found are gaps, open markers second-best values.
 
     Raises:
         PlotUnavailableError: matplotlib is not installed.
@@ -48,9 +51,13 @@ def plot_estimate(found: Estimate) -> Any:
         half = (found.intervals[:, k, 1] - found.intervals[:, k, 0]) / 2
         panel.axhline(0.0, color="0.8", linewidth=0.8)
         panel.errorbar(rows, found.values[:, k], half, fmt=".", color=CATEGORIES[0], elinewidth=1.0, capsize=2.0)
+        if found.second is not None and found.doubtful.any():
+            panel.plot(rows, np.where(found.doubtful, found.second.values[:, k], np.nan), **SECOND)
         unit = found.units[k]
         panel.set_ylabel(found.labels[k] if unit == "1" else f"{found.labels[k]} ({unit})", fontsize=8)
         panel.grid(alpha=0.3)
+    if found.doubtful.any():
+        panels[0].legend(fontsize=8)
     for panel in panels[shown:]:
         panel.set_visible(False)
     for panel in panels[max(0, shown - columns) : shown]:

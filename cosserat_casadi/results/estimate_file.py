@@ -22,6 +22,7 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
             "sigma": found.sigma[i],
             "covariance": found.covariance[i],
             "cost": found.cost[i],
+            **_second_best(found, i),
         }
         for i, (case, outcome) in enumerate(zip(found.cases, found.outcomes, strict=True))
     ]
@@ -42,18 +43,33 @@ def estimate_result(found: Estimate) -> dict[str, Any]:
     return data
 
 
+def _second_best(found: Estimate, case: int) -> dict[str, Any]:
+    """What else explains a row, where several searches were made for it."""
+    if found.second is None:
+        return {}
+    second = found.second
+    return {"share": second.share[case], "second": {"value": second.values[case], "cost": second.cost[case]}}
+
+
 def estimate_text(found: Estimate) -> str:
     """The file as JSON."""
     return json_text(estimate_result(found))
 
 
 def estimate_table(found: Estimate) -> str:
-    """The rows as CSV: where they are, how they ended, unknowns with deviations; empty where not found."""
+    """The rows as CSV: where they are, how they ended, unknowns with deviations; empty where not found.
+
+    Where several searches were made for a row: the share of the posterior mass that these values stand for, and the
+    second-best values.
+    """
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     pairs = [name for label in found.labels for name in (label, f"{label}.sigma")]
-    writer.writerow(["row", "outcome", *pairs])
     numbers = np.stack([found.values, found.sigma], axis=2).reshape(len(found.cases), -1)
+    if found.second is not None:
+        pairs += ["share", *(f"{label}.second" for label in found.labels)]
+        numbers = np.column_stack([numbers, found.second.share, found.second.values])
+    writer.writerow(["row", "outcome", *pairs])
     for case, outcome, row in zip(found.cases, found.outcomes, numbers.tolist(), strict=True):
         writer.writerow([case, outcome, *("" if np.isnan(number) else repr(number) for number in row)])
     return lines.getvalue()

@@ -95,7 +95,7 @@ def _list_or_table(key: str, kinds: Family[Any] | type[Record]) -> Iterator[str]
 
 def _title(key: str) -> str:
     """A table of a scene as its file heads it."""
-    if key in ("accuracy", "simulation", "identification"):
+    if key in ("accuracy", "simulation", "identification", "estimation"):
         return f"[{key}]"
     return f"[[{key}]]"
 

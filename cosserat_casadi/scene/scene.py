@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from cosserat_casadi.scene.accuracy import Accuracy
 from cosserat_casadi.scene.actuators import Actuator
 from cosserat_casadi.scene.constraints import Body, Joint, Support
+from cosserat_casadi.scene.estimation import Estimation
 from cosserat_casadi.scene.faults import Fault, Table, shown
 from cosserat_casadi.scene.inputs import InputField
 from cosserat_casadi.scene.load_kinds import Load
@@ -99,6 +100,9 @@ inputs = ["push.force", "cable.tension"]
     unknowns: tuple[Unknown, ...] = Field((), description="what is to be found; for `cosserat identify` alone")
     identification: Identification = Field(
         Identification(), description="how the unknowns are looked for; for `cosserat identify` alone"
+    )
+    estimation: Estimation = Field(
+        Estimation(), description="how the unknowns of each row are looked for; for `cosserat estimate` alone"
     )
     simulation: Simulation | None = Field(None, description="how a motion is computed; for `cosserat simulate` alone")
     motions: tuple[InputMotion, ...] = Field((), description="inputs over time; for `cosserat simulate` alone")

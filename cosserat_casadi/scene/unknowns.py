@@ -48,7 +48,10 @@ per_row = true
         None, description="the number's name as `parameters` spells it; it need not be listed there; or input"
     )
     input: str | None = Field(None, description="'load.field' of the input, or of a part such as 'push.force.z'")
-    per_row: bool = Field(False, description="whether an input is found anew for each case")
+    per_row: bool = Field(
+        False,
+        description="whether it is found anew for each case; a parameter by an estimate alone, between its bounds",
+    )
     lower: Component | None = Field(None, description="least value in its unit; a number, or one for each entry")
     upper: Component | None = Field(None, description="largest value in its unit; a number, or one for each entry")
     prior: Prior | None = Field(None, description="what is known beforehand, in its unit")
@@ -65,9 +68,9 @@ per_row = true
             yield Fault(("input",), "stands beside parameter", "give one of the two")
         elif "parameter" not in given and "input" not in given:
             yield Fault(("parameter",), "missing", "name a parameter or an input")
-        elif given.get("per_row") is True and "parameter" in given:
-            problem = "is for an input: parameters are the same in all cases"
-            yield Fault(("per_row",), problem, "leave it out, or name an input, such as 'rod.base.position'")
+        elif given.get("per_row") is True and "parameter" in given and not ("lower" in given and "upper" in given):
+            problem = "asks for a parameter of each row, of which lower or upper is missing"
+            yield Fault(("per_row",), problem, "say between which values it may be; an estimate begins there")
         lower = numbers_of(given.get("lower"))
         upper = numbers_of(given.get("upper"))
         count = max(len(lower), len(upper))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -12,8 +12,12 @@ from cosserat_casadi.codegen.rows import JUDGED, row_results
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
+from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.discrete_scene import with_numbers
+from cosserat_casadi.model.load_checks import check_loads
+from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.scene import parse_scene
 from cosserat_casadi.sweep.outcome_table import ENDINGS
 
@@ -25,10 +29,12 @@ class RowModel:
     Attributes:
         scene: text of the scene.
         stability: whether rows end with the stability of their equilibria.
+        measure: text of the scene that eigenvalues are counted in: that of the sweep as it stands. Empty for this one.
     """
 
     scene: str
     stability: bool = False
+    measure: str = ""
 
     def solve(self, inputs: FloatArray) -> FloatArray:
         """Rows of results, shape (count, results), for rows of inputs, shape (count, inputs)."""
@@ -42,17 +48,31 @@ class RowModel:
             solution = solve(model, model.inputs.unpack(row), start=near)
             if model.scene.touches_exactly and solution.converged:
                 near = solution
-            rows.append(result_row(solution, width, stability=self.stability))
+            judged = self._counted_in_measure(solution) if self.stability else None
+            rows.append(result_row(solution, width, judged))
         return np.array(rows).reshape(len(inputs), width)
 
+    def _counted_in_measure(self, solution: Solution) -> Solution:
+        """The same equilibrium with the unknowns that it has under the scaling of the measure."""
+        measured = _measured(self.scene, self.measure) if self.measure else None
+        # What rods touch is among the unknowns of a solution in contact: those of the measure are others.
+        if measured is None or not solution.converged or solution.model.scene.touches_exactly:
+            return solution
+        again = solve(measured, solution.inputs, start=solution.x)
+        if not again.converged:
+            # Its sign is known, but not how large it is there.
+            return replace(solution, smallest_eigenvalue=None)
+        return again
 
-def result_row(solution: Solution, width: int, *, stability: bool = False) -> FloatArray:
+
+def result_row(solution: Solution, width: int, judged: Solution | None = None) -> FloatArray:
     """A solution as a row of results, shape (width,); of what did not converge nothing but how it ended.
 
     Args:
         solution: of the row.
         width: numbers in the row.
-        stability: whether it ends with the stability of the equilibrium, NaN where the loads have no potential.
+        judged: the same equilibrium in the units of its smallest eigenvalue, where the row ends with its stability:
+            NaN where the loads have no potential.
     """
     row = np.full(width, np.nan)
     outcome = ENDINGS.index(solution.outcome)
@@ -72,9 +92,9 @@ def result_row(solution: Solution, width: int, *, stability: bool = False) -> Fl
     for rod, obstacle in pairs(scene):
         own = [contact for contact in solution.contacts if (contact.rod, contact.obstacle) == (rod, obstacle.name)]
         numbers += contact_numbers(own)
-    if stability:
-        judged = (solution.smallest_eigenvalue, solution.stable)
-        numbers += [np.nan if number is None else float(number) for number in judged]
+    if judged is not None:
+        verdict = (judged.smallest_eigenvalue, judged.stable)
+        numbers += [np.nan if number is None else float(number) for number in verdict]
     row[len(JUDGED) : len(JUDGED) + len(numbers)] = numbers
     return row
 
@@ -88,5 +108,20 @@ def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
 
 
 @lru_cache(maxsize=2)
+def _measured(scene: str, measure: str) -> Model | None:
+    """The model of a scene under the scaling of another; None where its loads or its places do not allow that."""
+    own = parse_scene(scene)
+    scaling = _model(measure)
+    if any(len(element_ends(own, rod.name)) != len(element_ends(scaling.scene, rod.name)) for rod in own.rods):
+        return None
+    discrete = with_numbers(scaling.discrete, own)
+    try:
+        check_loads(discrete)
+    except SceneError:
+        return None
+    return Model(discrete)
+
+
+@lru_cache(maxsize=3)
 def _model(text: str) -> Model:
     return build(parse_scene(text))

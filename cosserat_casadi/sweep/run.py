@@ -170,8 +170,8 @@ def sweep_scene(
         cores: how many of them, at least 1; all by default.
         samples: rows that the discretisation is chosen on.
         stability: whether each row says whether its equilibrium is stable: the columns ``smallest_eigenvalue``, in
-            units of EI/ℓ, and ``stable``, 1 or 0; NaN where the loads of a row have no potential. In a table of many
-            rows, whose parameters one compiled library takes, EI/ℓ is that of the scene as it stands, else the row's.
+            units of EI/ℓ of the scene as it stands, and ``stable``, 1 or 0; NaN where the loads of a row have no
+            potential.
         progress: told what is being done, how much of it is done, and of how much.
 
     Raises:
@@ -298,10 +298,11 @@ def _tasks(
 def _modelled_parts(plan: Plan, choice: Choice, chunk: Chunk) -> list[Part]:
     """What solves a chunk in Python: a model for each variant that it has rows of."""
     parts: list[Part] = []
+    # Text, since models of CasADi do not travel to other processes.
+    measure = scene_text(choice.scene(plan.variants.nominal)) if plan.stability else ""
     for variant, rows in chunk.pieces:
         scene = choice.scene(plan.variants.entries[variant].scene)
-        # Text, since models of CasADi do not travel to other processes.
-        model = RowModel(scene_text(scene), plan.stability)
+        model = RowModel(scene_text(scene), plan.stability, measure)
         parts.append((model, plan.variants.inputs[rows]))
     return parts
 

@@ -55,6 +55,7 @@ class Variants:
     """A table seen by a scene.
 
     Attributes:
+        nominal: the scene as it stands, its inputs those that are swept.
         entries: scenes, in the order in which the table meets them.
         inputs: stacked inputs of every row of the table, shape (rows, size).
         layout: of the inputs.
@@ -63,6 +64,7 @@ class Variants:
         p: their values in every row of the table, shape (rows, arguments).
     """
 
+    nominal: Scene
     entries: tuple[Variant, ...]
     inputs: FloatArray
     layout: InputLayout
@@ -116,7 +118,7 @@ def variants_of(scene: Scene, table: Table) -> Variants:
     entries = list(_entries(free, table, others, problems))
     if problems:
         raise SceneError(*shortened(problems, table.where))
-    return Variants(tuple(entries), inputs, layout, parameters, arguments, p)
+    return Variants(free.baked(), tuple(entries), inputs, layout, parameters, arguments, p)
 
 
 def _overridden(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi import Compiled, ExportError, SceneError, solve
+from cosserat_casadi import Compiled, ExportError, SceneError, export, load, solve
 from cosserat_casadi.codegen.export import folder_files
 from cosserat_casadi.codegen.names import library_names
 from cosserat_casadi.codegen.plain import pointer
@@ -364,3 +365,24 @@ def test_a_scene_without_parameters_has_no_word_of_them(export_recipe: Callable[
 def test_names_that_are_one_in_c_are_refused() -> None:
     with pytest.raises(ExportError, match=r"'joints_0\.mass' and 'joints\.0\.mass' are one name in C"):
         library_names("robot", parameters=("joints_0.mass", "joints.0.mass"))
+
+
+@pytest.mark.usefixtures("quick_compiler")
+def test_values_by_name_are_judged_by_the_scene(tmp_path: Path) -> None:
+    """As in Python; stacked ones are taken as they are."""
+    model = RECIPES["ppinned"].model()
+    folder = Path(export(model, tmp_path / "held", "held"))
+    compiled = load(folder)
+    pin = {"supports[0].position": [0.2, 0.1, 0.6]}
+    assert_allclose(compiled.parameters.pack(pin), model.parameters.pack(pin), rtol=0, atol=0)
+    beyond = {"supports[0].position": [2.0, 0.1, 0.6]}
+    with pytest.raises(SceneError) as refusal:
+        compiled.solve(parameters=beyond)
+    with pytest.raises(SceneError) as in_python:
+        solve(model, parameters=beyond)
+    assert str(refusal.value) == str(in_python.value)
+    stacked = np.array([2.0, 0.1, 0.6, 0.0, 0.0, 0.0])
+    assert_allclose(compiled.parameters.stacked(stacked), stacked, rtol=0, atol=0)
+    # Without its scene a folder has nobody to ask.
+    (folder / "scene.toml").unlink()
+    assert load(folder).parameters.pack(beyond)[0] == 2.0

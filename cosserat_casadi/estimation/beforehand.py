@@ -1,0 +1,165 @@
+"""What is known before an estimate begins: which numbers differ from row to row, their ranges, priors and sizes.
+
+These numbers are stacked as the solver in C has them: inputs, and the parameters behind them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.codegen.estimator import Knowledge
+from cosserat_casadi.errors import Problem, SceneError
+from cosserat_casadi.identification.unknowns import UnknownLayout
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.load_cases import CaseLayout
+from cosserat_casadi.scene.measurements import ModeMeasurement
+
+REACH = 2.0
+"""Deviations of the prior up to which the discretisation is to serve."""
+
+DRAWS = 6
+"""Cases within that reach that it is chosen on."""
+
+SEED = 22
+"""Of these cases: the same scene gives the same discretisation."""
+
+
+def check_unknowns(scene: scenes.Scene) -> None:
+    """Refuse a scene whose measurements or unknowns an estimate has no use for.
+
+    Raises:
+        SceneError: with every fault.
+    """
+    problems = []
+    if not scene.measurements:
+        problems.append(Problem("measurements", "missing", "say what was measured"))
+    for i, measurement in enumerate(scene.measurements):
+        if isinstance(measurement, ModeMeasurement):
+            problem = f"{measurement.quantity}: an estimate knows equilibria, and none of their vibrations"
+            problems.append(Problem(f"measurements[{i}].quantity", problem, "use cosserat identify"))
+        elif getattr(measurement, "time", None) is not None:
+            problem = "an estimate knows equilibria, and no motion"
+            problems.append(Problem(f"measurements[{i}].time", problem, "leave it out, or use cosserat identify"))
+    if not scene.unknowns:
+        problems.append(Problem("unknowns", "missing", "name what is to be felt"))
+    for i, unknown in enumerate(scene.unknowns):
+        where = f"unknowns[{i}]"
+        if not unknown.per_row:
+            problem = f"{unknown.name} is the same in all rows; an estimate finds what differs from row to row"
+            remedy = "give an input per_row = true; find what is shared with cosserat identify --write before"
+            problems.append(Problem(where, problem, remedy))
+        elif unknown.name.endswith("quaternion"):
+            remedy = "find it with cosserat identify"
+            problems.append(Problem(where, "an orientation is not estimated row by row", remedy))
+    if problems:
+        raise SceneError(*problems)
+
+
+def row_parameters(scene: scenes.Scene) -> tuple[str, ...]:
+    """Parameters that each row has for itself."""
+    return tuple(unknown.parameter for unknown in scene.unknowns if unknown.parameter is not None)
+
+
+def with_row_parameters(model: Model) -> Model:
+    """The model with these parameters alone: what all rows share is a constant of it."""
+    wanted = row_parameters(model.scene)
+    if not wanted:
+        return model.at()
+    if model.parameters.names == wanted:
+        return model
+    return build(model.scene.model_copy(update={"parameters": wanted}), model.discretisation)
+
+
+def check_ranges(model: Model, layout: UnknownLayout) -> None:
+    """Refuse ranges of parameters within which the scene would be another, such as places that change their order.
+
+    The corners of the ranges of every two numbers are tried, all others at the scene's values.
+
+    Raises:
+        SceneError: with what the scene says of the first corner that it refuses, for each unknown.
+    """
+    sides: list[tuple[int, float]] = []
+    for entry in layout.own:
+        if not entry.of_input:
+            lower, upper, _, _ = entry.limits()
+            sides += list(zip([*entry.indices, *entry.indices], [*lower, *upper], strict=True))
+    corners = [[side] for side in sides]
+    corners += [list(pair) for pair in combinations(sides, 2) if pair[0][0] != pair[1][0]]
+    problems: dict[str, Problem] = {}
+    for corner in corners:
+        p = model.parameters.pack()
+        for index, value in corner:
+            p[index] = value
+        try:
+            model.parameters.set_in(model.scene, model.parameters.unpack(p))
+        except SceneError as error:
+            for problem in error.problems:
+                remedy = "narrow lower and upper of the unknowns" + (f": {problem.remedy}" if problem.remedy else "")
+                problems.setdefault(problem.where, Problem(problem.where, problem.problem, remedy))
+    if problems:
+        raise SceneError(*problems.values())
+
+
+def stacked_indices(layout: UnknownLayout, inputs: int) -> list[int]:
+    """Places of the numbers that are found among the stacked inputs and the parameters behind them.
+
+    Args:
+        layout: of the unknowns.
+        inputs: size of the stacked inputs.
+    """
+    found = []
+    for entry in layout.own:
+        first = 0 if entry.of_input else inputs
+        found += (first + entry.indices).tolist()
+    return found
+
+
+def of_parameters(layout: UnknownLayout) -> list[int]:
+    """Which of the numbers that are found are parameters."""
+    kinds = [entry.of_input for entry in layout.own for _ in entry.labels]
+    return [k for k, of_input in enumerate(kinds) if not of_input]
+
+
+def knowledge_of(layout: UnknownLayout) -> Knowledge:
+    """What a scene says of its unknowns beforehand: bounds, priors, typical sizes."""
+    limits = layout.own_limits
+    typical = np.concatenate([entry.scales for entry in layout.own])
+    # What is known beforehand says best what is much and what is little.
+    deviations = 1.0 / np.where(limits.weight > 0.0, limits.weight, 1.0)
+    sizes = np.where(limits.weight > 0.0, deviations, typical)
+    return Knowledge(limits.lower, limits.upper, limits.mean, limits.weight, sizes)
+
+
+def expected_values(known: Knowledge, values: FloatArray) -> FloatArray:
+    """What is expected of the unknowns, within their bounds; the given values where nothing is."""
+    expected: FloatArray = np.clip(np.where(known.weight > 0.0, known.mean, values), known.lower, known.upper)
+    return expected
+
+
+def cases_within_reach(cases: CaseLayout, layout: UnknownLayout, inputs: FloatArray) -> Iterator[dict[str, FloatArray]]:
+    """Cases that a discretisation is chosen on: measured ones, their unknowns as far off as may be expected.
+
+    Args:
+        cases: inputs and parameters of the scene.
+        layout: of the unknowns.
+        inputs: of all measured cases, shape (cases, inputs).
+    """
+    known = knowledge_of(layout)
+    indices = stacked_indices(layout, cases.inputs.size)
+    has_prior = known.weight > 0.0
+    # Parameters have bounds, whatever is known of them.
+    is_parameter = np.isin(np.arange(len(indices)), of_parameters(layout))
+    rng = np.random.default_rng(SEED)
+    for k in range(DRAWS):
+        row = cases.default.copy()
+        row[: cases.inputs.size] = inputs[rng.integers(len(inputs))]
+        signs = rng.choice([-1.0, 1.0], len(indices)) if k else np.zeros(len(indices))
+        expected = expected_values(known, row[indices])
+        deviations = np.where(has_prior, known.size, np.where(is_parameter, known.upper - known.lower, 0.0))
+        row[indices] = np.clip(expected + REACH * signs * deviations, known.lower, known.upper)
+        yield cases.unpack(row)

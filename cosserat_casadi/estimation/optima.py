@@ -1,0 +1,111 @@
+"""Several searches for each row, and what they found together: the best, the second best, and how sure the choice is.
+
+Where a place along the rod is unknown the misfit may have several minima: a small force far out bends a rod much like
+a large one near its base. Each search finds one; those that differ are counted by the mass of the posterior around
+them, each as a normal distribution: D. J. C. MacKay, *Information Theory, Inference, and Learning Algorithms*,
+Cambridge University Press 2003, chapter 27.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.estimator import Estimates
+from cosserat_casadi.maths.typing import FloatArray
+
+SAME = 0.1
+"""Deviations within which two searches have found one minimum."""
+
+SEED = 16
+"""Of the order in which several unknown places are combined: the same scene gives the same starts."""
+
+
+@dataclass(frozen=True)
+class SecondBest:
+    """What else explains the rows.
+
+    Attributes:
+        values: unknowns of the second-best minimum that the searches found, shape (cases, k); NaN where they found one
+            alone.
+        cost: of it, shape (cases,); likewise.
+        share: of the posterior mass of all minima found, that of the best, shape (cases,); NaN where none was found.
+    """
+
+    values: FloatArray
+    cost: FloatArray
+    share: FloatArray
+
+
+def spread_starts(lower: FloatArray, upper: FloatArray, count: int) -> FloatArray:
+    """Places from which searches begin, shape (count, n): in each of so many equal parts of every range, once.
+
+    Args:
+        lower: least values, shape (n,).
+        upper: largest values, shape (n,).
+        count: of starts, at least 1.
+    """
+    shares = (np.arange(count) + 0.5) / count
+    rng = np.random.default_rng(SEED)
+    columns = [shares, *(rng.permutation(shares) for _ in lower[1:])]
+    return lower + np.column_stack(columns) * (upper - lower)
+
+
+def best_of(runs: Sequence[Estimates]) -> tuple[Estimates, SecondBest]:
+    """The best minimum of each row out of several searches, and what else they found.
+
+    Args:
+        runs: searches for the same cases, each from other values.
+    """
+    cases, k = runs[0].unknowns.shape
+    rows = np.arange(cases)
+    found = np.array([run.outcome == 0 for run in runs])
+    costs = np.where(found, [run.cost for run in runs], np.inf)
+    order = np.argsort(costs, axis=0, kind="stable")
+    ranked = [_chosen(runs, chosen) for chosen in order]
+    best = ranked[0]
+    minima: list[tuple[Estimates, npt.NDArray[np.bool_]]] = []
+    second = np.full((cases, k), np.nan)
+    second_cost = np.full(cases, np.nan)
+    mass = np.zeros(cases)
+    for rank, run in enumerate(ranked):
+        is_new = found[order[rank], rows]
+        for earlier, counted in minima:
+            is_new &= ~(counted & (_distance(run, earlier) < SAME))
+        is_second = is_new & np.isnan(second_cost) & (rank > 0)
+        second[is_second] = run.unknowns[is_second]
+        second_cost[is_second] = run.cost[is_second]
+        mass[is_new] += np.exp(_log_mass(run, is_new) - _log_mass(best, is_new))
+        minima.append((run, is_new))
+    share = np.divide(1.0, mass, out=np.full(cases, np.nan), where=mass > 0.0)
+    return best, SecondBest(second, second_cost, share)
+
+
+def _chosen(runs: Sequence[Estimates], chosen: npt.NDArray[np.int64]) -> Estimates:
+    """Each case from the run that is chosen for it."""
+    rows = np.arange(len(chosen))
+    return Estimates(
+        outcome=np.array([run.outcome for run in runs])[chosen, rows],
+        iterations=np.array([run.iterations for run in runs])[chosen, rows],
+        cost=np.array([run.cost for run in runs])[chosen, rows],
+        unknowns=np.array([run.unknowns for run in runs])[chosen, rows],
+        information=np.array([run.information for run in runs])[chosen, rows],
+        x=np.array([run.x for run in runs])[chosen, rows],
+    )
+
+
+def _distance(one: Estimates, other: Estimates) -> FloatArray:
+    """How far apart two minima are, in deviations of the second, shape (cases,); NaN where one was not found."""
+    apart = one.unknowns - other.unknowns
+    squares: FloatArray = np.einsum("ci,cij,cj->c", apart, other.information, apart)
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
+def _log_mass(run: Estimates, rows: npt.NDArray[np.bool_]) -> FloatArray:
+    """Logarithm of the posterior mass around the minima of some rows, but for a constant: that of Laplace."""
+    _, log_determinant = np.linalg.slogdet(run.information[rows])
+    mass: FloatArray = -run.cost[rows] - log_determinant / 2.0
+    return mass
