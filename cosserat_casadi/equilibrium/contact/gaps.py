@@ -18,10 +18,10 @@ DENSE = np.linspace(0.0, 1.0, 801)
 
 
 def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
-    """Every rod with every obstacle that it must not enter."""
+    """Every rod with every obstacle that it touches exactly, if at all."""
     for rod in scene.rods:
         for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name):
+            if obstacle.concerns(rod.name) and not obstacle.is_smooth:
                 yield rod.name, obstacle
 
 
