@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from importlib.metadata import version
 from typing import Any
 
@@ -30,6 +29,7 @@ from cosserat_casadi.codegen.structs import (
     pose_name,
     result_struct_words,
 )
+from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import first_step
 from cosserat_casadi.model.build import Model
@@ -46,6 +46,7 @@ TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 SHARED = ("solver.h", "solver.c")
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
+FOURS = ("fours.h",)
 LANES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
 VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *LANES})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
@@ -120,21 +121,6 @@ def library_sources(
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in verbatim},
     }
-
-
-def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in."""
-    return fill(resource("templates", template), words)
-
-
-def fill(text: str, words: Mapping[str, Any]) -> str:
-    """The text of a template with its words filled in: ``@{word}``."""
-    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
-
-
-def resource(folder: str, file: str) -> str:
-    """Text of a file of this package."""
-    return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
 
 
 def _words(

@@ -12,8 +12,8 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
-OF_MOTION = "_k_motion_"
-"""What the names of kernels hold that are called with a workspace alone, however large it is."""
+WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:residual|jacobian)$")
+"""Names of kernels that are called with a workspace alone, however large it is."""
 
 
 def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = False) -> int:
@@ -26,7 +26,7 @@ def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = Fa
     """
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
     rooms = re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)
-    return max(int(size) for name, size in rooms if not on_stack or OF_MOTION not in name)
+    return max(int(size) for name, size in rooms if not on_stack or not WITH_WORKSPACE.search(name))
 
 
 def stack_bytes(generated: Mapping[str, str]) -> int:
