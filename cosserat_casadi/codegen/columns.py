@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.equations import Equations
 from cosserat_casadi.model.system import Arguments, System
@@ -46,7 +46,7 @@ class ColumnForm:
     @property
     def stride(self) -> int:
         """Columns of that matrix, a multiple of LANES."""
-        return self.turns.shape[1]
+        return int(self.turns.shape[1])
 
 
 def in_columns(model: Model, name: str) -> ColumnForm | None:
@@ -113,7 +113,7 @@ def _heights(tangent: Tangent) -> list[int]:
     return [3 * tangent.intervals, tangent.angular_size, *linear]
 
 
-def _stacked(columns: Columns) -> ca.MX:
+def _stacked(columns: Columns) -> Matrix:
     return ca.vertcat(columns.section_rotation, columns.angular, *columns.linear.values())
 
 

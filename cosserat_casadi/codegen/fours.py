@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import casadi as ca
 
@@ -49,7 +50,6 @@ class InFours:
         body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
         reals: numbers that it works in.
         statements: how many there are.
-        locals: numbers in variables of its own, at most.
     """
 
     signature: ca.Function
@@ -57,13 +57,15 @@ class InFours:
     body: str
     reals: int
     statements: int
-    locals: int
 
-    @property
     def name(self) -> str:
         """Its name in C."""
         name: str = self.signature.name()
         return name
+
+    def n_instructions(self) -> int:
+        """How many statements there are."""
+        return self.statements
 
 
 @dataclass(frozen=True)
@@ -91,12 +93,11 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
     words = {
         "stem": stem,
         "tables": "".join(kernel.tables for kernel in kernels),
-        "kernels": "".join(f"KERNEL({kernel.name})\n" for kernel in kernels),
+        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
     }
     bodies = "\n".join(kernel.body for kernel in kernels)
-    stack = max(kernel.locals for kernel in kernels)
-    head = f"/* Included once for each width of vectors. At most {stack} numbers in variables at once. */\n"
-    prototypes = "".join(PROTOTYPE.format(name=kernel.name, reals=kernel.reals) for kernel in kernels)
+    head = "/* Included once for each width of vectors. */\n"
+    prototypes = "".join(PROTOTYPE.format(name=kernel.name(), reals=kernel.reals) for kernel in kernels)
     included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
 
@@ -168,7 +169,6 @@ class _Writing:
         self.done: set[int | tuple[int, ...]] = set()
         self.functions: list[str] = []
         self.statements = 0
-        self.locals_below = 0
 
     def result(self) -> InFours:
         """The kernel."""
@@ -185,8 +185,7 @@ class _Writing:
         self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
         self.statements += len(self.main.statements)
         body = "\n".join(self.functions)
-        most = self.main.variables + self.locals_below
-        return InFours(self.signature, tables, body, self.reals, self.statements, most)
+        return InFours(self.signature, tables, body, self.reals, self.statements)
 
     def _room(self, count: int) -> int:
         """Where so many numbers are that the kernel works in."""
@@ -217,7 +216,7 @@ class _Writing:
         groups: dict[tuple[int, int], list[int]] = defaultdict(list)
         for number, call in enumerate(self.listing.calls):
             groups[hash(call.function), depth[call.results[0]]].append(number)
-        batches = {}
+        batches: dict[int, _Batch] = {}
         given: dict[int, int] = {}
         for calls in groups.values():
             width = LANES if len(calls) >= FEWEST else 1
@@ -255,16 +254,16 @@ class _Writing:
         waiting = [root]
         while waiting:
             number = waiting[-1]
-            missing = (
-                [] if self._is_there(number) else [need for need in self._needs(number) if not self._is_there(need)]
-            )
+            if self._is_there(number):
+                waiting.pop()
+                continue
+            missing = [need for need in self._needs(number) if not self._is_there(need)]
             if missing:
                 waiting += missing[::-1]
                 continue
             waiting.pop()
-            if not self._is_there(number):
-                self.done.add(self._known_by(number))
-                self._append(number)
+            self.done.add(self._known_by(number))
+            self._append(number)
 
     def _known_by(self, number: int) -> int | tuple[int, ...]:
         """What tells that a value is there: its batch of calls, or itself."""
@@ -372,7 +371,7 @@ class _Writing:
             return None
 
         self._write(f"{name})(const casadi_real *given, casadi_real *made", block.lines(text))
-        self._count(block)
+        self.statements += len(block.statements)
 
     # Columns
 
@@ -385,11 +384,11 @@ class _Writing:
             own = {statement.made for statement in statements}
             elsewhere = {value: place for value, place in passed.items() if value not in own}
             block = Block("four", "b", statements)
-            lines = block.lines(lambda number, elsewhere=elsewhere: self._text_in_columns(number, elsewhere))
+            lines = block.lines(partial(self._text_in_columns, elsewhere))
             names.append(f"{self.name}_columns_{k}")
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
             self._write(f"{names[-1]})({given}", lines)
-            self._count(block)
+            self.statements += len(block.statements)
         size = len(form.turns)
         for first in range(0, form.stride, LANES):
             for name in names:
@@ -415,7 +414,7 @@ class _Writing:
                 statements += zeros
         return statements
 
-    def _text_in_columns(self, number: int, elsewhere: dict[int, int]) -> str | None:
+    def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
         """What a value is called in the code of columns outside of variables."""
         value = self.listing.values[number]
         if number in elsewhere:
@@ -430,11 +429,6 @@ class _Writing:
 
     def _write(self, head: str, lines: Iterable[str]) -> None:
         self.functions.append("\n".join([f"static void MADE({head}) {{", *lines, "}\n"]))
-
-    def _count(self, block: Block) -> None:
-        self.statements += len(block.statements)
-        numbers = LANES if block.type == "four" else 1
-        self.locals_below = max(self.locals_below, numbers * block.variables)
 
 
 def _starts(sizes: Iterable[int]) -> list[int]:

@@ -9,6 +9,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 import casadi as ca
 
@@ -36,7 +37,7 @@ RATE = "path_rate"
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
-Kernel = ca.Function | InFours
+Kernel: TypeAlias = ca.Function | InFours
 """A kernel that CasADi writes, or one that is written here."""
 
 
@@ -99,7 +100,7 @@ def _signature(entry: FunctionInC) -> ca.Function:
 
 
 def _literal(model: Model) -> bool:
-    """Whether rotations are those of the literal linear system, which has no scalar form: it is solved with pivoting."""
+    """Whether rotations are those of the literal linear system, which is solved with pivoting: no scalar form."""
     return any(chosen.transport == "permuted" for chosen in model.discretisation.values())
 
 

@@ -131,7 +131,7 @@ def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[st
         **_public_entry(known),
         "arguments": arguments,
         "results": results,
-        "instructions": kernel.statements if isinstance(kernel, InFours) else kernel.n_instructions(),
+        "instructions": kernel.n_instructions(),
     }
 
 

@@ -41,12 +41,28 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     source = "".join(text for file, text in generated.items() if file.endswith(".c"))
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     locals_of_largest = max(_locals(function) for function in functions)
+    for file, text in generated.items():
+        if file.endswith("_in_fours.h"):
+            locals_of_largest = max(locals_of_largest, _locals_in_fours(text))
     return REAL * (locals_of_largest + largest_room(generated, "W", on_stack=True)) + FRAMES
 
 
 def _locals(function: str) -> int:
     declared = re.findall(r"^  casadi_real (a\d.*);$", function, flags=re.M)
     return sum(line.count(",") + 1 for line in declared)
+
+
+def _locals_in_fours(text: str) -> int:
+    """Numbers on the stack of kernels in fours: of the largest one, and of the largest function that it calls.
+
+    Where nothing is optimised a number that stands for four alike is a variable too.
+    """
+    functions = re.split(r"^(?=static )", text, flags=re.M)
+    fours = [re.findall(r"^  four (b\d.*);$", function, flags=re.M) for function in functions]
+    counts: list[int] = [sum(line.count(",") + 1 for line in declared) for declared in fours]
+    alike = [function.count("EACH(") for function in functions]
+    called = max(4 * (count + each) for count, each in zip(counts, alike, strict=True))
+    return max(map(_locals, functions)) + int(called)
 
 
 def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tuple[int, int], extra: int) -> int:

@@ -10,8 +10,8 @@ from cosserat_casadi.codegen.listing import BINARY, FUNCTIONS, UnknownOperationE
 WORDS = {"+": "ADD", "-": "SUBTRACT", "*": "MULTIPLY", "/": "DIVIDE"}
 """Operations on fours, as fours.h calls them."""
 
-LONGEST = 600
-"""Statements on fours in one function: compilers take more than twice as long for two."""
+LONGEST = 300
+"""Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +57,8 @@ class Block:
         lines = []
         for i, statement in enumerate(self.statements):
             texts = [text_of(operand) or variable[operand] for operand in statement.operands]
-            for operand in dict.fromkeys(statement.operands):
-                if operand in variable and last_use[operand] == i:
-                    free.append(variable[operand])
+            done = [operand for operand in dict.fromkeys(statement.operands) if last_use[operand] == i]
+            free += [variable[operand] for operand in done if operand in variable]
             made = ""
             if statement.made is not None:
                 made = free.pop() if free else self._another()

@@ -17,8 +17,9 @@ typedef casadi_real four __attribute__((vector_size(4 * sizeof(casadi_real)), al
 #define MULTIPLY(a, b) ((a) * (b))
 #define DIVIDE(a, b) ((a) / (b))
 
-/* On x86 functions are made a second time for the wider vectors of newer processors, and chosen as the program runs. */
-#if defined(__x86_64__) && !defined(__AVX2__)
+/* On x86 functions are made a second time for the wider vectors of newer processors, and chosen as the program runs,
+   unless FOURS_ONCE asks for the shorter compilation. */
+#if defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE)
 #define FOURS_TWICE
 #endif
 
