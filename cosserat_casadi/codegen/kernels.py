@@ -81,10 +81,10 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
             form = in_columns(model, entry.kernel)
             if form is not None:
                 return columns_in_fours(form, _signature(entry))
-        elif entry.spec.name == "path_residual":
+        elif entry.spec.name == "path_residual" and not _literal(model):
             straight = scalar(entry.function, entry.kernel)
             # Without calls of intervals there is nothing to make together.
-            if straight.find_functions(0) and not _literal(model):
+            if straight.find_functions(0):
                 return in_fours(straight, _signature(entry))
     except UnknownOperationError:
         pass

@@ -41,10 +41,11 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     source = "".join(text for file, text in generated.items() if file.endswith(".c"))
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     locals_of_largest = max(_locals(function) for function in functions)
+    largest = locals_of_largest + largest_room(generated, "W", on_stack=True)
     for file, text in generated.items():
         if file.endswith("_in_fours.h"):
-            locals_of_largest = max(locals_of_largest, _locals_in_fours(text))
-    return REAL * (locals_of_largest + largest_room(generated, "W", on_stack=True)) + FRAMES
+            largest = max(largest, _locals_in_fours(text))
+    return REAL * largest + FRAMES
 
 
 def _locals(function: str) -> int:
@@ -53,16 +54,20 @@ def _locals(function: str) -> int:
 
 
 def _locals_in_fours(text: str) -> int:
-    """Numbers on the stack of kernels in fours: of the largest one, and of the largest function that it calls.
-
-    Where nothing is optimised a number that stands for four alike is a variable too.
-    """
+    """Numbers on the stack of the largest kernel in fours, with the largest function that it calls."""
     functions = re.split(r"^(?=static )", text, flags=re.M)
-    fours = [re.findall(r"^  four (b\d.*);$", function, flags=re.M) for function in functions]
-    counts: list[int] = [sum(line.count(",") + 1 for line in declared) for declared in fours]
-    alike = [function.count("EACH(") for function in functions]
-    called = max(4 * (count + each) for count, each in zip(counts, alike, strict=True))
-    return max(map(_locals, functions)) + int(called)
+    largest = 0
+    for kernel in re.findall(r"^static int MADE\((\w+)\)", text, flags=re.M):
+        own = [_locals(function) for function in functions if f"MADE({kernel})(" in function.partition("{")[0]]
+        called = [_of_fours(function) for function in functions if f"MADE({kernel}_" in function.partition("{")[0]]
+        largest = max(largest, sum(own) + max(called, default=0))
+    return largest
+
+
+def _of_fours(function: str) -> int:
+    declared = re.findall(r"^  four (b\d.*);$", function, flags=re.M)
+    variables: int = sum(line.count(",") + 1 for line in declared)
+    return _locals(function) + 4 * variables
 
 
 def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tuple[int, int], extra: int) -> int:
