@@ -93,8 +93,11 @@ class Listing:
         self.calls: list[Call] = []
         self.outputs: list[dict[int, int]] = [{} for _ in range(function.n_out())]
         self._known: dict[Value, int] = {}
-        # A call is known by the number of its arguments and results alone.
-        self._called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in function.find_functions(0)}
+        # A call is known by the number of its arguments and results alone: that must tell functions apart.
+        callees = function.find_functions(0)
+        self._called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in callees}
+        if len(self._called) < len(callees):
+            raise UnknownOperationError("calls of functions that look alike")
         variables: dict[int, int] = {}
         for k in range(function.n_instructions()):
             self._add(k, variables)

@@ -3664,15 +3664,16 @@ extern "C" {
 #endif
 
 
-#if defined(FOURS_TWICE) && !defined(__clang__)
-/* For older processors alone: what takes compilers longest is left out. */
+#if defined(__GNUC__) && !defined(__clang__) && (defined(FOURS_TWICE) || !defined(__OPTIMIZE__))
+/* For older processors, or without optimisation: what takes compilers longest is left out, but not what saves stack. */
+#define FOURS_PLAINLY
 #pragma GCC push_options
 #pragma GCC optimize("O1")
 #endif
 #define MADE(function) function##_plain
 #include "planar_strip_kernels_in_fours.h"
 #undef MADE
-#if defined(FOURS_TWICE) && !defined(__clang__)
+#ifdef FOURS_PLAINLY
 #pragma GCC pop_options
 #endif
 

@@ -10501,15 +10501,16 @@ static const casadi_real precurved_tube_k_jacobian_turns[672] = {
   0, 0, 0, 0, -0.13420328847496377, 0, 0, 0,
   0.084201933967923415, 0, 0, 0, 0.038850413473687589, 0, 0, 0};
 
-#if defined(FOURS_TWICE) && !defined(__clang__)
-/* For older processors alone: what takes compilers longest is left out. */
+#if defined(__GNUC__) && !defined(__clang__) && (defined(FOURS_TWICE) || !defined(__OPTIMIZE__))
+/* For older processors, or without optimisation: what takes compilers longest is left out, but not what saves stack. */
+#define FOURS_PLAINLY
 #pragma GCC push_options
 #pragma GCC optimize("O1")
 #endif
 #define MADE(function) function##_plain
 #include "precurved_tube_kernels_in_fours.h"
 #undef MADE
-#if defined(FOURS_TWICE) && !defined(__clang__)
+#ifdef FOURS_PLAINLY
 #pragma GCC pop_options
 #endif
 

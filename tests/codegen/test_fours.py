@@ -90,6 +90,12 @@ def test_what_has_no_form_in_fours() -> None:
     choice = ca.Function("choice", [x], [ca.fmax(x[0], x[1])])
     with pytest.raises(UnknownOperationError):
         Listing(choice)
+    # A call tells the numbers of its arguments and results, and not which function it is of.
+    alike = [
+        ca.Function(name, [x], [x[0] + k * x[1]], {"never_inline": True}) for k, name in enumerate(("one", "other"))
+    ]
+    with pytest.raises(UnknownOperationError):
+        Listing(ca.Function("both", [x], [alike[0](x) + alike[1](2 * x)]))
     assert "sin" in in_fours(ca.Function("sine", [x], [ca.sin(x)]), choice).body
 
 
