@@ -76,7 +76,9 @@ def measured(model: Model, case: Case, repeat: int = 2000) -> Exported:
         took = time.perf_counter() - start
         command = ["./demo", "--repeat", str(repeat)]
         found = json.loads(subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True).stdout)
-        size = sum((folder / source).stat().st_size for source in sources[1:]) / 1000
+        included = folder.glob("*_in_fours.h")
+        compiled = [*(folder / source for source in sources[1:]), *included]
+        size = sum(file.stat().st_size for file in compiled) / 1000
     times = {key: value for key, value in found.items() if key.endswith("_us")}
     return Exported(size, took, case.tip_error(tuple(found["tip"])), times)
 

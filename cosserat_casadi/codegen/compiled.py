@@ -361,7 +361,7 @@ def load(
     asked_for = (f"{names.name}_derivatives.c", stability_files(names.name)[0])
     sources += [folder / file for file in asked_for if file in described["files"]]
     headers = [folder / f"{names.name}{part}.h" for part in ("", "_config", "_kernels")]
-    beside = {*VERBATIM, stability_files(names.name)[1]}
+    beside = {*VERBATIM, f"{names.name}_kernels_in_fours.h", stability_files(names.name)[1]}
     headers += [folder / file for file in described["files"] if file in beside]
     library = shared_object(names.name, sources, headers, find_compiler(compiler), progress)
     return Compiled(library, described, names, _scene_text(folder))

@@ -12,12 +12,13 @@ import numpy.typing as npt
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.block_sources import numbers
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources, kernels
-from cosserat_casadi.codegen.library import library_sources, render
+from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.parameters import given_size, input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.rows import loaded, to_compile
+from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 

@@ -9,12 +9,16 @@ import tempfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
-from cosserat_casadi.codegen.functions_in_c import functions_in_c
+from cosserat_casadi.codegen.columns import in_columns
+from cosserat_casadi.codegen.fours import InFours, columns_in_fours, in_fours, sources_in_fours
+from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
+from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.loops import in_loops
 from cosserat_casadi.codegen.motion_parts import MotionInC
 from cosserat_casadi.codegen.names import QUERIES, Names
@@ -33,14 +37,19 @@ RATE = "path_rate"
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
-def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[ca.Function]:
+Kernel: TypeAlias = ca.Function | InFours
+"""A kernel that CasADi writes, or one that is written here."""
+
+
+def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:
     """What the solver in C is made of, with dense outputs; of an assembly the equations are in parts."""
     wanted = functions_in_c(model, names)
     of_motion = [] if motion is None else motion.kernels
     of_parameters = _parameter_kernels(model, names, parts)
     if parts is None:
-        return [*(kernel(model, entry.function, entry.kernel) for entry in wanted), *of_parameters, *of_motion]
-    every = [*parts.kernels, *of_parameters, *of_motion]
+        of_solver = [_written(model, entry) for entry in wanted]
+        return [*of_solver, *of_parameters, *of_motion]
+    every: list[Kernel] = [*parts.kernels, *of_parameters, *of_motion]
     names_of_kind = dict.fromkeys(entry.spec.name for entry in wanted if entry.spec.name not in PARTED)
     for kind in names_of_kind:
         entries = [entry for entry in wanted if entry.spec.name == kind]
@@ -65,11 +74,39 @@ def _parameter_kernels(model: Model, names: Names, parts: Assembled | None) -> l
     return [in_one(parameter_rate(model, name), parts.blocks.owners, name)]
 
 
+def _written(model: Model, entry: FunctionInC) -> Kernel:
+    """One function of the solver of a scene that has no parts; residual and Jacobian in fours where they can be."""
+    try:
+        if entry.spec.name == "path_jacobian":
+            form = in_columns(model, entry.kernel)
+            if form is not None:
+                return columns_in_fours(form, _signature(entry))
+        elif entry.spec.name == "path_residual" and not _literal(model):
+            straight = scalar(entry.function, entry.kernel)
+            # Without calls of intervals there is nothing to make together.
+            if straight.find_functions(0):
+                return in_fours(straight, _signature(entry))
+    except UnknownOperationError:
+        pass
+    return kernel(model, entry.function, entry.kernel)
+
+
+def _signature(entry: FunctionInC) -> ca.Function:
+    """A function with the name, the arguments and the dense results of a kernel."""
+    function = entry.function
+    symbols = function.mx_in()
+    results = [ca.densify(result) for result in function.call(symbols)]
+    return ca.Function(entry.kernel, symbols, results, function.name_in(), function.name_out())
+
+
+def _literal(model: Model) -> bool:
+    """Whether rotations are those of the literal linear system, which is solved with pivoting: no scalar form."""
+    return any(chosen.transport == "permuted" for chosen in model.discretisation.values())
+
+
 def kernel(model: Model, function: ca.Function, name: str, straight_within: int = STRAIGHT) -> ca.Function:
     """One function under the name it has in C: straight-line code within so many instructions, else loops."""
-    # The literal linear system is solved with pivoting, which has no scalar form.
-    literal = any(chosen.transport == "permuted" for chosen in model.discretisation.values())
-    if not literal:
+    if not _literal(model):
         straight = scalar(function, name)
         if straight.n_instructions() <= straight_within:
             return straight
@@ -112,6 +149,8 @@ def _generated(file: Path) -> str:
     return improved(text)
 
 
+BEFORE_END = '#ifdef __cplusplus\n} /* extern "C" */'
+
 ENDING = '} /* extern "C" */\n#endif\n'
 """How every file of CasADi ends."""
 
@@ -130,22 +169,30 @@ FILE_QUERIES = ("casadi_version", "casadi_int_size", "casadi_real_size")
 """What CasADi says of a whole file."""
 
 
-def kernel_sources(functions: Sequence[ca.Function], names: Names, stem: str | None = None) -> dict[str, str]:
+def kernel_sources(kernels: Sequence[Kernel], names: Names, stem: str | None = None) -> dict[str, str]:
     """Source and header of the kernels by file name; they compute in float when the library does.
 
     CasADi appends to each function a dozen others that describe it to ``casadi.external``. The library asks for none:
     they are left out.
 
     Args:
-        functions: the kernels.
+        kernels: the kernels.
         names: of the library.
         stem: of the file names.
     """
     stem = stem or f"{names.name}_kernels"
+    functions = [kernel for kernel in kernels if isinstance(kernel, ca.Function)]
+    own = [kernel for kernel in kernels if isinstance(kernel, InFours)]
     generated = sources(functions, stem, "int")
     source = _without_unused_patterns(_without_queries(generated[f"{stem}.c"]))
     prototypes = re.sub(rf"^[^#\n]*_({_queries()})\(.*\);\n", "", generated[f"{stem}.h"], flags=re.M)
-    return {f"{stem}.c": PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
+    files = {f"{stem}.c": PROLOGUE.format(macro=names.macro) + source, f"{stem}.h": prototypes}
+    if own:
+        written = sources_in_fours(own, stem)
+        files[f"{stem}.c"] += written.source
+        files[f"{stem}.h"] = files[f"{stem}.h"].replace(BEFORE_END, f"{written.prototypes}{BEFORE_END}")
+        files |= written.included
+    return files
 
 
 def _queries() -> str:

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.functions_in_c import functions_in_c
 from cosserat_casadi.codegen.kernels import kernel, kernel_sources
-from cosserat_casadi.codegen.library import LANES, render, resource
+from cosserat_casadi.codegen.library import LANES
 from cosserat_casadi.codegen.memory import largest_room
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.model.build import Model
 
 EQUATIONS = ("residual", "jacobian", "rate", "tangent", "resolution_index")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from importlib import resources
 from importlib.metadata import version
 from typing import Any
 
@@ -30,6 +29,7 @@ from cosserat_casadi.codegen.structs import (
     pose_name,
     result_struct_words,
 )
+from cosserat_casadi.codegen.texts import render, resource
 from cosserat_casadi.equilibrium.judge import MAX_DISTANCE
 from cosserat_casadi.equilibrium.load_path import continuation_limits, first_step
 from cosserat_casadi.model.build import Model
@@ -46,8 +46,9 @@ TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 SHARED = ("solver.h", "solver.c")
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
+FOURS = ("fours.h",)
 LANES = ("lanes.h", "lanes_arithmetic.h", "linear_lanes.c", "lanes.c")
-VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *LANES})
+VERBATIM = frozenset({*SHARED, *DENSE, *BLOCKS, *MOTION_FILES, *LANES, *FOURS})
 """Files of the folder ``c`` that the library's own source includes, as they are."""
 
 ROLES = {
@@ -66,6 +67,8 @@ ROLES = {
     "motion.h": "types of the tables for it",
     "{name}_kernels.c": "the equations of the rods, generated: compile this",
     "{name}_kernels.h": "their prototypes",
+    "{name}_kernels_in_fours.h": "those of them that compute four columns or intervals at once; included",
+    "fours.h": "four numbers in a vector of the processor, or one after the other",
     "{name}_stability.c": "whether equilibria are stable: compile this too where you ask for it",
     "{name}_stability.h": "its function",
     "{name}_derivatives.c": "the same equations with derivatives, for `casadi.external`; a controller does not need it",
@@ -103,7 +106,8 @@ def library_sources(
     """
     words = _words(model, names, parts, generated, error_estimate, motion)
     held = {"derivatives": derivatives, "stability": stability, "dynamics": motion is not None}
-    words["file_rows"] = _file_rows(names, parts, **held)
+    fours = f"{names.name}_kernels_in_fours.h" in generated
+    words["file_rows"] = _file_rows(names, parts, fours=fours, **held)
     name = names.name
     words["more_sources"] = f" {name}_stability.c" if stability else ""
     words["more_headers"] = f" {name}_stability.h" if stability else ""
@@ -120,21 +124,6 @@ def library_sources(
         "README.md": render("README.md.in", words),
         **{file: resource("c", file) for file in verbatim},
     }
-
-
-def render(template: str, words: dict[str, Any]) -> str:
-    """A template of this package with its words filled in."""
-    return fill(resource("templates", template), words)
-
-
-def fill(text: str, words: Mapping[str, Any]) -> str:
-    """The text of a template with its words filled in: ``@{word}``."""
-    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
-
-
-def resource(folder: str, file: str) -> str:
-    """Text of a file of this package."""
-    return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
 
 
 def _words(
@@ -298,8 +287,12 @@ def _function_rows(functions: Sequence[FunctionInC]) -> str:
     return "\n".join(f"| `{function.symbol}` | {function.description} |" for function in functions)
 
 
-def _file_rows(names: Names, parts: Assembled | None, *, derivatives: bool, stability: bool, dynamics: bool) -> str:
+def _file_rows(
+    names: Names, parts: Assembled | None, *, fours: bool, derivatives: bool, stability: bool, dynamics: bool
+) -> str:
     absent = {*(BLOCKS if parts is None else DENSE)}
+    if not fours:
+        absent |= {*FOURS, "{name}_kernels_in_fours.h"}
     if not dynamics:
         absent |= {*MOTION_FILES, "{name}_motion_demo.c"}
     if not derivatives:

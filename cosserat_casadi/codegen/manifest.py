@@ -9,7 +9,9 @@ from typing import Any
 
 import casadi as ca
 
+from cosserat_casadi.codegen.fours import InFours
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
+from cosserat_casadi.codegen.kernels import Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
@@ -20,13 +22,13 @@ from cosserat_casadi.rod.properties import STRAINS
 MANIFEST = "manifest.json"
 
 
-def manifest(model: Model, names: Names, functions: list[ca.Function], error_estimate: float | None) -> dict[str, Any]:
+def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: float | None) -> dict[str, Any]:
     """The manifest as plain data.
 
     Args:
         model: what is exported.
         names: what things are called.
-        functions: the generated kernels.
+        kernels: the generated kernels.
         error_estimate: of the tip's pose at the scene's inputs, relative to the length; None where it is not known.
     """
     known = {entry.kernel: entry for entry in functions_in_c(model, names)}
@@ -42,7 +44,7 @@ def manifest(model: Model, names: Names, functions: list[ca.Function], error_est
         "discretisation": {name: asdict(chosen) for name, chosen in model.discretisation.items()},
         "tolerance": model.scene.accuracy.tolerance,
         "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
-        "functions": [_function_entry(function, known.get(function.name())) for function in functions],
+        "functions": [_function_entry(kernel, known) for kernel in kernels],
     }
 
 
@@ -117,8 +119,10 @@ def unknown_entries(model: Model) -> list[dict[str, Any]]:
     return entries
 
 
-def _function_entry(function: ca.Function, known: FunctionInC | None) -> dict[str, Any]:
+def _function_entry(kernel: Kernel, every: Mapping[str, FunctionInC]) -> dict[str, Any]:
     """A kernel, with the function of the header that it is behind; those of parts of an assembly are not known."""
+    function = kernel.signature if isinstance(kernel, InFours) else kernel
+    known = every.get(function.name())
     units = ARGUMENT_UNITS if known is None else known.units
     arguments = [_vector_entry(function.name_in(i), function.size_in(i), units) for i in range(function.n_in())]
     results = [_vector_entry(function.name_out(i), function.size_out(i), units) for i in range(function.n_out())]
@@ -127,7 +131,7 @@ def _function_entry(function: ca.Function, known: FunctionInC | None) -> dict[st
         **_public_entry(known),
         "arguments": arguments,
         "results": results,
-        "instructions": function.n_instructions(),
+        "instructions": kernel.n_instructions(),
     }
 
 

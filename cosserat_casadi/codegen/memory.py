@@ -12,8 +12,8 @@ FRAMES = 2000
 """Bytes of stack for all functions that are no kernels, from the public one down."""
 
 
-OF_MOTION = "_k_motion_"
-"""What the names of kernels hold that are called with a workspace alone, however large it is."""
+WITH_WORKSPACE = re.compile(r"_k_motion_|_k_(?:residual|jacobian)$")
+"""Names of kernels that are called with a workspace alone, however large it is."""
 
 
 def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = False) -> int:
@@ -26,7 +26,7 @@ def largest_room(generated: Mapping[str, str], kind: str, *, on_stack: bool = Fa
     """
     header = "".join(text for file, text in generated.items() if file.endswith(".h"))
     rooms = re.findall(rf"(\w+)_SZ_{kind} (\d+)", header)
-    return max(int(size) for name, size in rooms if not on_stack or OF_MOTION not in name)
+    return max(int(size) for name, size in rooms if not on_stack or not WITH_WORKSPACE.search(name))
 
 
 def stack_bytes(generated: Mapping[str, str]) -> int:
@@ -41,12 +41,33 @@ def stack_bytes(generated: Mapping[str, str]) -> int:
     source = "".join(text for file, text in generated.items() if file.endswith(".c"))
     functions = re.split(r"^(?=(?:static|CASADI_SYMBOL_EXPORT) )", source, flags=re.M)
     locals_of_largest = max(_locals(function) for function in functions)
-    return REAL * (locals_of_largest + largest_room(generated, "W", on_stack=True)) + FRAMES
+    largest = locals_of_largest + largest_room(generated, "W", on_stack=True)
+    for file, text in generated.items():
+        if file.endswith("_in_fours.h"):
+            largest = max(largest, _locals_in_fours(text))
+    return REAL * largest + FRAMES
 
 
 def _locals(function: str) -> int:
     declared = re.findall(r"^  casadi_real (a\d.*);$", function, flags=re.M)
     return sum(line.count(",") + 1 for line in declared)
+
+
+def _locals_in_fours(text: str) -> int:
+    """Numbers on the stack of the largest kernel in fours, with the largest function that it calls."""
+    functions = re.split(r"^(?=static )", text, flags=re.M)
+    largest = 0
+    for kernel in re.findall(r"^static int MADE\((\w+)\)", text, flags=re.M):
+        own = [_locals(function) for function in functions if f"MADE({kernel})(" in function.partition("{")[0]]
+        called = [_of_fours(function) for function in functions if f"MADE({kernel}_" in function.partition("{")[0]]
+        largest = max(largest, sum(own) + max(called, default=0))
+    return largest
+
+
+def _of_fours(function: str) -> int:
+    declared = re.findall(r"^  four (b\d.*);$", function, flags=re.M)
+    variables: int = sum(line.count(",") + 1 for line in declared)
+    return _locals(function) + 4 * variables
 
 
 def workspace_bytes(size: int, inputs: int, factors: int, reuses: int, room: tuple[int, int], extra: int) -> int:

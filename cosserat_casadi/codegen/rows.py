@@ -14,10 +14,11 @@ from cosserat_casadi.codegen.assembled import assembled
 from cosserat_casadi.codegen.compiler import compiled_texts, find_compiler
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels
 from cosserat_casadi.codegen.lanes import Shown, in_lanes
-from cosserat_casadi.codegen.library import VERBATIM, fill, library_sources, render
+from cosserat_casadi.codegen.library import VERBATIM, library_sources
 from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
+from cosserat_casadi.codegen.texts import fill, render
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from cosserat_casadi.codegen.block_sources import numbers
-from cosserat_casadi.codegen.library import SINGLE, render
+from cosserat_casadi.codegen.library import SINGLE
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.codegen.texts import render
 from cosserat_casadi.equilibrium.judge import ASIDE
 from cosserat_casadi.equilibrium.stability import DEPENDENT, ZERO, variations
 from cosserat_casadi.errors import ExportError, Problem

@@ -6,7 +6,8 @@ rows and columns (model/assembly.py), never instructions to the rods themselves.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import casadi as ca
@@ -37,7 +38,7 @@ from cosserat_casadi.rod.kinematics import Shape, shape
 from cosserat_casadi.rod.motion import FrameMotion, RodMotion, StrainRates
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import Ratio
-from cosserat_casadi.rod.tangent import Tangent
+from cosserat_casadi.rod.tangent import Columns, Tangent
 from cosserat_casadi.rod.viscosity import Viscosity
 from cosserat_casadi.rod.wrenches import PointWrench, PoseWrench, RodLoad, Wrench
 
@@ -89,10 +90,12 @@ class System:
     Attributes:
         discrete: what is constant.
         arguments: what they are written in.
+        columns: columns of the variations of rods that are known already, by rod.
     """
 
     discrete: DiscreteScene
     arguments: Arguments
+    columns: Mapping[str, Columns] = field(default_factory=dict)
 
     @cached_property
     def rods(self) -> dict[str, InverseGeometricModel]:
@@ -104,7 +107,7 @@ class System:
         """Variations of every rod's fields."""
         # In motion there is so much more of it that it is loops.
         in_loops = self.arguments.motion is not None
-        return {name: Tangent(igm, in_loops) for name, igm in self.rods.items()}
+        return {name: Tangent(igm, in_loops, given=self.columns.get(name)) for name, igm in self.rods.items()}
 
     @cached_property
     def frame_poses(self) -> dict[FrameName, FramePose]:

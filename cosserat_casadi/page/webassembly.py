@@ -12,7 +12,7 @@ from importlib import resources
 from pathlib import Path
 
 from cosserat_casadi.codegen.export import folder_files
-from cosserat_casadi.codegen.library import fill
+from cosserat_casadi.codegen.texts import fill
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.page.drawn_model import DrawnModel
 

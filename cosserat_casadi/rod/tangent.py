@@ -45,16 +45,36 @@ from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
 
 
 @dataclass(frozen=True)
+class Columns:
+    """What the Jacobian has a column of for each angular coordinate, and what follows from the turns of that one alone.
+
+    Attributes:
+        section_rotation: :attr:`Tangent.section_rotation`.
+        angular: angular rows before they are made symmetric, n_a rows.
+        linear: rows of each linear strain against the angular columns, by component.
+    """
+
+    section_rotation: Matrix
+    angular: Matrix
+    linear: dict[int, Matrix]
+
+
+@dataclass(frozen=True)
 class Tangent:
     """Variations of a rod's fields with its strain coordinates.
 
     Attributes:
         igm: the rod's balance.
         in_loops: whether it is written for loops: there sums and differences of mirrored rows cost more than they save.
+        turns: turns of the intervals by coordinate, (size·intervals)×k, that take the place of those of the angular
+            coordinates: :attr:`columns` are those of these turns.
+        given: columns of all angular coordinates that are known already.
     """
 
     igm: InverseGeometricModel
     in_loops: bool = False
+    turns: Matrix | None = None
+    given: Columns | None = None
 
     @property
     def shape(self) -> Shape:
@@ -87,6 +107,19 @@ class Tangent:
         return self.rod.turn_matrix.first_columns(self.angular_size)
 
     @cached_property
+    def columns(self) -> Columns:
+        """Columns of the turns, or of all angular coordinates, where moments pass."""
+        linear = {component: self._linear_rows(component) for component in self.rod.linear}
+        return Columns(self.section_rotation, self._angular_product, linear)
+
+    @cached_property
+    def _turns(self) -> Matrix:
+        """Derivative of the stacked turns with respect to what there are columns of."""
+        if self.turns is not None:
+            return self.turns
+        return self.turn_matrix.unfolded
+
+    @cached_property
     def interval_operators(self) -> tuple[Matrix, Matrix, Matrix]:
         """A, V, H of :attr:`IntervalKernels.variation` of every interval as operators on stacked fields."""
         kernel = self.kernels.variation
@@ -101,11 +134,13 @@ class Tangent:
     def interval_variation(self) -> Matrix:
         """δθ that each interval adds, base frame, (3·intervals)×n_a, rad."""
         turning = self.interval_operators[0]
-        return turning @ self.turn_matrix.unfolded
+        return turning @ self._turns
 
     @cached_property
     def section_rotation(self) -> Matrix:
         """δθ of the distinct sections beyond the base, (3·intervals)×n_a, rad."""
+        if self.given is not None:
+            return self.given.section_rotation
         return cumulative_sum(self.interval_variation, self.intervals)
 
     @cached_property
@@ -219,18 +254,9 @@ class Tangent:
         """Angular rows and columns but for following forces, n_a×n_a."""
         statics = self.igm.statics
         unit = self.rod.energy_unit
-        if statics.interval_moment is None or not self.kernels.axes:
+        if not self.moments_pass:
             return ca.DM(self.angular_size, self.angular_size)
-        turning, stiffness, second = self.interval_operators
-        # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
-        passing = self._moment_variation() + stiffness @ self.interval_variation
-        pulled = turning.T @ passing + second @ self.turn_matrix.unfolded
-        if self.in_loops:
-            # The constants are those of rods of any stiffness, that may share code.
-            product = (self.turn_matrix.unfolded.T @ pulled) / -unit
-        else:
-            product = (self.turn_matrix / -unit).T @ pulled
-        matrix = ca.triu2symm(ca.triu(product))
+        matrix = ca.triu2symm(ca.triu(self._angular_product))
         # The mirror lacks the skew part of couples: of dead ones below the diagonal, of followers above.
         dead = statics.couple_covector(follower=False)
         if dead is not None:
@@ -239,6 +265,26 @@ class Tangent:
         if following is not None:
             matrix = matrix + ca.triu(self._commutator(following / unit), False)
         return matrix
+
+    @property
+    def moments_pass(self) -> bool:
+        """Whether intervals that turn pass moments on."""
+        return self.igm.statics.interval_moment is not None and bool(self.kernels.axes)
+
+    @cached_property
+    def _angular_product(self) -> Matrix:
+        """Angular rows of which the upper triangle holds, n_a×n_a."""
+        if self.given is not None:
+            return self.given.angular
+        turning, stiffness, second = self.interval_operators
+        # Aᵀ (δm − δθ × m + V A) + H, the bracket of docs/theory.md section 7.
+        passing = self._moment_variation() + stiffness @ self.interval_variation
+        pulled = turning.T @ passing + second @ self._turns
+        unit = self.rod.energy_unit
+        if self.in_loops:
+            # The constants are those of rods of any stiffness, that may share code.
+            return (self.turn_matrix.unfolded.T @ pulled) / -unit
+        return (self.turn_matrix / -unit).T @ pulled
 
     def _moment_variation(self) -> Matrix:
         """δm − δθ × m of every interval under frozen wrenches, base frame, (3·intervals)×n_a."""
@@ -267,10 +313,12 @@ class Tangent:
 
     def _linear_rows(self, component: int) -> Matrix:
         """Rows of a linear strain against the angular columns under frozen forces: −ℓ Φᵀ (d × n̂)·δθ."""
+        if self.given is not None:
+            return self.given.linear[component]
         covector = self.igm.statics.force_covector
         phi = self.rod.node_matrix(component)
         if covector is None:
-            return ca.DM(self.rod.size_of(component), self.angular_size)
+            return ca.DM(self.rod.size_of(component), self._turns.shape[1])
         lever = cross(self.shape.directors[component - 3], covector)
         rows = [ca.diag(row) for row in ca.vertsplit(lever)]
         work = ca.horzcat(*rows) @ self.rotation

@@ -17,16 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define follower_reissner_k_residual_SZ_ARG 8
-#define follower_reissner_k_residual_SZ_RES 4
-#define follower_reissner_k_residual_SZ_IW 0
-#define follower_reissner_k_residual_SZ_W 50
-int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define follower_reissner_k_jacobian_SZ_ARG 8
-#define follower_reissner_k_jacobian_SZ_RES 4
-#define follower_reissner_k_jacobian_SZ_IW 0
-#define follower_reissner_k_jacobian_SZ_W 96
 int follower_reissner_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define follower_reissner_k_rate_SZ_ARG 16
 #define follower_reissner_k_rate_SZ_RES 4
@@ -62,6 +52,16 @@ int follower_reissner_k_shape(const casadi_real** arg, casadi_real** res, casadi
 #define follower_reissner_k_shape_SZ_RES 5
 #define follower_reissner_k_shape_SZ_IW 0
 #define follower_reissner_k_shape_SZ_W 30
+int follower_reissner_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define follower_reissner_k_residual_SZ_ARG 3
+#define follower_reissner_k_residual_SZ_RES 1
+#define follower_reissner_k_residual_SZ_IW 0
+#define follower_reissner_k_residual_SZ_W 236
+int follower_reissner_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define follower_reissner_k_jacobian_SZ_ARG 3
+#define follower_reissner_k_jacobian_SZ_RES 1
+#define follower_reissner_k_jacobian_SZ_IW 0
+#define follower_reissner_k_jacobian_SZ_W 1391
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -17,16 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_residual_SZ_ARG 8
-#define nitinol_wire_k_residual_SZ_RES 4
-#define nitinol_wire_k_residual_SZ_IW 0
-#define nitinol_wire_k_residual_SZ_W 50
-int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define nitinol_wire_k_jacobian_SZ_ARG 8
-#define nitinol_wire_k_jacobian_SZ_RES 4
-#define nitinol_wire_k_jacobian_SZ_IW 0
-#define nitinol_wire_k_jacobian_SZ_W 96
 int nitinol_wire_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define nitinol_wire_k_rate_SZ_ARG 16
 #define nitinol_wire_k_rate_SZ_RES 4
@@ -62,6 +52,16 @@ int nitinol_wire_k_shape(const casadi_real** arg, casadi_real** res, casadi_int*
 #define nitinol_wire_k_shape_SZ_RES 5
 #define nitinol_wire_k_shape_SZ_IW 0
 #define nitinol_wire_k_shape_SZ_W 30
+int nitinol_wire_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_residual_SZ_ARG 3
+#define nitinol_wire_k_residual_SZ_RES 1
+#define nitinol_wire_k_residual_SZ_IW 0
+#define nitinol_wire_k_residual_SZ_W 236
+int nitinol_wire_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define nitinol_wire_k_jacobian_SZ_ARG 3
+#define nitinol_wire_k_jacobian_SZ_RES 1
+#define nitinol_wire_k_jacobian_SZ_IW 0
+#define nitinol_wire_k_jacobian_SZ_W 1123
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

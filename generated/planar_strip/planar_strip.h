@@ -135,7 +135,7 @@ typedef struct {
   planar_strip_real correction[PLANAR_STRIP_UNKNOWNS];
   planar_strip_real d_x_d_inputs[PLANAR_STRIP_UNKNOWNS * 6];
   planar_strip_real d_pose_d_x[7 * PLANAR_STRIP_UNKNOWNS];
-  planar_strip_real kernel_reals[43];
+  planar_strip_real kernel_reals[101];
   int kernel_integers[1];
 } planar_strip_workspace;
 

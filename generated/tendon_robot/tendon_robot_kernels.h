@@ -17,16 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_residual_SZ_ARG 8
-#define tendon_robot_k_residual_SZ_RES 4
-#define tendon_robot_k_residual_SZ_IW 0
-#define tendon_robot_k_residual_SZ_W 50
-int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define tendon_robot_k_jacobian_SZ_ARG 8
-#define tendon_robot_k_jacobian_SZ_RES 4
-#define tendon_robot_k_jacobian_SZ_IW 0
-#define tendon_robot_k_jacobian_SZ_W 96
 int tendon_robot_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define tendon_robot_k_rate_SZ_ARG 16
 #define tendon_robot_k_rate_SZ_RES 4
@@ -82,6 +72,16 @@ int tendon_robot_k_actuator_upper_south(const casadi_real** arg, casadi_real** r
 #define tendon_robot_k_actuator_upper_south_SZ_RES 3
 #define tendon_robot_k_actuator_upper_south_SZ_IW 0
 #define tendon_robot_k_actuator_upper_south_SZ_W 0
+int tendon_robot_k_residual(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_residual_SZ_ARG 3
+#define tendon_robot_k_residual_SZ_RES 1
+#define tendon_robot_k_residual_SZ_IW 0
+#define tendon_robot_k_residual_SZ_W 236
+int tendon_robot_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define tendon_robot_k_jacobian_SZ_ARG 3
+#define tendon_robot_k_jacobian_SZ_RES 1
+#define tendon_robot_k_jacobian_SZ_IW 0
+#define tendon_robot_k_jacobian_SZ_W 1725
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

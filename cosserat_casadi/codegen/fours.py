@@ -1,0 +1,450 @@
+"""Scalar functions as C of our own that computes four alike at once: columns of a Jacobian, and intervals of a rod.
+
+CasADi writes one number after the other. Here calls of one function that do not wait for each other, those of the
+intervals of a rod, are made four at a time, and so are the columns of a Jacobian (columns.py). Each number comes from
+the same operations in the same order as there, and is the same to the last digit.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import casadi as ca
+
+from cosserat_casadi.codegen.columns import COLUMNS, LANES, TURNS, ColumnForm
+from cosserat_casadi.codegen.listing import (
+    Called,
+    Computed,
+    Constant,
+    Listing,
+    Read,
+    UnknownOperationError,
+)
+from cosserat_casadi.codegen.statements import Block, Statement, in_parts, number_in_c, on_fours, on_numbers
+from cosserat_casadi.codegen.texts import fill, resource
+from cosserat_casadi.maths.typing import FloatArray
+
+FEWEST = 3
+"""Calls of one function from which on they are made together."""
+
+HEADER = "fours.h"
+
+PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define {name}_SZ_ARG 3
+#define {name}_SZ_RES 1
+#define {name}_SZ_IW 0
+#define {name}_SZ_W {reals}
+"""
+
+
+@dataclass(frozen=True)
+class InFours:
+    """A kernel that is written here.
+
+    Attributes:
+        signature: a function with its name, arguments and results.
+        tables: constant arrays in C.
+        body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
+        reals: numbers that it works in.
+        statements: how many there are.
+    """
+
+    signature: ca.Function
+    tables: str
+    body: str
+    reals: int
+    statements: int
+
+    def name(self) -> str:
+        """Its name in C."""
+        name: str = self.signature.name()
+        return name
+
+    def n_instructions(self) -> int:
+        """How many statements there are."""
+        return self.statements
+
+
+@dataclass(frozen=True)
+class SourcesInFours:
+    """What kernels in fours add to a source and its header.
+
+    Attributes:
+        source: what follows in the source.
+        prototypes: what follows in the header.
+        included: files by name that the source includes.
+    """
+
+    source: str
+    prototypes: str
+    included: dict[str, str]
+
+
+def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
+    """Kernels in C, for any processor and for the wider vectors of newer ones.
+
+    Args:
+        kernels: the kernels.
+        stem: of the file names.
+    """
+    words = {
+        "stem": stem,
+        "tables": "".join(kernel.tables for kernel in kernels),
+        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
+    }
+    bodies = "\n".join(kernel.body for kernel in kernels)
+    head = "/* Included once for each width of vectors. */\n"
+    prototypes = "".join(PROTOTYPE.format(name=kernel.name(), reals=kernel.reals) for kernel in kernels)
+    included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
+    return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
+
+
+def in_fours(function: ca.Function, signature: ca.Function) -> InFours:
+    """A scalar function as C of our own.
+
+    Args:
+        function: the function.
+        signature: a function with the name, arguments and first result that it has in C.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    return _Writing(Listing(function), signature, None).result()
+
+
+def columns_in_fours(form: ColumnForm, signature: ca.Function) -> InFours:
+    """A Jacobian by columns as C of our own.
+
+    Args:
+        form: the Jacobian.
+        signature: a function with the name, arguments and result that it has in C.
+
+    Raises:
+        UnknownOperationError: there is an operation that has no form here.
+    """
+    return _Writing(Listing(form.function), signature, form).result()
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """Calls of one function that are made together.
+
+    Attributes:
+        calls: their numbers.
+        width: for how many calls the code is: LANES, or one.
+        given: where their operands are in the numbers that the kernel works in.
+        made: where their results are.
+    """
+
+    calls: tuple[int, ...]
+    width: int
+    given: int
+    made: int
+
+
+class _Writing:
+    """A function on its way to C.
+
+    Values that other functions in C read have a place in the numbers ``w`` that the kernel works in; all others are in
+    variables.
+    """
+
+    def __init__(self, listing: Listing, signature: ca.Function, form: ColumnForm | None) -> None:
+        self.listing = listing
+        self.name = signature.name()
+        self.signature = signature
+        self.form = form
+        self.reals = 0
+        self.place: dict[int, int] = {}
+        self.in_column = self._in_column()
+        self.batch_of = self._batches()
+        self.given_to_columns = self._given_to_columns()
+        for value in self.given_to_columns:
+            self.place.setdefault(value, self._room(1))
+        self.columns = 0 if form is None else self._room(form.rows * form.stride)
+        self.main = Block("casadi_real", "a", [])
+        self.done: set[int | tuple[int, ...]] = set()
+        self.functions: list[str] = []
+        self.statements = 0
+
+    def result(self) -> InFours:
+        """The kernel."""
+        tables = ""
+        self._write_callees()
+        for value in self.given_to_columns:
+            self._compute(value)
+        if self.form is not None:
+            tables = _table(f"{self.name}_turns", self.form.turns)
+            self._write_columns(self.form)
+        self._write_results()
+        head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
+        lines = self.main.lines(self._text)
+        self.functions.append("\n".join([head, *lines, "  return 0;", "}\n"]))
+        self.statements += len(self.main.statements)
+        body = "\n".join(self.functions)
+        return InFours(self.signature, tables, body, self.reals, self.statements)
+
+    def _room(self, count: int) -> int:
+        """Where so many numbers are that the kernel works in."""
+        self.reals += count
+        return self.reals - count
+
+    # What belongs where
+
+    def _in_column(self) -> list[bool]:
+        """For each value whether it is one of each column."""
+        found: list[bool] = []
+        for number, value in enumerate(self.listing.values):
+            of_turns = self.form is not None and isinstance(value, Read) and value.argument == TURNS
+            found.append(of_turns or any(found[operand] for operand in self.listing.operands(number)))
+        return found
+
+    def _given_to_columns(self) -> list[int]:
+        """Values without columns that those with columns are computed from."""
+        given: dict[int, None] = {}
+        for number, in_column in enumerate(self.in_column):
+            if in_column:
+                given |= dict.fromkeys(self.listing.operands(number))
+        return [value for value in given if not self.in_column[value] and not self._is_constant(value)]
+
+    def _batches(self) -> dict[int, _Batch]:
+        """For each call the calls that are made with it: of the same function, and behind as many other calls."""
+        depth = self._depths()
+        groups: dict[tuple[int, int], list[int]] = defaultdict(list)
+        for number, call in enumerate(self.listing.calls):
+            groups[hash(call.function), depth[call.results[0]]].append(number)
+        batches: dict[int, _Batch] = {}
+        given: dict[int, int] = {}
+        for calls in groups.values():
+            width = LANES if len(calls) >= FEWEST else 1
+            for first in range(0, len(calls), width):
+                together = tuple(calls[first : first + width])
+                call = self.listing.calls[together[0]]
+                size = width * len(call.operands)
+                if size not in given:
+                    given[size] = self._room(size)
+                batch = _Batch(together, width, given[size], self._room(width * len(call.results)))
+                batches |= dict.fromkeys(together, batch)
+                self._place_results(batch)
+        return batches
+
+    def _depths(self) -> list[int]:
+        """For each value the number of calls that one needs of another for it, itself included."""
+        depths: list[int] = []
+        for number, value in enumerate(self.listing.values):
+            depth = max((depths[operand] for operand in self.listing.operands(number)), default=0)
+            depths.append(depth + 1 if isinstance(value, Called) else depth)
+        return depths
+
+    def _place_results(self, batch: _Batch) -> None:
+        for lane, number in enumerate(batch.calls):
+            for i, result in enumerate(self.listing.calls[number].results):
+                self.place[result] = batch.made + i * batch.width + lane
+
+    def _is_constant(self, number: int) -> bool:
+        return isinstance(self.listing.values[number], Constant)
+
+    # What has no columns
+
+    def _compute(self, root: int) -> None:
+        """Append what a value without columns needs and has not got yet, then itself."""
+        waiting = [root]
+        while waiting:
+            number = waiting[-1]
+            if self._is_there(number):
+                waiting.pop()
+                continue
+            missing = [need for need in self._needs(number) if not self._is_there(need)]
+            if missing:
+                waiting += missing[::-1]
+                continue
+            waiting.pop()
+            self.done.add(self._known_by(number))
+            self._append(number)
+
+    def _known_by(self, number: int) -> int | tuple[int, ...]:
+        """What tells that a value is there: its batch of calls, or itself."""
+        value = self.listing.values[number]
+        return self.batch_of[value.call].calls if isinstance(value, Called) else number
+
+    def _is_there(self, number: int) -> bool:
+        return self._is_constant(number) or self._known_by(number) in self.done
+
+    def _needs(self, number: int) -> list[int]:
+        value = self.listing.values[number]
+        if not isinstance(value, Called):
+            return self.listing.operands(number)
+        return [operand for call in self.batch_of[value.call].calls for operand in self.listing.calls[call].operands]
+
+    def _append(self, number: int) -> None:
+        """Append the statements of a value whose operands are there."""
+        value = self.listing.values[number]
+        if isinstance(value, Called):
+            self._append_calls(self.batch_of[value.call])
+            return
+        if self._is_of_all_columns(number):
+            return
+        if isinstance(value, Read):
+            entry = f"arg[{value.argument}] ? arg[{value.argument}][{value.entry}] : 0"
+            self.main.statements.append(Statement(f"{{made}} = {entry};", [], number))
+        elif isinstance(value, Computed):
+            self.main.statements.append(on_numbers(value.operation, value.operands, number))
+        if number in self.place:
+            self.main.statements.append(Statement(f"w[{self.place[number]}] = {{0}};", [number]))
+
+    def _append_calls(self, batch: _Batch) -> None:
+        for lane in range(batch.width):
+            # Lanes that are left over compute what the last call does.
+            call = self.listing.calls[batch.calls[min(lane, len(batch.calls) - 1)]]
+            for i, operand in enumerate(call.operands):
+                place = batch.given + i * batch.width + lane
+                self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
+        name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
+        self.main.statements.append(Statement(f"MADE({name})(w + {batch.given}, w + {batch.made});", []))
+
+    def _write_results(self) -> None:
+        """Append the entries of the first result."""
+        entries = self.listing.outputs[0]
+        for entry in range(self.listing.function.nnz_out(0)):
+            if entry in entries:
+                self._compute(entries[entry])
+                self.main.statements.append(Statement(f"res[0][{entry}] = {{0}};", [entries[entry]]))
+            else:
+                self.main.statements.append(Statement(f"res[0][{entry}] = 0;", []))
+
+    def _is_of_all_columns(self, number: int) -> bool:
+        value = self.listing.values[number]
+        return self.form is not None and isinstance(value, Read) and value.argument == COLUMNS
+
+    def _text(self, number: int) -> str | None:
+        """What a value without columns is called outside of variables."""
+        value = self.listing.values[number]
+        if isinstance(value, Constant):
+            return number_in_c(value.value)
+        if isinstance(value, Called):
+            return f"w[{self.place[number]}]"
+        if isinstance(value, Read) and self._is_of_all_columns(number):
+            return f"w[{self.columns + value.entry}]"
+        return None
+
+    # Functions that are called
+
+    def _callee_name(self, function: ca.Function, width: int) -> str:
+        return f"{self.name}_{function.name()}{'s' if width == LANES else ''}"
+
+    def _write_callees(self) -> None:
+        wanted = {}
+        for batch in self.batch_of.values():
+            function = self.listing.calls[batch.calls[0]].function
+            wanted[self._callee_name(function, batch.width)] = (function, batch.width)
+        for name, (function, width) in wanted.items():
+            self._write_callee(name, Listing(function), width)
+
+    def _write_callee(self, name: str, listing: Listing, width: int) -> None:
+        """Write a function that is called, for one or for four calls at once."""
+        function = listing.function
+        wide = width == LANES
+        arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
+        results = _starts(function.nnz_out(i) for i in range(function.n_out()))
+        block = Block("four", "b", []) if wide else Block("casadi_real", "a", [])
+        for number, value in enumerate(listing.values):
+            if isinstance(value, Computed):
+                written = on_fours if wide else on_numbers
+                block.statements.append(written(value.operation, value.operands, number))
+        for start, entries in zip(results, listing.outputs, strict=True):
+            for entry, number in entries.items():
+                place = width * (start + entry)
+                store = f"STORE(made + {place}, {{0}});" if wide else f"made[{place}] = {{0}};"
+                block.statements.append(Statement(store, [number]))
+
+        def text(number: int) -> str | None:
+            value = listing.values[number]
+            if isinstance(value, Constant):
+                constant = number_in_c(value.value)
+                return f"EACH({constant})" if wide else constant
+            if isinstance(value, Read):
+                place = width * (arguments[value.argument] + value.entry)
+                return f"LOAD(given + {place})" if wide else f"given[{place}]"
+            return None
+
+        self._write(f"{name})(const casadi_real *given, casadi_real *made", block.lines(text))
+        self.statements += len(block.statements)
+
+    # Columns
+
+    def _write_columns(self, form: ColumnForm) -> None:
+        """Write what computes four columns, in parts that pass values on, and append its calls."""
+        parts, passed = in_parts(self._statements_of_columns(form))
+        room = self._room(LANES * len(passed))
+        names = []
+        for k, statements in enumerate(parts):
+            own = {statement.made for statement in statements}
+            elsewhere = {value: place for value, place in passed.items() if value not in own}
+            block = Block("four", "b", statements)
+            lines = block.lines(partial(self._text_in_columns, elsewhere))
+            names.append(f"{self.name}_columns_{k}")
+            given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
+            self._write(f"{names[-1]})({given}", lines)
+            self.statements += len(block.statements)
+        size = len(form.turns)
+        for first in range(0, form.stride, LANES):
+            for name in names:
+                given = f"w, {self.name}_turns + {size * first}, w + {self.columns + first}, w + {room}"
+                self.main.statements.append(Statement(f"MADE({name})({given});", []))
+
+    def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
+        statements = []
+        for number, value in enumerate(self.listing.values):
+            if self.in_column[number] and not isinstance(value, Read):
+                if not isinstance(value, Computed):
+                    raise UnknownOperationError("a call in a column")
+                statements.append(on_fours(value.operation, value.operands, number))
+        entries = self.listing.outputs[1]
+        for row in range(form.rows):
+            place = row * form.stride
+            if row in entries and not self.in_column[entries[row]]:
+                raise UnknownOperationError("a row that all columns share")
+            if row in entries:
+                statements.append(Statement(f"STORE(columns + {place}, {{0}});", [entries[row]]))
+            else:
+                zeros = [Statement(f"columns[{place + lane}] = 0;", []) for lane in range(LANES)]
+                statements += zeros
+        return statements
+
+    def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
+        """What a value is called in the code of columns outside of variables."""
+        value = self.listing.values[number]
+        if number in elsewhere:
+            return f"LOAD(passed + {LANES * elsewhere[number]})"
+        if isinstance(value, Constant):
+            return f"EACH({number_in_c(value.value)})"
+        if not self.in_column[number]:
+            return f"EACH(w[{self.place[number]}])"
+        if isinstance(value, Read):
+            return f"LOAD(turns + {LANES * value.entry})"
+        return None
+
+    def _write(self, head: str, lines: Iterable[str]) -> None:
+        self.functions.append("\n".join([f"static void MADE({head}) {{", *lines, "}\n"]))
+
+
+def _starts(sizes: Iterable[int]) -> list[int]:
+    """Where each of some vectors begins that lie one behind the other."""
+    starts = []
+    total = 0
+    for size in sizes:
+        starts.append(total)
+        total += size
+    return starts
+
+
+def _table(name: str, turns: FloatArray) -> str:
+    """The turns of four columns after those of the four before, one entry of the four after the other."""
+    entries, stride = turns.shape
+    ordered = turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2)
+    numbers = [f"{value:.17g}" for value in ordered.ravel()]
+    lines = [", ".join(numbers[first : first + 8]) for first in range(0, len(numbers), 8)]
+    return f"static const casadi_real {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n"

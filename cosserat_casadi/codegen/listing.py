@@ -1,0 +1,156 @@
+"""A scalar function as a list of values, each computed once: what code of our own is written from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import casadi as ca
+
+BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
+"""Operations that four lanes have, as C writes them."""
+
+FUNCTIONS = {
+    ca.OP_SQRT: "sqrt", ca.OP_EXP: "exp", ca.OP_LOG: "log", ca.OP_SIN: "sin", ca.OP_COS: "cos", ca.OP_TAN: "tan",
+    ca.OP_ASIN: "asin", ca.OP_ACOS: "acos", ca.OP_ATAN: "atan", ca.OP_ATAN2: "atan2", ca.OP_TANH: "tanh",
+    ca.OP_SINH: "sinh", ca.OP_COSH: "cosh", ca.OP_FABS: "fabs", ca.OP_POW: "pow", ca.OP_CONSTPOW: "pow",
+}  # fmt: skip
+"""Operations that single numbers have besides, as functions of the mathematical library."""
+
+REWRITTEN = {ca.OP_NEG: (ca.OP_MUL, -1.0), ca.OP_TWICE: (ca.OP_MUL, 2.0), ca.OP_INV: (ca.OP_DIV, 1.0)}
+"""Operations with one operand as products or quotients of a constant."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number."""
+
+    value: float
+
+
+@dataclass(frozen=True)
+class Read:
+    """An entry of an argument."""
+
+    argument: int
+    entry: int
+
+
+@dataclass(frozen=True)
+class Computed:
+    """The result of an operation on other values, which are known by their numbers."""
+
+    operation: int
+    operands: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Called:
+    """One of the results of a call."""
+
+    call: int
+    result: int
+
+
+Value = Constant | Read | Computed | Called
+
+
+@dataclass(frozen=True)
+class Call:
+    """A call of another scalar function.
+
+    Attributes:
+        function: what is called.
+        operands: the stored entries of all its arguments.
+        results: the stored entries of all its results.
+    """
+
+    function: ca.Function
+    operands: list[int]
+    results: list[int]
+
+
+class UnknownOperationError(Exception):
+    """An operation has no form in code of our own."""
+
+
+class Listing:
+    """The values of a scalar function in the order in which it computes them.
+
+    Attributes:
+        function: what is listed.
+        values: the values; an operand comes before what it is an operand of.
+        calls: calls of other functions.
+        outputs: for each output, number of the value of each stored entry that is computed.
+
+    Raises:
+        UnknownOperationError: there is an operation that is not known here.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        self.function = function
+        self.values: list[Value] = []
+        self.calls: list[Call] = []
+        self.outputs: list[dict[int, int]] = [{} for _ in range(function.n_out())]
+        self._known: dict[Value, int] = {}
+        # A call is known by the number of its arguments and results alone: that must tell functions apart.
+        callees = function.find_functions(0)
+        self._called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in callees}
+        if len(self._called) < len(callees):
+            raise UnknownOperationError("calls of functions that look alike")
+        variables: dict[int, int] = {}
+        for k in range(function.n_instructions()):
+            self._add(k, variables)
+
+    def operands(self, number: int) -> list[int]:
+        """Numbers of the values that one is computed from."""
+        value = self.values[number]
+        if isinstance(value, Computed):
+            return list(value.operands)
+        if isinstance(value, Called):
+            return self.calls[value.call].operands
+        return []
+
+    def wanted(self) -> Iterator[int]:
+        """Numbers of the values that are results, output after output."""
+        for output in self.outputs:
+            yield from output.values()
+
+    def _add(self, k: int, variables: dict[int, int]) -> None:
+        """Append the value, or the values, of the k-th instruction; variables are used again and again."""
+        code = self.function.instruction_id(k)
+        inputs = self.function.instruction_input(k)
+        outputs = self.function.instruction_output(k)
+        if code == ca.OP_OUTPUT:
+            self.outputs[outputs[0]][outputs[1]] = variables[inputs[0]]
+        elif code == ca.OP_CONST:
+            variables[outputs[0]] = self._number(Constant(self.function.instruction_constant(k)))
+        elif code == ca.OP_INPUT:
+            variables[outputs[0]] = self._number(Read(*inputs))
+        elif code == ca.OP_CALL:
+            self._call([variables[i] for i in inputs], outputs, variables)
+        else:
+            variables[outputs[0]] = self._number(self._computed(code, [variables[i] for i in inputs]))
+
+    def _computed(self, code: int, operands: list[int]) -> Computed:
+        if code in REWRITTEN:
+            operation, constant = REWRITTEN[code]
+            return Computed(operation, (self._number(Constant(constant)), operands[0]))
+        if code == ca.OP_SQ:
+            return Computed(ca.OP_MUL, (operands[0], operands[0]))
+        if code not in BINARY and code not in FUNCTIONS:
+            raise UnknownOperationError(f"operation {code}")
+        return Computed(code, tuple(operands))
+
+    def _call(self, operands: list[int], outputs: list[int], variables: dict[int, int]) -> None:
+        function = self._called[len(operands), len(outputs)]
+        results = [self._number(Called(len(self.calls), i)) for i in range(len(outputs))]
+        self.calls.append(Call(function, operands, results))
+        variables.update(zip(outputs, results, strict=True))
+
+    def _number(self, value: Value) -> int:
+        """The number of a value, which is computed once."""
+        if value not in self._known:
+            self._known[value] = len(self.values)
+            self.values.append(value)
+        return self._known[value]

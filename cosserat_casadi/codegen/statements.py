@@ -1,0 +1,132 @@
+"""Statements in C on numbers and on fours, with variables that are used again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from cosserat_casadi.codegen.listing import BINARY, FUNCTIONS, UnknownOperationError
+
+WORDS = {"+": "ADD", "-": "SUBTRACT", "*": "MULTIPLY", "/": "DIVIDE"}
+"""Operations on fours, as fours.h calls them."""
+
+LONGEST = 300
+"""Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One statement.
+
+    Attributes:
+        text: with ``{made}`` for what it makes, and ``{0}``, ``{1}`` for its operands.
+        operands: numbers of the values that it reads.
+        made: number of the value that it computes; None for one that only writes.
+    """
+
+    text: str
+    operands: Sequence[int]
+    made: int | None = None
+
+
+@dataclass
+class Block:
+    """Statements of one function.
+
+    Attributes:
+        type: of its variables.
+        letter: what their names begin with.
+        statements: the statements.
+        variables: how many there are, once it is written.
+    """
+
+    type: str
+    letter: str
+    statements: list[Statement]
+    variables: int = 0
+
+    def lines(self, text_of: Callable[[int], str | None]) -> list[str]:
+        """Declarations and statements.
+
+        Args:
+            text_of: text of a value that is in no variable of this block; None for one that is.
+        """
+        last_use = {operand: i for i, statement in enumerate(self.statements) for operand in statement.operands}
+        variable: dict[int, str] = {}
+        free: list[str] = []
+        lines = []
+        for i, statement in enumerate(self.statements):
+            texts = [text_of(operand) or variable[operand] for operand in statement.operands]
+            done = [operand for operand in dict.fromkeys(statement.operands) if last_use[operand] == i]
+            free += [variable[operand] for operand in done if operand in variable]
+            made = ""
+            if statement.made is not None:
+                made = free.pop() if free else self._another()
+                variable[statement.made] = made
+            lines.append(f"  {statement.text.format(*texts, made=made)}")
+        return [*self._declarations(), *lines]
+
+    def _another(self) -> str:
+        self.variables += 1
+        return f"{self.letter}{self.variables - 1}"
+
+    def _declarations(self) -> list[str]:
+        """Declarations, some on each line."""
+        names = [f"{self.letter}{i}" for i in range(self.variables)]
+        return [f"  {self.type} {', '.join(names[i : i + 16])};" for i in range(0, len(names), 16)]
+
+
+def on_numbers(operation: int, operands: Sequence[int], made: int) -> Statement:
+    """An operation on single numbers."""
+    if operation in BINARY:
+        return Statement(f"{{made}} = {{0}} {BINARY[operation]} {{1}};", operands, made)
+    places = ", ".join(f"{{{i}}}" for i in range(len(operands)))
+    return Statement(f"{{made}} = {FUNCTIONS[operation]}({places});", operands, made)
+
+
+def on_fours(operation: int, operands: Sequence[int], made: int) -> Statement:
+    """An operation on fours.
+
+    Raises:
+        UnknownOperationError: fours do not have it.
+    """
+    if operation not in BINARY:
+        raise UnknownOperationError(FUNCTIONS[operation])
+    return Statement(f"{{made}} = {WORDS[BINARY[operation]]}({{0}}, {{1}});", operands, made)
+
+
+def in_parts(statements: Sequence[Statement]) -> tuple[list[list[Statement]], dict[int, int]]:
+    """Statements on fours in parts that are functions of their own.
+
+    Returns:
+        the parts, with statements that store what others read in ``passed``, and the places of those values there.
+    """
+    count = max(-(-len(statements) // LONGEST), 1)
+    size = -(-len(statements) // count)
+    parts = [statements[first : first + size] for first in range(0, len(statements), size)]
+    passed: dict[int, int] = {}
+    before: set[int] = set()
+    for part in parts:
+        own = {statement.made for statement in part if statement.made is not None}
+        for statement in part:
+            for operand in statement.operands:
+                if operand in before:
+                    passed.setdefault(operand, len(passed))
+        before |= own
+    return [_storing(part, passed) for part in parts], passed
+
+
+def _storing(part: Sequence[Statement], passed: dict[int, int]) -> list[Statement]:
+    statements = []
+    for statement in part:
+        statements.append(statement)
+        if statement.made is not None and statement.made in passed:
+            place = 4 * passed[statement.made]
+            statements.append(Statement(f"STORE(passed + {place}, {{0}});", [statement.made]))
+    return statements
+
+
+def number_in_c(value: float) -> str:
+    """A constant in C; negative ones may follow an operation."""
+    text = repr(value)
+    return f"({text})" if value < 0 else text

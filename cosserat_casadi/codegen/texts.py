@@ -1,0 +1,23 @@
+"""Templates of this package with their words filled in, and its files in C."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from importlib import resources
+from typing import Any
+
+
+def render(template: str, words: dict[str, Any]) -> str:
+    """A template of this package with its words filled in."""
+    return fill(resource("templates", template), words)
+
+
+def fill(text: str, words: Mapping[str, Any]) -> str:
+    """The text of a template with its words filled in: ``@{word}``."""
+    return re.sub(r"@\{(\w+)\}", lambda match: str(words[match[1]]), text)
+
+
+def resource(folder: str, file: str) -> str:
+    """Text of a file of this package."""
+    return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")

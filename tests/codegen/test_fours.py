@@ -1,0 +1,130 @@
+"""Jacobians by columns, and kernels in fours: the same numbers as by CasADi, to the last digit, at any width."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from cosserat_casadi import Discretisation, Model, build, export, scene_from_dict
+from cosserat_casadi.codegen.columns import LANES, in_columns
+from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
+from cosserat_casadi.codegen.kernels import scalar
+from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
+from cosserat_casadi.maths.typing import FloatArray
+from tests.codegen.libraries import gcc, run
+
+LOADS = {
+    "dead force and couple at the tip": [
+        {"kind": "tip_wrench", "force": [0.3, -0.2, 0.1], "moment": [0.01, 0.02, -0.01], "frame": "world"},
+    ],
+    "follower at the tip": [
+        {"kind": "tip_wrench", "force": [0.3, -0.2, 0.1], "moment": [0.01, 0.02, -0.01], "frame": "body"},
+    ],
+    "spread forces, dead and following": [
+        {"kind": "distributed_wrench", "force": [0.5, 0.1, -0.4], "frame": "world"},
+        {"kind": "distributed_wrench", "force": [0.2, 0.3, 0.1], "moment": [0.01, 0.0, 0.02], "frame": "body"},
+    ],
+}
+
+
+def model_of(strain: str, loads: str, *, elements: int = 1) -> Model:
+    """A model of one wire, with modes that leave a lane empty."""
+    section = {"shape": "circle", "radius": 1e-3}
+    rod = {
+        "name": "rod",
+        "length": 0.5,
+        "strain": strain,
+        "section": section,
+        "material": {"youngs_modulus": 2e9, "poisson_ratio": 0.3},
+    }
+    named = [{"name": f"load_{i}", "rod": "rod", **load} for i, load in enumerate(LOADS[loads])]
+    scene = scene_from_dict({"schema": 1, "rods": [rod], "loads": named})
+    modes = (3, 2, 2, 1, 2, 1) if strain == "reissner" else (3, 2, 2)
+    breaks = tuple(np.linspace(0, 1, elements + 1).tolist())
+    return build(scene, {"rod": Discretisation(modes, 5, breaks)})
+
+
+def by_columns(model: Model, x: FloatArray, load_factor: float) -> FloatArray:
+    """The Jacobian from the columns of its form, one after the other."""
+    form = in_columns(model, "jacobian")
+    assert form is not None
+    columns = np.zeros((form.rows, form.stride))
+    given = [x, model.pack(), load_factor]
+    for j in range(form.stride):
+        columns[:, j] = form.function(*given, columns.ravel(), form.turns[:, j])[1].full().ravel()
+    jacobian: FloatArray = form.function(*given, columns.ravel(), form.turns[:, 0])[0].full()
+    return jacobian
+
+
+@pytest.mark.parametrize("loads", list(LOADS))
+@pytest.mark.parametrize(("strain", "elements"), [("kirchhoff", 1), ("kirchhoff", 2), ("reissner", 1)])
+def test_columns_make_the_jacobian(strain: str, elements: int, loads: str) -> None:
+    model = model_of(strain, loads, elements=elements)
+    x = np.random.default_rng(1).normal(scale=0.4, size=model.size)
+    found = by_columns(model, x, 0.7)
+    expected = model.path_jacobian(x, model.pack(), 0.7).full()
+    assert_allclose(found, expected, rtol=0, atol=1e-14 * abs(expected).max())
+
+
+def test_columns_grow_by_groups_of_four() -> None:
+    """Code of columns is that of four, however many there are: modes add instructions to straight-line code."""
+    scene = model_of("kirchhoff", "dead force and couple at the tip").scene
+    model = build(scene, {"rod": Discretisation((8, 8, 8), 10)})
+    form = in_columns(model, "jacobian")
+    assert form is not None
+    assert form.stride == 24
+    straight = scalar(model.path_jacobian, "jacobian").n_instructions()
+    assert columns_in_fours(form, model.path_jacobian).statements < straight / 4
+
+
+def test_what_has_no_form_in_fours() -> None:
+    literal = model_of("kirchhoff", "follower at the tip")
+    chosen = Discretisation((2, 2, 2), 5, transport="permuted")
+    assert in_columns(build(literal.scene, {"rod": chosen}), "jacobian") is None
+    x = ca.SX.sym("x", 2)
+    choice = ca.Function("choice", [x], [ca.fmax(x[0], x[1])])
+    with pytest.raises(UnknownOperationError):
+        Listing(choice)
+    # A call tells the numbers of its arguments and results, and not which function it is of.
+    alike = [
+        ca.Function(name, [x], [x[0] + k * x[1]], {"never_inline": True}) for k, name in enumerate(("one", "other"))
+    ]
+    with pytest.raises(UnknownOperationError):
+        Listing(ca.Function("both", [x], [alike[0](x) + alike[1](2 * x)]))
+    assert "sin" in in_fours(ca.Function("sine", [x], [ca.sin(x)]), choice).body
+
+
+@pytest.fixture(scope="module")
+def wire(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    model = model_of("reissner", "dead force and couple at the tip")
+    return export(model, tmp_path_factory.mktemp("fours") / "wire", "wire")
+
+
+def solved(folder: Path, target: Path, *flags: str) -> dict[str, object]:
+    """What the demo prints, without times."""
+    sources = [folder / f"wire{part}.c" for part in ("_demo", "", "_kernels")]
+    gcc("-std=c99", "-O1", "-Wall", "-Wpedantic", "-Werror", *flags, *sources, "-lm", "-o", target)
+    printed = json.loads(run(target, "--repeat", "1"))
+    return {word: value for word, value in printed.items() if not word.endswith("_us")}
+
+
+def test_the_same_digits_at_any_width(wire: Path, tmp_path: Path) -> None:
+    """In the widest vectors that there are, in those of any processor of the kind, and without vectors."""
+    widest = solved(wire, tmp_path / "widest")
+    assert widest["status"] == "converged"
+    for macro in ("FOURS_ONCE", "FOURS_ONE_BY_ONE"):
+        assert solved(wire, tmp_path / macro, f"-D{macro}") == widest
+
+
+def test_lanes_that_are_left_over_are_not_read(wire: Path) -> None:
+    """Seven columns take two groups of four: the last lane holds zeros."""
+    form = in_columns(model_of("reissner", "dead force and couple at the tip"), "jacobian")
+    assert form is not None
+    assert form.stride == 2 * LANES
+    assert_array_equal(form.turns[:, 7], 0)
+    assert "wire_k_jacobian_columns_0" in (wire / "wire_kernels_in_fours.h").read_text()
