@@ -21,6 +21,8 @@ from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
 
+pytestmark = pytest.mark.usefixtures("quick_compiler")
+
 SCENE = """
 schema = 1
 inputs = ["push.force", "flexor.tension", "finger.base.position"]
