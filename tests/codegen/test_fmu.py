@@ -155,8 +155,8 @@ def test_same_model_gives_the_same_sources_and_description(model, fmu, tmp_path)
 
 
 def test_command_writes_the_same_sources(fmu, tmp_path):
-    (tmp_path / "scene.toml").write_text(SCENE)
-    done = cosserat("export", "scene.toml", "--fmu", "finger.fmu", cwd=tmp_path)
+    (tmp_path / "finger.toml").write_text(SCENE)
+    done = cosserat("export", "finger.toml", "--fmu", "finger.fmu", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     wanted = zipfile.ZipFile(fmu)
     written = zipfile.ZipFile(tmp_path / "finger.fmu")
