@@ -12,6 +12,7 @@ import pytest
 
 from tests.commands import cosserat_line
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 
 MADE = {
     "guide.md": {"bent.png", "reach.json", "controller"},
@@ -53,7 +54,8 @@ def whole_lines(text: str) -> list[str]:
     return [re.split(r" +#", line)[0] for line in text.replace("\\\n", " ").splitlines()]
 
 
-@pytest.mark.parametrize("page", MADE)
+@pytest.mark.usefixtures("quick_compiler")
+@pytest.mark.parametrize("page", mostly_slow(MADE, quick=["guide.md"]))
 def test_the_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     notebook: dict[str, Any] = {}

@@ -19,6 +19,7 @@ from cosserat_casadi.rod.kinematics import shape
 from cosserat_casadi.rod.properties import RodProperties
 from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
+from tests.families import mostly_slow
 from tests.initial_value import integrate
 from tests.pose_errors import distance_between, pose_error
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
@@ -76,7 +77,9 @@ def test_solution_vs_initial_value_integration(name: str) -> None:
     assert_allclose(reached.moment_left, 0.0, rtol=0, atol=1e-9 * size)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(
+    "name", mostly_slow(SCENES, quick=["everything", "wind", "two hooks, one follower", "some strains only"])
+)
 def test_error_estimate_vs_initial_value_integration(name: str) -> None:
     """Honest: at most ten times too small."""
     wanted = SCENES[name].model_copy(update={"accuracy": SCENES[name].accuracy.model_copy(update={"tolerance": 1e-5})})

@@ -33,6 +33,16 @@ RUN_HERE = [page for page in PAGES if page.name not in ELSEWHERE]
 SLOW_TO_RUN = ("cosserat bench", "make ", "pip ")
 """What begins a line that no test runs: it takes minutes, or installs something."""
 
+LONG = (
+    "cosserat check examples/nitinol_wire.toml --time",
+    "cosserat modes examples/nitinol_wire.toml",
+    "cosserat tune examples/nitinol_wire.toml --tolerance",
+    "cosserat estimate examples/felt_loads.toml",
+    "cosserat identify examples/wire_from_shapes.toml --hold-out",
+    "cosserat export examples/tendon_robot_move.toml",
+)
+"""What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
+
 LANGUAGES = {"python", "sh", "toml", "c", "csv", "text"}
 
 
@@ -62,9 +72,22 @@ def test_one_program_runs(name: str) -> None:
     run_program("\n".join(blocks(DOCS / name, "python")))
 
 
-@pytest.mark.parametrize(
-    "line", [case for case in of_all("commands") if not case.values[0].startswith(SLOW_TO_RUN)]
-)  # fmt: skip
+def run_lines() -> list[object]:
+    """Commands that tests run, those of many seconds marked slow."""
+    cases = [case for case in of_all("commands") if not case.values[0].startswith(SLOW_TO_RUN)]
+    return [
+        pytest.param(*case.values, id=case.id, marks=pytest.mark.slow if case.values[0].startswith(LONG) else ())
+        for case in cases
+    ]
+
+
+def test_every_long_command_is_on_a_page() -> None:
+    lines = [line for page in RUN_HERE for line in commands(page)]
+    for beginning in LONG:
+        assert any(line.startswith(beginning) for line in lines), beginning
+
+
+@pytest.mark.parametrize("line", run_lines())
 def test_commands_run(line: str, tmp_path: Path) -> None:
     run_command(line, tmp_path)
 

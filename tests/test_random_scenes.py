@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import Scene, build, discretise, scene_from_dict, solve, solve_scene
+from tests.families import mostly_slow
 from tests.pose_errors import distance_between, pose_error
 from tests.reference.random_scenes import random_scene
 from tests.reference.shooting import NoEquilibriumError, solve_by_shooting
@@ -46,7 +47,7 @@ def test_many_random_scenes_end_truly(first: int) -> None:
     assert sum(check(seed) for seed in range(first, first + 10)) >= 8
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", mostly_slow(range(12), quick=range(4)))
 def test_random_scenes_vs_shooting(seed: int) -> None:
     """Tip and base wrench against an oracle that shares no code: rotation matrices, DOP853, shooting."""
     try:

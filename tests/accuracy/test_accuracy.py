@@ -18,6 +18,7 @@ from cosserat_casadi.accuracy.resolution import Resolution
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.rod.discretisation import Discretisation
 from tests.conftest import CASES
+from tests.families import mostly_slow
 from tests.reference.random_scenes import random_scene
 from tests.scenes import HOOK, WEIGHT, push, scene
 
@@ -37,7 +38,7 @@ def test_planar_load_takes_modes_in_its_plane_only() -> None:
     assert pose_distance(solution, fine(wanted)) <= 1e-8
 
 
-@pytest.mark.parametrize("seed", range(300, 312))
+@pytest.mark.parametrize("seed", mostly_slow(range(300, 312), quick=range(300, 304)))
 def test_tolerance_is_met(seed: int) -> None:
     """And the estimate is not below the truth."""
     tolerance = (1e-3, 1e-5, 1e-7, 1e-9)[seed % 4]
@@ -123,7 +124,7 @@ def test_foreseen_operations_vs_counted(strain: str) -> None:
     assert_allclose(foreseen, counted, rtol=0.5)
 
 
-@pytest.mark.parametrize("seed", [301, 303, 306])
+@pytest.mark.parametrize("seed", mostly_slow([301, 303, 306], quick=[301]))
 def test_tolerance_binds_the_whole_shape_where_asked(seed: int) -> None:
     """Of the tip alone the same tolerance leaves other sections wrong by far more."""
     wanted = [

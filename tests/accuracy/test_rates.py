@@ -16,6 +16,7 @@ from cosserat_casadi import Scene, build, discretise, read_scene, solve
 from cosserat_casadi.bench.reference import Reference, find_reference
 from cosserat_casadi.maths.typing import FloatArray
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.scenes import WEIGHT, push, rod, scene
 
 CURLED = {"curvature": [[1.0, 2.0], [2.0, -1.5], [1.5, 0.5]]}
@@ -61,7 +62,7 @@ def swept(name: str, nodes: tuple[int, ...], transport: str) -> FloatArray:
     return np.array([errors(name, MODES, n, transport) for n in nodes])
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", mostly_slow(SCENES, quick=["twisted"]))
 @pytest.mark.parametrize(("transport", "order"), [("magnus4", 4), ("magnus6", 6), ("magnus8", 8)])
 def test_slope_in_the_intervals_vs_order(name: str, transport: str, order: int) -> None:
     nodes = (17, 21, 26)

@@ -13,6 +13,7 @@ from cosserat_casadi.bench import reference as module
 from cosserat_casadi.bench.reference import NoReferenceError, find_reference
 from cosserat_casadi.bench.shooting import RodState, ShootingError
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 FOLLOWER_WIND = {**WIND, "name": "jet", "frame": "body", "moment": [0.0, [0.02, 0.01], 0.03]}
@@ -34,8 +35,10 @@ PLAIN = [
     path for path in sorted((ROOT / "examples").glob("*.toml")) if not any(word in path.read_text() for word in UNKNOWN)
 ]
 
+QUICK = [path for path in PLAIN if path.stem in ("nitinol_wire", "snapping_arch", "follower_reissner")]
 
-@pytest.mark.parametrize("path", PLAIN, ids=lambda path: path.stem)
+
+@pytest.mark.parametrize("path", mostly_slow(PLAIN, quick=QUICK), ids=lambda path: path.stem)
 def test_shooting_vs_finest_discretisation(path: Path) -> None:
     found = find_reference(read_scene(path))
     assert found.method.startswith("shooting")

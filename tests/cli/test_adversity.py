@@ -16,6 +16,9 @@ from pathlib import Path
 import pytest
 
 from cosserat_casadi.cli.exit_codes import INTERRUPTED, NOT_FOUND, NOT_WRITTEN, REFUSED, TERMINATED
+from tests.families import mostly_slow
+
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 
 SCENE = """
 schema = 1
@@ -71,14 +74,11 @@ COMMANDS = {
 }
 """One call of each command, with every file that it can write."""
 
-LONG = ("bench", "inverse", "simulate", "modes")
-"""Commands that take seconds."""
+WRITING = mostly_slow([name for name in COMMANDS if name != "check"], quick=["solve", "sweep", "export"])
+"""Commands that write files: one that draws, one that goes on where it was stopped, one that writes a folder."""
 
-WRITING = [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in COMMANDS if name != "check"]
-"""Commands that write files."""
-
-UNREADY = {**os.environ, "LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-"""An environment whose terminal knows ASCII alone: Python's own ways round it are closed."""
+UNREADY = {"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+"""What makes a terminal know ASCII alone: Python's own ways round it are closed."""
 
 SMALLEST_FILE = 150
 """Bytes that fit on the full disk: less than any result."""
@@ -96,14 +96,14 @@ def folder(tmp_path: Path) -> Path:
 def start(
     arguments: list[str],
     folder: Path,
-    environment: dict[str, str] | None = None,
+    setting: dict[str, str] | None = None,
     limit: Callable[[], None] | None = None,
 ) -> subprocess.Popen[bytes]:
-    """A command on its way."""
+    """A command on its way, with this setting of variables."""
     return subprocess.Popen(
         [*PROGRAM, *arguments],
         cwd=folder,
-        env=environment,
+        env={**os.environ, **(setting or {})},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         preexec_fn=limit,
@@ -220,12 +220,16 @@ def stopped(command: str, number: signal.Signals, delay: float, folder: Path) ->
 
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+DELAYS = {"solve": 0.05, "sweep": 0.3, "export": 0.15, "simulate": 0.5}
+MOMENTS = [(command, delay, number) for command, delay in DELAYS.items() for number in SIGNALS]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks /proc what a process listens to")
-@pytest.mark.parametrize("number", SIGNALS)
-@pytest.mark.parametrize(("command", "delay"), [("solve", 0.05), ("sweep", 0.3), ("export", 0.15), ("simulate", 0.5)])
-def test_signals(folder: Path, command: str, number: signal.Signals, delay: float) -> None:
+@pytest.mark.parametrize(
+    ("command", "delay", "number"),
+    mostly_slow(MOMENTS, quick=[("solve", 0.05, signal.SIGINT), ("sweep", 0.3, signal.SIGTERM)]),
+)
+def test_signals(folder: Path, command: str, delay: float, number: signal.Signals) -> None:
     stopped(command, number, delay, folder)
 
 

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import ExportError, export
 from tests.codegen.libraries import HARNESS, QUICK, RECIPES, Exported, Recipe, run
+from tests.families import mostly_slow
 from tests.scenes import push, rod, scene
 
 Library = Callable[[str], Exported]
@@ -60,7 +61,9 @@ def test_two_libraries_in_one_program(library: Library) -> None:
     assert_allclose(tips, np.vstack([wanted_tips(one), wanted_tips(other)]), rtol=0, atol=1e-9 * one.length)
 
 
-@pytest.mark.parametrize("name", ["planar", "spatial", "pinned", "thick", "fixed", "loops"])
+@pytest.mark.parametrize(
+    "name", mostly_slow(["planar", "spatial", "pinned", "thick", "fixed", "loops"], quick=["pinned", "fixed"])
+)
 def test_float_vs_double(library: Library, name: str) -> None:
     """Rounding of 1e-7 leaves four digits and a converged status; loads are scaled about the scene's own."""
     made = library(name)

@@ -20,6 +20,9 @@ from cosserat_casadi.codegen.motion_outputs import motion_outputs
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.errors import ExportError, SceneError
 from cosserat_casadi.model.build import build
+from tests.commands import cosserat
+
+pytestmark = pytest.mark.usefixtures("quick_compiler")
 
 SCENE = """
 schema = 1
@@ -149,6 +152,18 @@ def test_same_model_gives_the_same_sources_and_description(model, fmu, tmp_path)
     for name in first.namelist():
         if not name.startswith("binaries"):
             assert first.read(name) == second.read(name), name
+
+
+def test_command_writes_the_same_sources(fmu, tmp_path):
+    (tmp_path / "finger.toml").write_text(SCENE)
+    done = cosserat("export", "finger.toml", "--fmu", "finger.fmu", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    wanted = zipfile.ZipFile(fmu)
+    written = zipfile.ZipFile(tmp_path / "finger.fmu")
+    assert written.namelist() == wanted.namelist()
+    for name in written.namelist():
+        if name.endswith((".c", ".h")):
+            assert written.read(name) == wanted.read(name), name
 
 
 def test_motion_vs_library(model, library, described, instance):

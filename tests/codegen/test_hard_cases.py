@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Outcome, Scene, solve
 from tests.codegen.libraries import Exported, Recipe
+from tests.families import mostly_slow
 from tests.scenes import push, rod, scene
 
 ExportRecipe = Callable[[str, Recipe], Exported]
@@ -56,7 +57,7 @@ CASES = {
 """Scenes with few modes, and how growing the load ends."""
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", mostly_slow(CASES, quick=["follower", "shortened", "unresolved"]))
 def test_hard_case_vs_python(export_recipe: ExportRecipe, name: str) -> None:
     recipe, outcome = CASES[name]
     made = export_recipe(f"hard_{name}", recipe)

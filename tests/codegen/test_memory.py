@@ -8,6 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.codegen.libraries import QUICK, RECIPES, Exported, run
+from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
@@ -31,7 +32,7 @@ def stated(made: Exported) -> tuple[float, float]:
     return 1000 * float(found[2]), 1000 * float(found[1])
 
 
-@pytest.mark.parametrize("name", list(RECIPES))
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons", "robot", "loops", "pinned"]))
 def test_stack_and_workspace(library: Library, name: str) -> None:
     made = library(name)
     stack, workspace = measured(made, *QUICK)
@@ -42,7 +43,7 @@ def test_stack_and_workspace(library: Library, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["tiny", "robot"])
-@pytest.mark.parametrize("optimised", ["-Os", "-O2", pytest.param("-O3", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("optimised", mostly_slow(["-Os", "-O2", "-O3"], quick=["-O2"]))
 def test_stack_of_optimised_code(library: Library, name: str, optimised: str) -> None:
     stack, _ = measured(library(name), optimised, "-fPIC")
     assert stack <= stated(library(name))[0]

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi.codegen import library as library_module
 from cosserat_casadi.codegen.library import VERBATIM
 from tests.codegen.libraries import C99, QUICK, RECIPES, Exported, gcc, run
+from tests.families import mostly_slow
 
 Library = Callable[[str], Exported]
 
@@ -29,7 +30,7 @@ FOREIGN = {"memcpy", "memset", "memmove", "__stack_chk_fail", "__cpu_model"}
 MATHS = {"sqrt", "sin", "cos", "tan", "atan2", "acos", "asin", "exp", "log", "pow", "fabs", "fmin", "fmax", "hypot"}
 
 
-@ALL
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "pinned", "fixed", "tendons", "loops", "robot"]))
 def test_hand_readable_sources_compile_without_a_warning(library: Library, name: str, tmp_path: Path) -> None:
     made = library(name)
     for stem in (name, f"{name}_demo"):
@@ -46,7 +47,7 @@ KINDS = ["planar", "fixed", "robot", "loops", "tendons"]
 
 @pytest.mark.parametrize("single", [False, True], ids=["double", "float"])
 @pytest.mark.parametrize("language", ["c99", pytest.param("c11", marks=pytest.mark.slow), "c++20"])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", mostly_slow(KINDS, quick=["fixed", "robot"]))
 def test_solver_passes_every_lint_in_both_languages(
     library: Library, name: str, language: str, single: bool, tmp_path: Path
 ) -> None:
@@ -82,7 +83,7 @@ def test_program_for_a_microcontroller(library: Library, name: str, single: bool
     run(*words, *include, tmp_path / "main.c", *objects, "--specs=nosys.specs", "-lm", "-o", tmp_path / "program")
 
 
-@ALL
+@pytest.mark.parametrize("name", mostly_slow(RECIPES, quick=["planar", "tendons", "robot"]))
 def test_shared_library_shows_the_functions_of_the_header_alone(library: Library, name: str) -> None:
     made = library(name)
     lines = run("nm", "-D", "--defined-only", made.compiled.library).splitlines()

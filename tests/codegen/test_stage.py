@@ -44,8 +44,11 @@ def somewhere(model: Model) -> tuple[np.ndarray, np.ndarray]:
     return 0.2 * random.standard_normal(model.size), model.pack() + 0.1 * random.standard_normal(model.inputs.size)
 
 
-@pytest.mark.parametrize("longest", [STRAIGHT, 0], ids=["straight", "loops"])
-@pytest.mark.parametrize("make", [wire, hand])
+@pytest.mark.parametrize(
+    ("make", "longest"),
+    [(wire, STRAIGHT), (wire, 0), (hand, STRAIGHT), pytest.param(hand, 0, marks=pytest.mark.slow)],
+    ids=["wire-straight", "wire-loops", "hand-straight", "hand-loops"],
+)
 def test_stage_vs_model(make: Callable[[], Model], longest: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stage_module, "STRAIGHT", longest)
     model = make()

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Solution, read_scene, solve_scene
 from tests.conftest import case_files
+from tests.families import mostly_slow
 from tests.initial_value import integrate
 from tests.pose_errors import angle_between, distance_between
 
@@ -63,7 +64,7 @@ def test_error_estimate_vs_true_error(path: Path) -> None:
     assert estimate <= 100 * max(true, 1e-11)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("tolerance", mostly_slow([1e-3, 1e-5, 1e-7], quick=[1e-5]))
 @pytest.mark.parametrize("path", RODS[::3], ids=lambda path: path.stem)
 def test_error_vs_tolerance_asked_for(path: Path, tolerance: float) -> None:
     solution = solve_scene(read_scene(path, (f"accuracy.tolerance={tolerance}",)))

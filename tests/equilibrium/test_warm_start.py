@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cosserat_casadi import Model, build, discretise, solve
+from tests.families import mostly_slow
 from tests.scenes import cable_lengths, three_cables
 
 TURNS = 500
@@ -24,7 +25,7 @@ def refuse(*arguments: object) -> None:
 
 
 @pytest.mark.parametrize("step", [pytest.param(2e-4, marks=pytest.mark.slow), 6e-4])
-@pytest.mark.parametrize("kind", ["unknowns", "solution"])
+@pytest.mark.parametrize("kind", mostly_slow(["unknowns", "solution"], quick=["solution"]))
 def test_cables_moved_turn_after_turn(model: Model, step: float, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     lengths = cable_lengths(step, TURNS)
     found = solve(model, model.inputs.unpack(lengths[0]))

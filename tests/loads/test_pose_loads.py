@@ -17,6 +17,7 @@ from cosserat_casadi import Model, build, discretise, solve
 from cosserat_casadi.loads.load import Load
 from cosserat_casadi.model.registry import EFFECTS, register
 from cosserat_casadi.scene.records import Record
+from tests.families import mostly_slow
 from tests.loads.kinds import (
     BedRecord,
     DipoleRecord,
@@ -113,6 +114,8 @@ def anywhere(model: Model, seed: int = 0, size: float = 0.3) -> np.ndarray:
 
 CASES = [(scene, load) for scene in SCENES for load in LOADS] + [("carried", load) for load in INNER]
 BODY_CASES = list(ON_BODY)
+DEAR = ("carried", "platform")
+QUICK = [case for case in CASES if case[0] not in DEAR or case[1] in ("bed", "dipole", "inner spring")]
 
 
 def assert_jacobian_is_exact(model: Model) -> None:
@@ -127,7 +130,7 @@ def assert_jacobian_is_exact(model: Model) -> None:
         assert_allclose(on_the_way, automatic(point, model.pack(), 0.6).full(), rtol=0, atol=bound)
 
 
-@pytest.mark.parametrize(("scene", "load"), CASES)
+@pytest.mark.parametrize(("scene", "load"), mostly_slow(CASES, quick=QUICK))
 def test_jacobian_vs_automatic_differentiation(scene: str, load: str) -> None:
     assert_jacobian_is_exact(made(scene, load))
 

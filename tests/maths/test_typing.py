@@ -64,7 +64,7 @@ def complaints(tmp_path_factory):
     folder = tmp_path_factory.mktemp("snippets")
     file = folder / "snippets.py"
     file.write_text("\n".join([*head, *SNIPPETS]) + "\n")
-    options = ["--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", str(folder / "cache"), str(file)]
+    options = ["--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", str(ROOT / ".mypy_cache"), str(file)]
     command = [sys.executable, "-m", "mypy", "--no-error-summary", "--hide-error-context", *options]
     environment = {**os.environ, "MYPYPATH": str(ROOT)}
     output = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False, env=environment).stdout

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import Model, build, read_scene, scene_from_dict
 from cosserat_casadi.model.floating_frames import FrameName
 from tests.conftest import ROOT
+from tests.families import mostly_slow
 from tests.moving_scenes import (
     FAMILIES,
     PLATE,
@@ -28,7 +29,17 @@ from tests.moving_scenes import (
 )
 from tests.reference.random_scenes import random_scene
 
-EVERY = pytest.mark.parametrize("family", FAMILIES)
+QUICK = (
+    "planar",
+    "reissner",
+    "two elements",
+    "revolute joint",
+    "carried",
+    "free with body",
+    "slack",
+    "driven and held",
+)
+EVERY = pytest.mark.parametrize("family", mostly_slow(FAMILIES, quick=QUICK))
 COARSE = {"modes": 3, "nodes": 7}
 LIVELY = ("linear_density", "rotary_inertia", "damping")
 

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from cosserat_casadi import Discretisation, Model, Scene, build, discretise, solve
 from cosserat_casadi.maths.rotation import quaternion_from_tangent
+from tests.families import mostly_slow
 from tests.scenes import HOOK, WEIGHT, WIND, push, rod, scene
 
 LOADS = {
@@ -226,7 +227,7 @@ def test_work_of_the_push_is_what_the_rod_stores() -> None:
     assert_allclose(lengths[-1] - lengths[0] - stored[-1], complementary, rtol=1e-6, atol=0)
 
 
-@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("load", mostly_slow(LOADS, quick=[load for load in LOADS if load != "hook_follower"]))
 def test_all_derivatives_are_finite_at_the_straight_unloaded_rod(load: str) -> None:
     model = coarse(scene(LOADS[load], strain="reissner"))
     symbols = model.residual.mx_in()

@@ -22,6 +22,7 @@ from cosserat_casadi import (
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.scene.loads import LoadRecord
+from tests.families import mostly_slow
 from tests.loads.kinds import BedRecord, DipoleRecord, registered, with_loads
 from tests.scenes import WEIGHT, push
 
@@ -360,6 +361,40 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 }
 
 
+EACH_KIND = (
+    "moduli",
+    "density",
+    "rectangle",
+    "inertia",
+    "retardation",
+    "curvature",
+    "base",
+    "length",
+    "loads",
+    "offsets",
+    "places of loads",
+    "a stream",
+    "bodies",
+)
+"""One case of what parameters can belong to: rods, loads, actuators, bodies."""
+
+MORE = (
+    "radii",
+    "stiffness",
+    "damping",
+    "one coefficient",
+    "helix",
+    "chamber",
+    "axes of hinges and slides",
+    "spans of tendons and chambers",
+    "place of a carried rod",
+    "a magnetised rod",
+    "a foundation along a curve",
+    "elastic cables",
+)
+"""Cases that are told apart only where values are not the defaults."""
+
+
 def scene_of(case: str) -> Scene:
     given, values = CASES[case]
     return scene_from_dict({**given, "parameters": list(values)})
@@ -383,7 +418,7 @@ def point(model: Model) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray,
     return x, v, a, inputs, np.zeros(model.inputs.size)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", mostly_slow(CASES, quick=EACH_KIND))
 def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
     model = model_of(case)
     baked = build(scene_of(case).baked(), model.discretisation, moving=True)
@@ -403,7 +438,7 @@ def test_at_the_defaults_it_is_the_model_of_the_scene(case: str) -> None:
         assert_allclose(found.full(), wanted_entries, rtol=1e-13, atol=1e-14 * np.abs(wanted_entries).max())
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", mostly_slow(CASES, quick=[*EACH_KIND, *MORE]))
 def test_elsewhere_it_is_the_model_with_these_numbers(case: str) -> None:
     """The bound model computes with plain numbers: none of its constants is an expression."""
     model = model_of(case)

@@ -13,6 +13,7 @@ from cosserat_casadi.motion.history import History, equations_of
 from cosserat_casadi.motion.simulate import Simulator, started
 from cosserat_casadi.numerics.integration import StepOutcome
 from cosserat_casadi.numerics.step import stages_of
+from tests.families import mostly_slow
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -38,10 +39,10 @@ def largest_residual(history: History) -> float:
     return largest
 
 
-@pytest.mark.parametrize(
-    ("example", "integrator"),
-    [("tendon_robot_move", "radau"), ("tendon_robot_move", "gauss"), ("thrown_rod", "radau"), ("thrown_rod", "gauss")],
-)
+RUNS = [(example, integrator) for example in ("tendon_robot_move", "thrown_rod") for integrator in ("radau", "gauss")]
+
+
+@pytest.mark.parametrize(("example", "integrator"), mostly_slow(RUNS, quick=[RUNS[0], RUNS[3]]))
 def test_every_given_step_is_solved(example: str, integrator: str) -> None:
     history = in_given_steps(example, 0.03, 0.21, integrator)
     assert history.outcome is StepOutcome.COMPLETED

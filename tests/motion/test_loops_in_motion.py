@@ -20,6 +20,7 @@ from cosserat_casadi.numerics.integration import Integration, StepOutcome, StepS
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.time_steps import integrate
 from tests import moving_scenes
+from tests.families import mostly_slow
 from tests.motion.stepping import moving_model, orders, stepped
 from tests.moving_scenes import constrained_rows
 
@@ -28,6 +29,7 @@ CLOSED = 1e-10
 
 HELD = ["clamped tip", "pinned tip", "carried", "given length", "free with body", "driven and held"]
 JOINTS = [f"{kind} joint" for kind in ("fixed", "spherical", "revolute", "prismatic")]
+QUICK = ["pinned tip", "given length", "driven and held", "revolute joint"]
 
 SWAY = {"amplitude": [0.3, 2.0, 1.0], "frequency": 1.5, "wave": "one_minus_cosine"}
 SHAKE = {"amplitude": [0.03, 0.02, -0.02], "frequency": 1.5, "wave": "one_minus_cosine"}
@@ -68,7 +70,7 @@ def rows_of(model: Model) -> FloatArray:
     return np.flatnonzero(rows)
 
 
-@pytest.mark.parametrize("family", [*HELD, *JOINTS])
+@pytest.mark.parametrize("family", mostly_slow([*HELD, *JOINTS], quick=QUICK))
 def test_constraints_stay_closed(family: str) -> None:
     """At every time, not only at the ends of steps."""
     motion = simulated(family)

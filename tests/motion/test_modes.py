@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from cosserat_casadi import SceneError, build, discretise, scene_from_dict, solve
 from cosserat_casadi.motion.eigenproblem import eigenpairs
 from cosserat_casadi.motion.modes import ModesOutcome, modes_of, modes_of_scene, small_motions
+from tests.families import mostly_slow
 
 CANTILEVER = [3.5160152685002, 22.034491564667, 61.697214413549, 120.90191605231, 199.8595301168]
 FREE_FREE = [22.373285448061, 61.67282286792, 120.90339172712, 199.8594481272]
@@ -99,7 +100,10 @@ UNLOADED = {
 }
 
 
-@pytest.mark.parametrize("name", UNLOADED)
+@pytest.mark.parametrize(
+    "name",
+    mostly_slow(UNLOADED, quick=["cantilever", "pinned", "axial", "torsion", "rotary", "shear", "quarter", "helix 1"]),
+)
 def test_unloaded_rods(name):
     described, expected, tolerance = UNLOADED[name]
     assert_allclose(frequencies(described, len(expected)), expected, rtol=tolerance, atol=0)
@@ -138,7 +142,7 @@ SAGGED = {
 }
 
 
-@pytest.mark.parametrize("load", [load for load in COLUMN if load < 0.99])
+@pytest.mark.parametrize("load", mostly_slow([load for load in COLUMN if load < 0.99], quick=[0.75]))
 def test_dead_thrust(load):
     described = scene(rod(), thrust(load * np.pi**2 / 4))
     assert_allclose(frequencies(described, 2), COLUMN[load], rtol=1e-9, atol=0)
@@ -163,7 +167,7 @@ def test_at_and_beyond_the_buckling_load():
     assert "Statically unstable: one motion grows" in beyond.message
 
 
-@pytest.mark.parametrize("load", BECK)
+@pytest.mark.parametrize("load", mostly_slow(BECK, quick=[15.0]))
 def test_follower_thrust(load):
     described = scene(rod(), thrust(load, "body"))
     modes = modes_of_scene(described, count=2)
@@ -182,8 +186,12 @@ def test_flutter():
     assert_allclose(beyond.eigenvalues[1], -beyond.eigenvalues[0].conjugate(), rtol=1e-9, atol=0)
 
 
-@pytest.mark.parametrize(("time", "critical"), [(1e-5, 10.938849375), (1e-3, 10.939121997), (1e-2, 10.966111661)])
-def test_damping_lowers_the_flutter_load(time, critical):
+DAMPED_FLUTTER = {1e-5: 10.938849375, 1e-3: 10.939121997, 1e-2: 10.966111661}
+
+
+@pytest.mark.parametrize("time", mostly_slow(DAMPED_FLUTTER, quick=[1e-3]))
+def test_damping_lowers_the_flutter_load(time):
+    critical = DAMPED_FLUTTER[time]
     growth = []
     for load in (critical - 1e-5, critical + 1e-5):
         described = scene(rod(damping={"retardation_time": time}), thrust(load, "body"), accuracy={"modes": 10})
@@ -195,13 +203,13 @@ def test_damping_lowers_the_flutter_load(time, critical):
     assert_allclose(crossing, critical, rtol=0, atol=2e-8)
 
 
-@pytest.mark.parametrize("load", OWN_WEIGHT)
+@pytest.mark.parametrize("load", mostly_slow(OWN_WEIGHT, quick=[-7.0, 10.0]))
 def test_standing_and_hanging(load):
     expected = OWN_WEIGHT[load]
     assert_allclose(frequencies(scene(rod(), weight(0.0, 0.0, load)), len(expected)), expected, rtol=1e-8, atol=0)
 
 
-@pytest.mark.parametrize("load", SAGGED)
+@pytest.mark.parametrize("load", mostly_slow(SAGGED, quick=[20.0]))
 def test_bent_by_its_own_weight(load):
     tip, expected = SAGGED[load]
     described = scene(rod(base={"tangent": [1.0, 0.0, 0.0]}), weight(0.0, 0.0, -load))

@@ -17,6 +17,7 @@ from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.plots.colours import rod_colour
 from cosserat_casadi.plots.motion_plot import SHAPES, plot_motion, save_motion_plot, shown_rows
 from cosserat_casadi.plots.moving_shapes import SECTIONS, moving_shapes
+from tests.families import mostly_slow
 from tests.motions import motion_of, planar_swing, swinging_rod, two_rods_on_a_platform, without_start
 from tests.scenes import push, rod, scene
 
@@ -189,7 +190,7 @@ def test_colours_and_strokes_tell_many_curves_apart() -> None:
     assert len(lines) == len(styles) == 12
 
 
-@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+@pytest.mark.parametrize("suffix", mostly_slow(["png", "pdf", "svg"], quick=["svg"]))
 def test_files_are_the_same_every_time(platform: Motion, tmp_path: Path, suffix: str) -> None:
     first = tmp_path / f"a.{suffix}"
     second = tmp_path / f"b.{suffix}"
