@@ -48,6 +48,8 @@ class Path:
         tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
         step_weights: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
         first_step: longest first step in t.
+        admits: (x before, x after) ↦ whether a step may lead from one to the other; None where any may. What is refused
+            is tried with half the step.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
@@ -57,6 +59,7 @@ class Path:
     tangent: FloatArray | None = None
     step_weights: FloatArray | None = None
     first_step: float = 1.0
+    admits: Callable[[FloatArray, FloatArray], bool] | None = None
 
     def length(self, change: FloatArray) -> float:
         """Weighted 2-norm of a change of x, shape (n,)."""
@@ -196,6 +199,9 @@ def follow(
         trial = newton(path.at(target), current.x + predicted, limits.correction(target))
         iterations += trial.iterations
         if not _corrector_accepted(path, trial, current.x, predicted):
+            step /= 2
+            continue
+        if path.admits is not None and not path.admits(current.x, trial.x):
             step /= 2
             continue
 

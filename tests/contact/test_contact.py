@@ -20,6 +20,7 @@ from cosserat_casadi import (
     discretise,
     export,
     export_page,
+    follow_path,
     inverse,
     inverse_scene,
     linearise,
@@ -39,7 +40,6 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result
-from cosserat_casadi.view.session import opened
 from tests.conftest import CASES
 
 EFFECTS = CASES / "effects"
@@ -263,7 +263,6 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
         lambda: export(model, tmp_path / "folder", "folder"),
         lambda: acados_expressions(model, "rod"),
         lambda: export_page(table, tmp_path / "page.html"),
-        lambda: opened(table),
         lambda: stability_margin(model),
         lambda: embedded(model, table),
         lambda: make_plan(scene, None, None, None, quick=True),
@@ -333,6 +332,40 @@ def test_heavy_tapered_rod_on_a_table() -> None:
     check_complementary(tapered, 1e-8)
     volume = np.pi * 1.2 * (9e-3**2 + 9e-3 * 5e-3 + 5e-3**2) / 3
     check_forces_sum(tapered, np.array([0.0, 0.0, -1100.0 * 9.81 * volume]))
+
+
+@pytest.mark.parametrize("radius", [0.02, pytest.param(0.008, marks=pytest.mark.slow)])
+def test_under_growing_loads_no_rod_passes_through_a_thin_bar(radius: float) -> None:
+    """It comes to rest where the path of the push, which watches every margin, brings it."""
+    bar = f"""
+[[obstacles]]
+name = "bar"
+kind = "capsule"
+from = [0.8, -0.5, {-0.13 - radius}]
+to = [0.8, 0.5, {-0.13 - radius}]
+radius = {radius}
+"""
+    rod = """
+schema = 1
+accuracy = { modes = 4 }
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_x = 0.5, bending_y = 0.5, torsion = 0.4 }
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -1.0]
+"""
+    held = solve(build(parse_scene(rod + bar)))
+    (contact,) = held.contacts
+    assert held.stable
+    followed = follow_path(build(parse_scene(rod + bar)), "push.force", [0.0, 0.0, -1.0])
+    assert_allclose(held.tip().position, followed.tip().position[-1:], rtol=0, atol=1e-8)
+    assert_allclose(contact.start, followed.contacts(-1)[0].start, rtol=0, atol=1e-8)
 
 
 def test_from_a_solution_no_rod_passes_through_a_bar() -> None:

@@ -464,6 +464,15 @@ def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
     assert "smooth plane" in checked.stdout
 
 
+def test_bodies_have_no_exact_contact() -> None:
+    """Without its bodies the table would hold off the rod, which it does not concern."""
+    body = '[[bodies]]\nname = "ball"\nradius = 0.02\n'
+    weld = '[[joints]]\nname = "weld"\nkind = "fixed"\nrod = "rod"\nbody = "ball"\n'
+    scene = parse_scene(ROD + PUSH + body + weld + TABLE + 'bodies = ["ball"]\n')
+    with pytest.raises(SceneError, match=r"obstacles\[0\].bodies: exact contact of bodies is not found"):
+        with_exact_contact(scene)
+
+
 LUMEN = 'name = "it"\nkind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2]]\nradius = 0.01\nrods = ["rod"]\n'
 
 REFUSED = {

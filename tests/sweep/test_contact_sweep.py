@@ -10,11 +10,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from cosserat_casadi import build, parse_scene, solve, sweep_scene, tune
+from cosserat_casadi.codegen.rows import row_library, row_results
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.sweep.arguments import COMPILED_FROM
 from cosserat_casadi.sweep.outcome_file import read_sweep
 from cosserat_casadi.sweep.outcome_table import LABELS
-from cosserat_casadi.sweep.row_model import RowModel
+from cosserat_casadi.sweep.row_model import RowModel, result_row
 from cosserat_casadi.sweep.table import table_of
 from cosserat_casadi.sweep.variants import variants_of
 from cosserat_casadi.sweep.work import chunks
@@ -53,6 +54,22 @@ def test_rows_with_obstacles_are_not_compiled() -> None:
     assert not any(chunk.compiled for chunk in chunks(variants))
     inputs_alone = variants_of(scene, table_of({"push.force.z": many}))
     assert not any(chunk.compiled for chunk in chunks(inputs_alone))
+
+
+@pytest.mark.usefixtures("quick_compiler")
+def test_compiled_rows_of_smooth_contact_are_those_of_python() -> None:
+    """The same columns, and in them the same numbers: none for contact, and stability in its own."""
+    text = SCENE.replace("modes = 4", "modes = 2, nodes = 6") if "modes = 4, " in SCENE else SCENE
+    scene = parse_scene(text + "width = 0.02\n")
+    model = build(scene)
+    columns = row_results(scene, stability=True)
+    assert not any(".bar." in column for column in columns)
+    solution = solve(model)
+    assert solution.contacts
+    (row,) = row_library(model, stability=True).solve(solution.inputs[None])
+    expected = result_row(solution, len(columns), stability=True)
+    # Iterations and residuals are those of another solver.
+    assert_allclose(row[3:], expected[3:], rtol=1e-7, atol=1e-9)
 
 
 def test_a_row_starts_from_the_row_before(monkeypatch: pytest.MonkeyPatch) -> None:

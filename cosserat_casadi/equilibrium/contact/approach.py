@@ -8,12 +8,14 @@ of it on the way.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.barriers import Barriers
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
@@ -24,7 +26,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.rods import rod_properties
-from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, follow
+from cosserat_casadi.numerics.continuation import ContinuationResult, ContinuationSettings, Path, follow
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.rod.discretisation import Discretisation
 
@@ -45,6 +47,18 @@ SHALLOW = 0.01
 
 LONG = 0.2
 """Stretch of pressure from which a line of contact is tried before a point."""
+
+THIN_FORCE = 37.0
+"""Stiffness of the cushion of a thin bar times the cube of its radius, in units of EI/ℓ⁵ and ℓ.
+
+A rod across it that has sunk in by half the radius is pressed over two radii, and with ten times EI/ℓ².
+"""
+
+MOST_ELEMENTS = 20
+"""Most elements of a rod beside a thin bar, which must not lie between two nodes."""
+
+HARDER = 10.0
+"""Factor on the stiffness of cushions through which a rod would be pushed."""
 
 MOST_STIFFENINGS = 3
 """Times that cushions are made stiffer where rods sink in deeper."""
@@ -88,16 +102,22 @@ class Pressure:
         return Touch.point(self.obstacle, self.rod, place)
 
 
-def cushioned(scene: scenes.Scene) -> Model:
-    """The scene with cushions for obstacles, on coarse elements."""
+def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
+    """The scene with cushions for obstacles, on coarse elements.
+
+    Args:
+        scene: without contacts.
+        factor: on the stiffness of the cushions.
+    """
     cushions: list[Penetration] = []
     for rod in scene.rods:
         for obstacle in scene.obstacles:
             if obstacle.concerns(rod.name):
                 name = f"cushion {len(cushions) + 1}"
+                stiffness = _unit(scene, rod.name) * max(STIFFNESS, THIN_FORCE * _thinness(obstacle, rod) ** 3)
                 cushions.append(
                     Penetration.model_construct(
-                        name=name, rod=rod.name, obstacle=obstacle, stiffness=_unit(scene, rod.name) * STIFFNESS
+                        name=name, rod=rod.name, obstacle=obstacle, stiffness=stiffness * factor
                     )
                 )
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
@@ -108,10 +128,20 @@ def cushioned(scene: scenes.Scene) -> Model:
     for rod in scene.rods:
         own = element_ends(scene, rod.name)
         # None as short as the distance of an end of the loads from one of ours may be.
-        further = [end for end in np.linspace(0.0, 1.0, ELEMENTS + 1) if np.abs(end - own).min() > 0.2 / ELEMENTS]
+        thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
+        # Nodes are no farther apart than the thinnest bar is thick.
+        elements = min(max(ELEMENTS, ceil(thinnest / (2 * NODES))), MOST_ELEMENTS)
+        further = [end for end in np.linspace(0.0, 1.0, elements + 1) if np.abs(end - own).min() > 0.2 / elements]
         modes = (MODES,) * len(rod.admitted)
         discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
     return build(soft, discretisation)
+
+
+def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
+    """Length of a rod over the radius of a bar or ball that it must not enter; 0 for what has no other side."""
+    if not obstacle.concerns(rod.name):
+        return 0.0
+    return 2 * rod.length / obstacle.thickness
 
 
 def _unit(scene: scenes.Scene, rod: str) -> float:
@@ -129,14 +159,24 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         values: inputs by name.
         progress: told the share of the load path that is done.
     """
-    model = cushioned(scene)
     settings = ContinuationSettings(longest=LONGEST_STEP)
-    end = follow(load_path(model, model.pack(values)), settings, progress)
-    inputs = model.pack(values)
-    found = _judged(model, inputs, end)
+    found = _under_growing_loads(cushioned(scene), values, settings, progress)
+    factor = HARDER
+    while (
+        not found.converged
+        and Barriers(found.model, found.inputs).give_way(found.x)
+        and factor <= HARDER**MOST_STIFFENINGS
+    ):
+        # The cushion of a thin bar has given way: a harder one holds.
+        found = _under_growing_loads(cushioned(scene, factor), values, settings, progress)
+        factor *= HARDER
+    model = found.model
+    inputs = found.inputs
     if not found.converged and can_relax(model) and model.has_potential(inputs):
         # The rod snaps on the way: it is let settle to less energy where the path ended.
         settled = relaxed(found, settings.newton, progress)
+        if settled is not None and Barriers(model, inputs).are_between(found.x, settled.x):
+            settled = None
         found = found if settled is None else settled
     stiffening = 0
     while found.converged and depth(found) > SHALLOW and stiffening < MOST_STIFFENINGS:
@@ -146,11 +186,28 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         for entry, span in model.inputs:
             if entry.owner.startswith("cushion "):
                 stiffer[span] *= factor
-        end = follow(input_path(model, found.x, inputs, stiffer), settings, None)
+        end = follow(_guarded(model, inputs, input_path(model, found.x, inputs, stiffer)), settings, None)
         found = _judged(model, stiffer, end)
         inputs = stiffer
         stiffening += 1
     return found
+
+
+def _under_growing_loads(
+    model: Model, values: Values, settings: ContinuationSettings, progress: Progress | None
+) -> Solution:
+    """The end of the load path on cushions, on which no rod comes out on the other side of a bar or ball."""
+    inputs = model.pack(values)
+    end = follow(_guarded(model, inputs, load_path(model, inputs)), settings, progress)
+    return _judged(model, inputs, end)
+
+
+def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
+    """A path without steps through bars and balls."""
+    barriers = Barriers(model, inputs)
+    if not barriers.watched:
+        return path
+    return replace(path, admits=lambda before, after: not barriers.are_between(before, after))
 
 
 def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:

@@ -40,7 +40,11 @@ def passes_through(before: Solution, after: Solution) -> bool:
 
 
 def is_inside_between(
-    obstacle: scenes.ObstacleRecord, properties: RodProperties, start: FloatArray, end: FloatArray
+    obstacle: scenes.ObstacleRecord,
+    properties: RodProperties,
+    start: FloatArray,
+    end: FloatArray,
+    deepest: float = DEEP,
 ) -> bool:
     """Whether a section of a rod is inside an obstacle on the straight way from its positions to others.
 
@@ -49,6 +53,7 @@ def is_inside_between(
         properties: of the rod.
         start: positions at the abscissae SECTIONS, shape (k, 3), m.
         end: others, likewise.
+        deepest: depth on the way, relative to the length of the rod, up to which it is not inside.
     """
     gaps_at_start = _gaps(obstacle, properties, start, SECTIONS)
     gaps_at_end = _gaps(obstacle, properties, end, SECTIONS)
@@ -62,7 +67,7 @@ def is_inside_between(
     positions = start[doubtful] + shares * (end - start)[doubtful]
     X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
     gaps = _gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
-    return bool(gaps.min() < -DEEP * properties.length)
+    return bool(gaps.min() < -deepest * properties.length)
 
 
 def _gaps(

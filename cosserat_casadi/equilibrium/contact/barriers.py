@@ -1,0 +1,87 @@
+"""Bars and balls that rods must not come out of on the other side while contact is looked for on soft cushions.
+
+A cushion does not hold in its middle: a rod that is pushed, or jumps, beyond it is outside again, in an equilibrium
+that it cannot have come to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs
+from cosserat_casadi.equilibrium.contact.passage import SECTIONS, is_inside_between
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.numerics.outcome import Outcome
+
+MIDDLE = 0.7
+"""Share of the radius of a bar or ball to which a rod may sink in: deeper it would come out on the other side."""
+
+
+@dataclass(frozen=True)
+class Barriers:
+    """The bars and balls that the unloaded rods of a model are outside of.
+
+    Attributes:
+        model: of a scene with obstacles.
+        inputs: stacked inputs, shape (model.inputs.size,).
+    """
+
+    model: Model
+    inputs: FloatArray
+
+    @cached_property
+    def watched(self) -> list[tuple[str, scenes.ObstacleRecord]]:
+        """Rods with what they must not pass through; a rod that begins inside is pushed out to either side."""
+        unloaded = self._shape(self.model.unloaded())
+        return [
+            (rod, obstacle)
+            for rod, obstacle in pairs(self.model.scene)
+            if isfinite(obstacle.thickness) and gap_along(unloaded, rod, obstacle, DENSE).min() >= 0.0
+        ]
+
+    def are_between(self, before: FloatArray, after: FloatArray) -> bool:
+        """Whether a rod comes near the middle of one on the straight way between two shapes, given by unknowns."""
+        if not self.watched:
+            return False
+        for rod, obstacle in self.watched:
+            properties = self.model.discrete.rods[rod].properties
+            start = self._positions(rod, before)
+            end = self._positions(rod, after)
+            if is_inside_between(obstacle, properties, start, end, self._deepest(rod, obstacle)):
+                return True
+        return False
+
+    def give_way(self, x: FloatArray) -> bool:
+        """Whether a rod has sunk into one by more than half of what is admitted."""
+        shape = self._shape(x)
+        return any(
+            gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2
+            for rod, obstacle in self.watched
+        )
+
+    @cached_property
+    def _interpolation(self) -> dict[str, FloatArray]:
+        """For each rod that is watched what takes values at its nodes to the sections that are looked at."""
+        rods = self.model.discrete.rods
+        return {rod: rods[rod].grid.interpolation_matrix(SECTIONS) for rod, _ in self.watched}
+
+    def _positions(self, rod: str, x: FloatArray) -> FloatArray:
+        """Positions of the sections that are looked at, shape (k, 3), m."""
+        at_nodes = self.model.fields[rod](x, self.inputs)[0].full()
+        return np.asarray(self._interpolation[rod] @ at_nodes.T)
+
+    def _deepest(self, rod: str, obstacle: scenes.ObstacleRecord) -> float:
+        """Depth that is admitted, relative to the length of the rod."""
+        radius = obstacle.thickness / 2
+        return MIDDLE * radius / self.model.discrete.rods[rod].properties.length
+
+    def _shape(self, x: FloatArray) -> Solution:
+        """The rods at some unknowns, which need not be in equilibrium."""
+        return Solution(self.model, self.inputs, x, Outcome.CONVERGED, "", residual_norm=0.0, iterations=0)
