@@ -187,10 +187,9 @@ class Task:
             kept = [i for i in range(len(cases)) if i not in spoilt]
             if not kept:
                 return None, missing
-            size = misfit.motions.size
+            # Steps were halved as long as some motion could not be computed: the others may take longer ones.
             misfit = self._misfit([cases[i] for i in kept])
-            misfit.motions.size = size
-            state = misfit.first(_chosen(point, kept), shared, own[kept])
+            state = with_steps(misfit, misfit.first(_chosen(point, kept), shared, own[kept]))
         return _Started(misfit, state, missing), missing
 
     def _misfit(self, cases: Sequence[Case]) -> Misfit:

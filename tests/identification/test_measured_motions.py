@@ -187,6 +187,19 @@ def test_times_beyond_the_simulation_are_refused(model: Model) -> None:
     assert len(refusal.value.problems) == 2
 
 
+def test_times_that_rounding_puts_beyond_the_simulation_are_its_ends(model: Model) -> None:
+    columns = {"t": np.array([-1e-17, 0.1, np.nextafter(0.5, 1.0)]), "x": np.zeros(3), "z": np.zeros(3)}
+    (case,) = read_cases(model.scene, model.inputs, {"path.csv": columns})
+    assert [datum.time for datum in case.data[0]] == [0.0, 0.1, 0.5]
+
+
+def test_a_cell_is_told_once_and_every_cell_is(model: Model) -> None:
+    columns = {"t": np.array(["0.1", "soon", ""]), "x": np.zeros(3), "z": np.zeros(3)}
+    with pytest.raises(SceneError) as refusal:
+        identify(model, {"path.csv": columns})
+    assert [problem.where for problem in refusal.value.problems] == ["path.csv, line 2", "path.csv, line 3"]
+
+
 def test_free_bases_are_refused(path: dict[str, FloatArray]) -> None:
     rod = {**CANTILEVER["rods"][0], "base": {"free": True}}
     with pytest.raises(SceneError, match="is not for measurements over time"):
