@@ -28,6 +28,9 @@ Flags = npt.NDArray[np.bool_]
 Data = Mapping[str, Mapping[str, npt.ArrayLike]]
 """Columns by measurement, by its name or its file."""
 
+SAME_TIME = 1e-9
+"""Distance of a time from the motion, over the duration, that is rounding of a column's scale and shift."""
+
 
 @dataclass(frozen=True)
 class Datum:
@@ -251,8 +254,11 @@ class _Reader:
             return np.full(len(rows), np.nan if place is None else place)
         values, problems = self.table.numbers(place, rows)
         self.problems += problems
+        told = {problem.where for problem in problems}
         of_modes = hasattr(self.measurement, "mode")
         for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if self.table.where(row) in told:
+                continue
             fits = 0.0 <= value <= 1.0
             what = "an abscissa from 0 to 1"
             remedy = "divide the distance along the rod by its length"
@@ -271,11 +277,18 @@ class _Reader:
         if time is None:
             return np.full(len(rows), np.nan)
         values = np.full(len(rows), time.shift)
+        problems: list[Problem] = []
         if time.column is not None:
             numbers, problems = self.table.numbers(time.column, rows)
             self.problems += problems
             values = values + time.scale * numbers
+        told = {problem.where for problem in problems}
+        # Scale and shift round: 700 ms are 0.7000000000000001 s.
+        within = np.clip(values, 0.0, self.duration)
+        values = np.where(np.abs(values - within) <= SAME_TIME * self.duration, within, values)
         for row, value, is_measured in zip(rows, values, measured, strict=True):
+            if self.table.where(row) in told:
+                continue
             if is_measured and not 0.0 <= value <= self.duration:
                 got = "an empty cell" if np.isnan(value) else f"{value:g} s"
                 problem = f"the time must be from 0 to the duration of the simulation, {self.duration:g} s, got {got}"
@@ -297,9 +310,10 @@ class _Reader:
             if entry.column is not None:
                 numbers, problems = self.table.numbers(entry.column, rows)
                 self.problems += problems
+                told = {problem.where for problem in problems}
                 column = column + entry.scale * numbers
                 for row, number, is_measured in zip(rows, numbers, measured, strict=True):
-                    if is_measured and np.isnan(number) and not problems:
+                    if is_measured and np.isnan(number) and self.table.where(row) not in told:
                         problem = f"{entry.column} is empty, but sets {name}"
                         self.problems.append(Problem(self.table.where(row), problem, "give it, or leave the row out"))
             values[indices[name]] = column

@@ -42,8 +42,11 @@ NOT_FOLLOWED = "Its equilibrium could not be followed to where the search begins
 NEAREST = 0.05
 """Share of the way to a start at which it is given up, and the search begins where the first one does."""
 
-NOT_FINITE = "A mode that was measured does not swing there, or the steps of its motion cannot be solved."
+NOT_SWINGING = "A mode that was measured does not swing there."
 """Why a case takes no part although it has an equilibrium."""
+
+NOT_MOVING = "The steps of its motion cannot be solved there."
+"""Why a motion takes no part."""
 
 MOST_RETRIES = 3
 """Times that cases which took no part are tried again at what was found."""
@@ -183,14 +186,15 @@ class Task:
         state = with_steps(misfit, misfit.first(point, shared, own))
         spoilt = set(misfit.row_cases[~np.isfinite(state.residual)].tolist())
         if spoilt:
-            missing = [*missing, *(_Missing(cases[i], NOT_FINITE) for i in sorted(spoilt))]
+            for i in sorted(spoilt):
+                reason = NOT_MOVING if cases[i].moves else NOT_SWINGING
+                missing.append(_Missing(cases[i], reason))
             kept = [i for i in range(len(cases)) if i not in spoilt]
             if not kept:
                 return None, missing
-            size = misfit.motions.size
+            # Steps were halved as long as some motion could not be computed: the others may take longer ones.
             misfit = self._misfit([cases[i] for i in kept])
-            misfit.motions.size = size
-            state = misfit.first(_chosen(point, kept), shared, own[kept])
+            state = with_steps(misfit, misfit.first(_chosen(point, kept), shared, own[kept]))
         return _Started(misfit, state, missing), missing
 
     def _misfit(self, cases: Sequence[Case]) -> Misfit:

@@ -67,10 +67,11 @@ def equations_of(
     if frames is None:
         return MotionEquations(model.discrete.unknowns.differential, residual, jacobians)
 
-    def mean_frame(t: float, x: FloatArray) -> MeanFrame:
-        return frames.at(x, piece.at(t).value)
+    def mean_frames(times: FloatArray, x: FloatArray) -> list[MeanFrame]:
+        middle = float(times[len(times) // 2])
+        return frames.along(x, piece.at(middle).value)
 
-    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, mean_frame=mean_frame)
+    return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, mean_frames=mean_frames)
 
 
 @dataclass(frozen=True)

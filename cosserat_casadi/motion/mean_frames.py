@@ -32,11 +32,36 @@ class MeanFrames:
 
     def at(self, x: FloatArray, inputs: FloatArray) -> MeanFrame:
         """The mean frame at unknowns of shape (size,) and stacked inputs."""
+        (frame,) = self.along(x[None], inputs)
+        return frame
+
+    def along(self, x: FloatArray, inputs: FloatArray) -> list[MeanFrame]:
+        """The mean frames at instants so near to each other that the shape is about that of the middle one.
+
+        In the axes of the base the share of a shape in the mean motion depends on the shape alone.
+
+        Args:
+            x: unknowns, shape (k, size).
+            inputs: stacked inputs at the middle instant.
+        """
+        middle = x[len(x) // 2]
+        turn = self._turn(middle[self._poses])
+        share = turn @ self._share(middle, inputs)
+        frames = []
+        for unknowns in x:
+            turn = self._turn(unknowns[self._poses])
+            frames.append(MeanFrame(self._poses, turn, turn.T @ share))
+        return frames
+
+    def _share(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """What the rates of the strains are in the mean motion, shape (7, size); not finite where momentum is not."""
         rows = self._rows(x, inputs).reshape(-1, MOMENTA).T
+        if not np.all(np.isfinite(rows)):
+            return np.full((len(self._poses), len(x)), np.nan)
         # The least rates: none along the norm of the quaternion, which no momentum belongs to.
         share = np.linalg.pinv(rows[:, self._poses]) @ rows
         share[:, self._poses] = 0.0
-        return MeanFrame(self._poses, self._turn(x[self._poses]), share)
+        return np.asarray(share)
 
     def _turn(self, deviation: FloatArray) -> FloatArray:
         """From world axes to those of the base, and from rates of its quaternion to spins about them, shape (7, 7)."""

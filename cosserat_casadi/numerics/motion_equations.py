@@ -6,7 +6,7 @@ F(t, x, v, a) = 0 with v = dx/dt and a = d²x/dt² for the differential entries 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,14 +64,15 @@ class MotionEquations:
         jacobians: (t, x, v, a) ↦ ∂F/∂x, ∂F/∂v, ∂F/∂a, each of shape (n, n).
         residuals: F at s instants at once, (t (s,), x (s, n), v (s, n), a (s, n)) ↦ (s, n); None where one at a time
             is as quick.
-        mean_frame: (t, x) ↦ the mean frame of what flies free; None where nothing does.
+        mean_frames: (t (k,), x (k, n)) ↦ the mean frames of what flies free at k instants of a step; None where nothing
+            does.
     """
 
     differential: npt.NDArray[np.bool_]
     residual: Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
-    mean_frame: Callable[[float, FloatArray], MeanFrame] | None = None
+    mean_frames: Callable[[FloatArray, FloatArray], Sequence[MeanFrame]] | None = None
 
     @property
     def size(self) -> int:

@@ -154,8 +154,8 @@ class StepRun:
             middle = self._middle(guess)
             linearisation = self.equations.linearised(middle)
             self.linearisation = linearisation
-            if self.equations.mean_frame is not None:
-                self.frame = self.equations.mean_frame(middle.time, middle.x)
+            if self.equations.mean_frames is not None:
+                (self.frame,) = self.equations.mean_frames(np.array([middle.time]), middle.x[None])
             self.jacobians += 1
             self.fresh = True
         if not linearisation.finite:
@@ -174,11 +174,10 @@ class StepRun:
 
     def _at_stages(self, matrices: StepMatrices, guess: FloatArray) -> StepSystem:
         """The linear systems of a step as its stages have them: carried along with what flies free."""
-        if self.frame is None or self.equations.mean_frame is None:
+        if self.frame is None or self.equations.mean_frames is None:
             return matrices
         stages = stages_of(self.method, self.equations.differential, self.now, self.size, guess)
-        frames = [self.equations.mean_frame(float(time), x) for time, x in zip(stages.times, stages.x, strict=True)]
-        return CarriedMatrices(matrices, self.frame, frames)
+        return CarriedMatrices(matrices, self.frame, self.equations.mean_frames(stages.times, stages.x))
 
     def _finite_here(self) -> bool:
         """Whether F is finite at the start of the step and straight on from it: else no iterate is to blame."""
@@ -228,7 +227,7 @@ class StepRun:
             residual=solution.residual,
             contraction=solution.contraction,
         )
-        self.straight_on = self.equations.mean_frame is not None and error < SMALL_ERROR
+        self.straight_on = self.equations.mean_frames is not None and error < SMALL_ERROR
         if self.settled is not None:
             step = replace(step, end=self.settled(step))
         self.steps.append(step)

@@ -292,6 +292,15 @@ def test_what_cannot_be_is_refused(instance, described):
     instance.doStep(0.0, PERIOD)
 
 
+def test_short_steps_at_late_times_follow_each_other(instance):
+    late, short = 1000.0, 1e-8
+    instance.enterInitializationMode(startTime=late)
+    instance.exitInitializationMode()
+    for number in range(20):
+        instance.doStep(late + number * short, short)
+    refused(instance, "doStep", late + 19 * short, short)
+
+
 def test_step_that_cannot_be_solved_leaves_the_state(instance, described):
     initialised(instance)
     force = next(one.valueReference for one in described.modelVariables if one.name == "push.force.x")

@@ -187,6 +187,33 @@ def test_times_beyond_the_simulation_are_refused(model: Model) -> None:
     assert len(refusal.value.problems) == 2
 
 
+@pytest.mark.slow
+def test_a_motion_that_cannot_be_computed_makes_no_steps_of_others_shorter() -> None:
+    measured = {**CANTILEVER["measurements"][0], "inputs": {"push.force.z": "Fz"}}
+    simulation = {"duration": 0.05, "start": "unloaded"}
+    model = built(simulation=simulation, motions=[], measurements=[measured], unknowns=CANTILEVER["unknowns"][1:2])
+    columns = {"t": np.array([0.02, 0.05]), "x": np.full(2, 0.299), "z": np.array([0.0, 0.01]), "Fz": np.full(2, 0.2)}
+    alone = identify(model, {"path.csv": columns})
+    more = {"t": [0.01], "x": [0.3], "z": [0.0], "Fz": [1e7]}
+    both = identify(model, {"path.csv": {name: np.append(columns[name], more[name]) for name in columns}})
+    assert [left_out.reason for left_out in both.left_out] == ["The steps of its motion cannot be solved there."]
+    assert both.step == alone.step
+    assert_allclose(both.shared, alone.shared, rtol=1e-9, atol=0)
+
+
+def test_times_that_rounding_puts_beyond_the_simulation_are_its_ends(model: Model) -> None:
+    columns = {"t": np.array([-1e-17, 0.1, np.nextafter(0.5, 1.0)]), "x": np.zeros(3), "z": np.zeros(3)}
+    (case,) = read_cases(model.scene, model.inputs, {"path.csv": columns})
+    assert [datum.time for datum in case.data[0]] == [0.0, 0.1, 0.5]
+
+
+def test_a_cell_is_told_once_and_every_cell_is(model: Model) -> None:
+    columns = {"t": np.array(["0.1", "soon", ""]), "x": np.zeros(3), "z": np.zeros(3)}
+    with pytest.raises(SceneError) as refusal:
+        identify(model, {"path.csv": columns})
+    assert [problem.where for problem in refusal.value.problems] == ["path.csv, line 2", "path.csv, line 3"]
+
+
 def test_free_bases_are_refused(path: dict[str, FloatArray]) -> None:
     rod = {**CANTILEVER["rods"][0], "base": {"free": True}}
     with pytest.raises(SceneError, match="is not for measurements over time"):

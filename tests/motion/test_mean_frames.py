@@ -66,6 +66,26 @@ def test_mass_in_mean_rates_does_not_see_how_the_rod_is_turned(flying: Model) ->
     assert_allclose(masses[1], masses[0], rtol=0, atol=1e-12 * np.abs(masses[0]).max())
 
 
+def test_frames_of_instants_with_one_shape_are_those_of_each(flying: Model) -> None:
+    rng = np.random.default_rng(5)
+    x = np.stack([bent(flying, rng) for _ in range(3)])
+    ((_, pose),) = flying.discrete.unknowns.of_kind(BlockKind.POSE)
+    strains = np.setdiff1d(np.arange(flying.size), np.arange(pose.start, pose.stop))
+    x[:, strains] = x[1, strains]
+    frames = MeanFrames(flying)
+    inputs = flying.pack()
+    for together, unknowns in zip(frames.along(x, inputs), x, strict=True):
+        alone = frames.at(unknowns, inputs)
+        assert_allclose(together.turn, alone.turn, rtol=0, atol=1e-15)
+        assert_allclose(together.share, alone.share, rtol=0, atol=1e-12 * np.abs(alone.share).max())
+
+
+def test_a_frame_where_momentum_overflows_is_no_number(flying: Model) -> None:
+    with np.errstate(all="ignore"):
+        frame = MeanFrames(flying).at(np.full(flying.size, np.inf), flying.pack())
+    assert np.all(np.isnan(frame.share))
+
+
 def test_steps_are_solved_sooner_and_alike(flying: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     simulation = flying.scene.simulation
     assert simulation is not None

@@ -5,6 +5,7 @@
    (https://fmi-standard.org). Value references count through: the time, the inputs, the outputs, the step, the
    parameters of the scene. */
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
