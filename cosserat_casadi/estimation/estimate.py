@@ -31,6 +31,7 @@ from cosserat_casadi.identification.cases import Data, read_cases
 from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layout
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene.measurements import ModeMeasurement
 from cosserat_casadi.sweep.local import available_cores
 
@@ -143,6 +144,7 @@ def estimate_scene(
         ExportError: as there.
     """
     report = progress or _ignore
+    refuse_tubes(scene)
     check_unknowns(scene)
     completed = scene.with_unknowns().baked()
     draft = build(completed)
