@@ -111,8 +111,10 @@ def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayL
         search = _searched(model, at)
         finer = TubeModel(robot, 2 * model.steps)
         solutions = [_refined(model, finer, at, x) for x in search.angles]
-        complete = search.settled and _is_whole(solutions)
-        if complete or finer.steps >= MOST_STEPS:
+        # More steps would find the same ones again, and no others.
+        resolved = all(solution.converged for solution in solutions)
+        if resolved or finer.steps >= MOST_STEPS:
+            complete = search.settled and resolved and _is_whole(solutions)
             by_energy = sorted(solutions, key=lambda solution: solution.energy)
             return TubeEquilibria(robot, tuple(by_energy), complete)
         model = finer
@@ -129,9 +131,7 @@ def _refined(model: TubeModel, finer: TubeModel, inputs: FloatArray, x: FloatArr
 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
-    """Whether equilibria are within tolerance, differ, and have the signs that all equilibria have."""
-    if not all(solution.converged for solution in solutions):
-        return False
+    """Whether equilibria differ, and have the signs that all equilibria have."""
     for one, other in itertools.combinations(solutions, 2):
         if np.abs(one.x - other.x).max() < SAME:
             return False
