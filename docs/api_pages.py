@@ -54,7 +54,16 @@ CONCEPTS = (
         "scene",
         "Scene",
         "What a TOML file describes, read and checked. [Scene keys](../scene.md) lists what a scene may hold.",
-        ("read_scene", "parse_scene", "scene_from_dict", "Scene", "SceneError", "Problem", "CosseratError"),
+        (
+            "read_scene",
+            "parse_scene",
+            "scene_from_dict",
+            "with_exact_contact",
+            "Scene",
+            "SceneError",
+            "Problem",
+            "CosseratError",
+        ),
     ),
     Concept(
         "model",

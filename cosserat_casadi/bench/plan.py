@@ -22,6 +22,7 @@ from cosserat_casadi.bench.table import print_bench, print_strains
 from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import ExportError, Problem, SceneError
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.plots.figure import figure_class
 
 Report = Callable[[str, int, int], None]
@@ -64,9 +65,11 @@ def make_plan(
         quick: few points.
 
     Raises:
-        SceneError: with every fault of the options, or of the table found in the folder; or the scene has obstacles.
+        SceneError: with every fault of the options, or of the table found in the folder; or the scene has obstacles
+            or tubes.
         CosseratError: SciPy or, where a figure is wanted, matplotlib is missing.
     """
+    refuse_tubes(scene)
     refuse_obstacles(scene, "a bench")
     # Every method solves the scene's own numbers.
     scene = scene.baked()

@@ -27,6 +27,7 @@ from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 
 Report = Callable[[str], None]
@@ -81,6 +82,7 @@ def inverse_rows(
     Raises:
         SceneError: as in :func:`inverse`.
     """
+    refuse_tubes(scene)
     refuse_obstacles(scene, "an inverse problem")
     for targets in rows:
         check_targets(targets)

@@ -44,6 +44,7 @@ from cosserat_casadi.identification.unknowns import UnknownLayout, unknown_layou
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.load_cases import CaseLayout
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.sweep.local import available_cores
 
 CHUNK = 256
@@ -153,6 +154,7 @@ def estimate_scene(
         ExportError: as there.
     """
     report = progress or _ignore
+    refuse_tubes(scene)
     check_unknowns(scene)
     completed = scene.with_unknowns().model_copy(update={"parameters": row_parameters(scene)})
     draft = build(completed)

@@ -20,6 +20,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.parameters import NO_PARAMETERS, ParameterLayout, parameter_layout
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene.inputs import column_suffixes
 from cosserat_casadi.scene.number_table import finite_number, read_numbers
 
@@ -82,7 +83,12 @@ class CaseLayout:
 
 
 def case_layout(scene: scenes.Scene) -> CaseLayout:
-    """The inputs and the parameters of a scene."""
+    """The inputs and the parameters of a scene.
+
+    Raises:
+        SceneError: the scene has tubes.
+    """
+    refuse_tubes(scene)
     return CaseLayout(input_layout(scene), parameter_layout(scene))
 
 

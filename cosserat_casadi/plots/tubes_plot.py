@@ -27,7 +27,7 @@ WIDEST = 6.0
 
 
 def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None:
-    """Draw equilibria of one inputs into a file, whole or not at all; the same give the same bytes.
+    """Draw equilibria at the same inputs into a file, whole or not at all; the same give the same bytes.
 
     Raises:
         SceneError: the suffix is none of FORMATS of :mod:`cosserat_casadi.plots.figure`.
@@ -37,7 +37,7 @@ def save_tubes_plot(solutions: Sequence[TubeSolution], file: str | Path) -> None
 
 
 def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
-    """Figure of equilibria of one inputs: left in space, right the angles of the tubes along the centre line.
+    """Figure of equilibria at the same inputs: left in space, right the angles of the tubes along the centre line.
 
     Where a tube ends the line gets thinner. Equilibria that are not stable are dashed.
 
@@ -153,7 +153,9 @@ def plot_tube_path(path: TubePath) -> Any:
         for event in path.events:
             for index in range(len(names)):
                 _draw_event(left, event, event.solution.x[index], _landing(event, index))
-            snap_energy = None if event.snaps_to is None else event.snaps_to.energy
+            snap_energy = None
+            if event.snaps_to is not None:
+                snap_energy = event.snaps_to.energy
             _draw_event(right, event, event.solution.energy, snap_energy)
         _draw_curve(right, path, path.energy, rod_colour(len(names)), "energy")
     for axes, words in ((left, "angle at the tip, rad"), (right, "elastic energy, J")):
@@ -163,7 +165,9 @@ def plot_tube_path(path: TubePath) -> Any:
         for stable, verdict in ((True, "stable"), (False, "unstable")):
             axes.plot([], [], color="0.3", linestyle=STROKES[stable], label=verdict)
         axes.legend(fontsize=9)
-    colour = PLAIN_TEXT if path.converged else FAILURE
+    colour = FAILURE
+    if path.converged:
+        colour = PLAIN_TEXT
     left.set_title(_subtitle(path), fontsize=10, color=colour, wrap=True)
     add_title(figure, path.title)
     return figure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosserat_casadi.results.json_text import SCHEMA, json_text, plain
+from cosserat_casadi.results.json_text import SCHEMA, plain
 from cosserat_casadi.tubes.equilibria import TubeEquilibria
 from cosserat_casadi.tubes.path import TubeEvent, TubePath
 from cosserat_casadi.tubes.solution import TubeSolution
@@ -17,12 +17,11 @@ def tubes_result(solution: TubeSolution) -> dict[str, Any]:
 
 
 def equilibria_result(equilibria: TubeEquilibria) -> dict[str, Any]:
-    """All equilibria of a inputs as the plain data of a file, by their energy."""
-    first = equilibria.solutions[0]
+    """All equilibria at the same inputs as the plain data of a file, by their energy."""
     data: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
-            "title": first.robot.title,
+            "title": equilibria.robot.title,
             "complete": equilibria.complete,
             "message": equilibria.message,
             "equilibria": [_equilibrium(solution) for solution in equilibria.solutions],
@@ -53,14 +52,11 @@ def tube_path_result(path: TubePath) -> dict[str, Any]:
     return data
 
 
-def tubes_text(data: dict[str, Any]) -> str:
-    """Plain data of tubes as the text of a file."""
-    return json_text(data)
-
-
 def tube_path_table(path: TubePath) -> str:
     """The points of a path as CSV: the input, stability, energy, and the tips of all tubes."""
-    names = () if not path.solutions else path.solutions[0].robot.names
+    names: tuple[str, ...] = ()
+    if path.solutions:
+        names = path.solutions[0].robot.names
     columns = [path.name, "stable", "energy"]
     columns += [f"{name}.tip.{axis}" for name in names for axis in "xyz"]
     lines = [",".join(columns)]

@@ -114,7 +114,7 @@ translation = 0.15
         straight = numbers_of(given.get("straight"))
         curved = numbers_of(given.get("curved"))
         translation = numbers_of(given.get("translation"))
-        if not straight or not curved:
+        if not straight or not curved or min(straight[0], curved[0]) < 0.0:
             return
         length = straight[0] + curved[0]
         if length == 0.0:

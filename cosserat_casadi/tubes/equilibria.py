@@ -24,7 +24,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
 from cosserat_casadi.tubes.model import TubeModel
-from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.robot import Robot, robot_of
 from cosserat_casadi.tubes.solution import TubeSolution, tip_error
 from cosserat_casadi.tubes.solve import MOST_STEPS, judged, solution_near, solve_tubes
 
@@ -59,11 +59,13 @@ class TubeEquilibria:
     """The equilibria of concentric tubes at the same inputs.
 
     Attributes:
+        robot: the tubes.
         solutions: the equilibria, by their energy, the least first.
-        complete: whether the search ended as it should: all are within tolerance, and the signs of their determinants
-            add up to one.
+        complete: whether the search ended as it should: it settled before its work ran out, all equilibria are within
+            tolerance, and the signs of their determinants add up to one. Two of opposite signs could still be missing.
     """
 
+    robot: Robot
     solutions: tuple[TubeSolution, ...]
     complete: bool
 
@@ -76,10 +78,15 @@ class TubeEquilibria:
     def message(self) -> str:
         """A sentence for the user."""
         if self.complete:
-            return "All equilibria of these inputs were found: the signs of their determinants add up to one."
+            return (
+                "The search for all equilibria of these inputs has settled, and the signs of their determinants add up "
+                "to one: no single one is missing."
+            )
+        if not self.solutions:
+            return "No equilibrium was found, though there is one: the search ended before it settled."
         return (
-            "Equilibria were found, but others may be missing: the search ended before the signs of their determinants "
-            "added up to one within tolerance."
+            "Equilibria were found, but others may be missing: the search ended before it settled with determinants "
+            "whose signs add up to one, within tolerance."
         )
 
 
@@ -101,13 +108,15 @@ def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayL
     # As many steps as one of them needs are a beginning for the others.
     model = solve_tubes(scene, at).model
     while True:
-        angles = _angles(model, at)
+        search = _searched(model, at)
         finer = TubeModel(robot, 2 * model.steps)
-        solutions = [_refined(model, finer, at, x) for x in angles]
-        complete = _is_whole(solutions)
-        if complete or finer.steps >= MOST_STEPS:
+        solutions = [_refined(model, finer, at, x) for x in search.angles]
+        # More steps would find the same ones again, and no others.
+        resolved = all(solution.converged for solution in solutions)
+        if resolved or finer.steps >= MOST_STEPS:
+            complete = search.settled and resolved and _is_whole(solutions)
             by_energy = sorted(solutions, key=lambda solution: solution.energy)
-            return TubeEquilibria(tuple(by_energy), complete)
+            return TubeEquilibria(robot, tuple(by_energy), complete)
         model = finer
 
 
@@ -122,9 +131,7 @@ def _refined(model: TubeModel, finer: TubeModel, inputs: FloatArray, x: FloatArr
 
 
 def _is_whole(solutions: list[TubeSolution]) -> bool:
-    """Whether equilibria are within tolerance, differ, and have the signs that all equilibria have."""
-    if not all(solution.converged for solution in solutions):
-        return False
+    """Whether equilibria differ, and have the signs that all equilibria have."""
     for one, other in itertools.combinations(solutions, 2):
         if np.abs(one.x - other.x).max() < SAME:
             return False
@@ -135,11 +142,24 @@ def _degree(determinants: Iterator[float]) -> int:
     return int(sum(np.sign(determinant) for determinant in determinants))
 
 
-def _angles(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
-    """Angles at the tips of every equilibrium of a model, rad."""
+@dataclass(frozen=True)
+class _Search:
+    """What a search of a model found.
+
+    Attributes:
+        angles: at the tips of each equilibrium, shape (n,), rad.
+        settled: whether it ended by itself, and not because its work ran out.
+    """
+
+    angles: list[FloatArray]
+    settled: bool
+
+
+def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
+    """Look for every equilibrium of a model."""
     if model.size == 1:
         # One tube does not twist.
-        return [inputs[::2].copy()]
+        return _Search([inputs[::2].copy()], settled=True)
     if model.size == PAIR:
         return _of_two_tubes(model, inputs)
     return _of_more_tubes(model, inputs)
@@ -184,16 +204,21 @@ class _Pair:
         return np.asarray(together - residual[0])
 
 
-def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+def _of_two_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
     pair = _Pair(model, inputs)
-    found = []
-    for before, after in itertools.pairwise(_readings(pair)):
+    readings, settled = _readings(pair)
+    found: list[FloatArray] = []
+    for before, after in itertools.pairwise(readings):
         found += [pair.tips(angle) for angle in _roots(pair, before, after)]
-    return found
+    return _Search(found, settled)
 
 
-def _readings(pair: _Pair) -> list[_Reading]:
-    """Readings over one turn of the tips, so close that a cubic between neighbours tells what is between them."""
+def _readings(pair: _Pair) -> tuple[list[_Reading], bool]:
+    """Readings over one turn of the tips, so close that a cubic between neighbours tells what is between them.
+
+    Returns:
+        The readings, and whether they are as close as that everywhere.
+    """
     angles = FIRST_ANGLE + np.linspace(0.0, TURN, FIRST_INTERVALS + 1)
     first, *later = [pair.read(float(angle)) for angle in angles]
     kept = [first]
@@ -208,7 +233,7 @@ def _readings(pair: _Pair) -> list[_Reading]:
             kept += [middle, pending.pop()]
         else:
             pending.append(middle)
-    return kept
+    return kept, evaluations <= MOST_EVALUATIONS
 
 
 def _foreseen(before: _Reading, middle: _Reading, after: _Reading) -> bool:
@@ -250,7 +275,7 @@ def _crossing(pair: _Pair, start: _Reading, end: _Reading, level: float) -> floa
 # More tubes
 
 
-def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
+def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> _Search:
     found: list[FloatArray] = []
     for points in GRIDS[model.size]:
         before = len(found)
@@ -260,8 +285,8 @@ def _of_more_tubes(model: TubeModel, inputs: FloatArray) -> list[FloatArray]:
                 found.append(end.x)
         determinants = (float(np.linalg.det(model.jacobian(x, inputs, 1.0)[0].full())) for x in found)
         if len(found) == before and _degree(determinants) == 1:
-            break
-    return found
+            return _Search(found, settled=True)
+    return _Search(found, settled=False)
 
 
 def _starts(model: TubeModel, inputs: FloatArray, points: int) -> Iterator[FloatArray]:

@@ -204,7 +204,7 @@ class _Way:
         return "m"
 
     def inputs(self, factor: float) -> FloatArray:
-        """Joints at a factor."""
+        """All inputs at a factor, shape (2 n,)."""
         return self.start + factor * (self.end - self.start)
 
     def value(self, factor: float) -> float:

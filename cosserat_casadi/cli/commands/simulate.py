@@ -16,6 +16,7 @@ from cosserat_casadi.cli.signals import StoppedError
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
 from cosserat_casadi.results.motion_file import check_motion_path, write_motion
 from cosserat_casadi.results.start_file import read_start
@@ -123,6 +124,7 @@ def _check_scene(
     solution: Solution | None = None
     with collect_problems(problems):
         scene = read_scene(scene_file, settings)
+        refuse_tubes(scene)
         if scene.simulation is None:
             remedy = "add a table [simulation] with duration = 1.0 (s), or give --duration"
             problems.append(Problem("simulation", "missing: it says for how long to simulate", remedy))

@@ -45,8 +45,13 @@ def solve(
     with collect_problems(problems):
         read = read_scene(scene, tuple(settings or ()))
         if every and not read.tubes:
-            raise SceneError(Problem("--all", "is for concentric tubes", "leave it out"))
-        if exact:
+            problems.append(Problem("--all", "is for concentric tubes", "leave it out"))
+        if every and stable:
+            problem = "stands beside --all, which calls each equilibrium stable or not"
+            problems.append(Problem("--stable", problem, "leave one of them out"))
+        if exact and read.tubes:
+            problems.append(Problem("--exact-contact", "is for rods, which touch obstacles", "leave it out"))
+        elif exact:
             read = with_exact_contact(read)
     if problems:
         raise SceneError(*problems)

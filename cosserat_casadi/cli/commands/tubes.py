@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -24,12 +24,12 @@ from cosserat_casadi.cli.reports.tubes import (
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_whole
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.results.json_text import json_text
 from cosserat_casadi.results.tubes_file import (
     equilibria_result,
     tube_path_result,
     tube_path_table,
     tubes_result,
-    tubes_text,
 )
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.tubes.equilibria import all_equilibria
@@ -57,7 +57,7 @@ class Outputs:
 
     def write(self, data: dict[str, Any]) -> None:
         """Write the result where it was asked for."""
-        text = tubes_text(data).encode()
+        text = json_text(data).encode()
         if self.output is not None:
             write_atomically(self.output, text)
         if self.as_json:
@@ -65,7 +65,7 @@ class Outputs:
 
     @property
     def files(self) -> list[Path]:
-        """Files that were asked for."""
+        """Files that were written."""
         return given_files(self.output, self.table, self.plot)
 
 
@@ -98,6 +98,9 @@ def solve_all_of_tubes(scene: Scene, outputs: Outputs) -> None:
     """
     equilibria = all_equilibria(scene)
     outputs.write(equilibria_result(equilibria))
+    if not equilibria.solutions:
+        # There is nothing to draw.
+        outputs = replace(outputs, plot=None)
     _draw(equilibria.solutions, outputs.plot)
     if not outputs.as_json:
         print_equilibria(Console(), equilibria, outputs.files)

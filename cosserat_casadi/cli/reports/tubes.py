@@ -49,11 +49,9 @@ def print_tubes_unstable(console: Console) -> None:
 
 
 def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequence[Path]) -> None:
-    """Print all equilibria of a inputs, and the files that were written."""
-    robot = equilibria.solutions[0].robot
-    _print_message(console, robot.title, equilibria.message, good=equilibria.complete)
-    farthest = "tip position, m"
-    table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", farthest)
+    """Print all equilibria at the same inputs, and the files that were written."""
+    _print_message(console, equilibria.robot.title, equilibria.message, good=equilibria.complete)
+    table = table_of("", "stable", "energy, J", "determinant", "angles at the tips, rad", "tip position, m")
     for number, solution in enumerate(equilibria.solutions, 1):
         table.add_row(
             str(number),
@@ -64,8 +62,11 @@ def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequ
             ", ".join(digits(solution.tip().position)),
         )
     console.print(table)
-    count = counted(len(equilibria.solutions), "equilibrium").replace("equilibriums", "equilibria")
-    print_plain(console, f"{count}, {len(equilibria.stable)} of them stable")
+    count = len(equilibria.solutions)
+    noun = "equilibria"
+    if count == 1:
+        noun = "equilibrium"
+    print_plain(console, f"{count} {noun}, {len(equilibria.stable)} of them stable")
     print_written(console, written)
 
 
