@@ -22,6 +22,7 @@ FIGURES = (ROOT / "docs" / "figures", ROOT / "docs")
 PROGRAMS = (
     "carry_load",
     "design_finger",
+    "design_spring",
     "feel_tip_force",
     "tendon_robot_mpc",
     "tendon_robot_swing_free",

@@ -287,7 +287,10 @@ def test_examples_solve(path: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     result = json.loads((tmp_path / "r.json").read_text())
     assert result["converged"]
-    assert result["error_estimate"] <= read_scene(path).accuracy.tolerance
+    accuracy = read_scene(path).accuracy
+    # Of modes that a scene fixes the error is told, and not chosen.
+    if not accuracy.fixed:
+        assert result["error_estimate"] <= accuracy.tolerance
 
 
 @pytest.mark.slow

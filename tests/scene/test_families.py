@@ -148,7 +148,7 @@ def test_a_word_is_registered_once() -> None:
 
 def test_every_list_of_a_scene_is_ruled() -> None:
     contents = {key: contents_of(field) for key, field in Scene.model_fields.items()}
-    for table in ("accuracy", "simulation", "identification"):
+    for table in ("accuracy", "simulation", "identification", "estimation"):
         del contents[table]
     assert {key: kinds for key, kinds in contents.items() if kinds is not None} == LISTS
 
