@@ -6,6 +6,7 @@ it was at, and the scheduler gives them to another: every chunk comes back, and 
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterable, Iterator, Sequence
 from importlib.metadata import version
 from types import TracebackType
@@ -92,6 +93,9 @@ def _client(address: str) -> Any:
 def _connected(make_client: Any, address: str) -> Any:
     """A client of a scheduler; dask gives its own thread ten seconds to begin, which a busy machine may take."""
     for _ in range(TRIES):
+        # A client that never was connected closes itself where it is collected. Were that in the middle of making
+        # another one, both would wait for one lock of dask's for ever.
+        gc.collect()
         try:
             return make_client(address, timeout=PATIENCE, set_as_default=False)
         except AssertionError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import gc
 import os
 import signal
 import warnings
@@ -120,6 +121,30 @@ def test_a_thread_of_dask_that_begins_late() -> None:
     with pytest.raises(ClusterError, match="too busy"):
         _connected(never, "tcp://here")
     assert len(made) == 3
+
+
+def test_lost_clients_are_collected_before_another_is_made() -> None:
+    """Dask's clients take a lock where they are collected, which the making of a client holds."""
+
+    class Lost:
+        def __init__(self) -> None:
+            self.itself = self
+
+        def __del__(self) -> None:
+            collected.append(True)
+
+    def make(address: str, **options: Any) -> str:
+        assert collected
+        return "client"
+
+    collected: list[bool] = []
+    gc.disable()
+    try:
+        Lost()
+        assert not collected
+        assert _connected(make, "tcp://here") == "client"
+    finally:
+        gc.enable()
 
 
 def test_a_scheduler_without_workers(monkeypatch: pytest.MonkeyPatch) -> None:
