@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import gc
 import os
 import signal
 import warnings
@@ -48,7 +47,7 @@ def cluster(quick_compiler: None) -> Iterator[Any]:
 def test_a_worker_is_killed_and_every_row_comes_once(
     cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Rows for compiled libraries and rows in Python; the worker dies while both work."""
+    """Rows of a compiled library, whose stiffness is a parameter; a worker dies while both work."""
     rng = np.random.default_rng(1)
     stiffness = np.concatenate([np.full(4000, 1.4), rng.uniform(1.0, 2.0, 32)])
     table = {"push.force.x": rng.uniform(-2.0, 2.0, 4032), "rod.stiffness.bending_y": stiffness}
@@ -66,7 +65,7 @@ def test_a_worker_is_killed_and_every_row_comes_once(
     monkeypatch.setattr(Store, "add", add)
     sweep_scene(PLANAR, table, tmp_path / "cluster.csv", scheduler=cluster.scheduler_address)
     assert killed
-    assert sorted(added) == list(range(8 + 2))
+    assert sorted(added) == list(range(8))
     monkeypatch.undo()
     monkeypatch.setattr("cosserat_casadi.sweep.choice.CHECKED", 2)
     sweep_scene(PLANAR, table, tmp_path / "here.csv")
