@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
@@ -21,6 +22,9 @@ from cosserat_casadi.tubes.solution import TubeSolution
 
 STROKES = {True: "-", False: "--"}
 """Stroke of what is stable, and of what is not."""
+
+DRAWN = 12
+"""Points that are drawn from one station to the next."""
 
 WIDEST = 6.0
 """Width of the innermost reach of the tubes, in points; a tube that ends leaves a thinner line."""
@@ -104,8 +108,29 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
         here = (shape.distance >= start) & (shape.distance <= end)
         tubes = int(np.sum(reaches >= end))
         width = WIDEST * tubes / len(reaches)
-        canvas.line(shape.position[here], color=colour, linestyle=stroke, linewidth=width, label=label)
+        line = _curve(shape.distance[here], shape.position[here], shape.quaternion[here])
+        canvas.line(line, color=colour, linestyle=stroke, linewidth=width, label=label)
         label = None
+
+
+def _curve(distance: FloatArray, position: FloatArray, quaternion: FloatArray) -> FloatArray:
+    """Points along a centre line between the few stations that are computed: cubics with its tangents there.
+
+    Args:
+        distance: of the stations along the line, ascending, shape (k,), m.
+        position: shape (k, 3), m.
+        quaternion: of the frames, whose z is the tangent, shape (k, 4).
+    """
+    tangent = quaternion_to_matrix(quaternion.T)[:, 2].T
+    share = np.linspace(0.0, 1.0, DRAWN)[:, None]
+    rising = share**2 * (3.0 - 2.0 * share)
+    leaving = share * (1.0 - share) ** 2
+    arriving = share**2 * (share - 1.0)
+    parts = []
+    for k, step in enumerate(np.diff(distance)):
+        chord = position[k] + rising * (position[k + 1] - position[k])
+        parts.append(chord + step * (leaving * tangent[k] + arriving * tangent[k + 1]))
+    return np.concatenate([position[:1], *parts])
 
 
 def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bool) -> None:

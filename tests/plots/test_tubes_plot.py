@@ -1,0 +1,31 @@
+"""Figures of concentric tubes: the line between stations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from cosserat_casadi.plots.tubes_plot import _curve
+
+CURVATURE = 3.0
+LENGTH = 0.5
+
+
+def distance_from_arc(stations: int) -> float:
+    """Largest distance of the drawn line from the arc of a circle that its stations lie on, m."""
+    s = np.linspace(0.0, LENGTH, stations)
+    turned = CURVATURE * s
+    zeros = np.zeros(stations)
+    position = np.stack([(1.0 - np.cos(turned)) / CURVATURE, zeros, np.sin(turned) / CURVATURE], axis=1)
+    quaternion = np.stack([np.cos(turned / 2.0), zeros, np.sin(turned / 2.0), zeros], axis=1)
+    line = _curve(s, position, quaternion)
+    assert_allclose(line[-1], position[-1], rtol=0, atol=1e-15)
+    radius = np.hypot(line[:, 0] - 1.0 / CURVATURE, line[:, 2])
+    return float(np.abs(radius - 1.0 / CURVATURE).max())
+
+
+def test_an_arc_is_drawn_to_order_four() -> None:
+    coarse = distance_from_arc(5)
+    assert coarse < 2e-5
+    assert np.log2(coarse / distance_from_arc(9)) == pytest.approx(4.0, abs=0.2)
