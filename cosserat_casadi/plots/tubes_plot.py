@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
@@ -105,12 +106,19 @@ def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several:
     label: str | None = _name(solution, number, several=several)
     ends = sorted({0.0, *(float(reach) for reach in reaches)})
     for start, end in pairwise(ends):
-        here = (shape.distance >= start) & (shape.distance <= end)
+        here = _between(shape.distance, start, end)
         tubes = int(np.sum(reaches >= end))
         width = WIDEST * tubes / len(reaches)
         line = _curve(shape.distance[here], shape.position[here], shape.quaternion[here])
         canvas.line(line, color=colour, linestyle=stroke, linewidth=width, label=label)
         label = None
+
+
+def _between(distance: FloatArray, start: float, end: float) -> npt.NDArray[np.bool_]:
+    """Which stations lie from one distance to another, both of them among these."""
+    # Distances are sums of steps: where a tube ends they are off by rounding.
+    slack = 1e-9 * float(distance.max())
+    return (distance >= start - slack) & (distance <= end + slack)
 
 
 def _curve(distance: FloatArray, position: FloatArray, quaternion: FloatArray) -> FloatArray:
@@ -138,7 +146,7 @@ def _draw_angles(panel: Any, solution: TubeSolution, number: int, *, several: bo
     shape = solution.shape
     first = solution.inputs[0]
     for index, name in enumerate(solution.robot.names):
-        here = shape.distance <= solution.inputs[2 * index + 1]
+        here = _between(shape.distance, 0.0, float(solution.inputs[2 * index + 1]))
         if several:
             colour = rod_colour(number)
             label = f"{name}, {number + 1}"

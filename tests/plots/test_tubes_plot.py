@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from cosserat_casadi.plots.tubes_plot import _curve
+from cosserat_casadi.plots.tubes_plot import _between, _curve
 
 CURVATURE = 3.0
 LENGTH = 0.5
@@ -29,3 +29,9 @@ def test_an_arc_is_drawn_to_order_four() -> None:
     coarse = distance_from_arc(5)
     assert coarse < 2e-5
     assert np.log2(coarse / distance_from_arc(9)) == pytest.approx(4.0, abs=0.2)
+
+
+def test_a_station_off_by_rounding_belongs_to_both_sides() -> None:
+    distance = np.array([0.0, 0.1, 0.30000000000000004, 0.5])
+    assert _between(distance, 0.0, 0.3).tolist() == [True, True, True, False]
+    assert _between(distance, 0.3, 0.5).tolist() == [False, False, True, True]
