@@ -23,7 +23,7 @@ from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
-from cosserat_casadi.scene import Actuator, ObstacleRecord, Scene
+from cosserat_casadi.scene import Actuator, Scene
 
 NAME = "sweep"
 """What every symbol of these libraries begins with."""
@@ -156,15 +156,9 @@ def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
     posed = [*[rod.name for rod in scene.rods], *[body.name for body in scene.bodies]]
     states = [f"{actuator.name}.{word}" for actuator in scene.actuators for word in _state(actuator)]
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
-    contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in contact_pairs(scene) for word in CONTACT]
+    # Smooth contact is a load, of which rows do not tell.
+    contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
     return (*JUDGED, *poses, *states, *contacts, *(STABILITY if stability else ()))
-
-
-def contact_pairs(scene: Scene) -> list[tuple[str, ObstacleRecord]]:
-    """Rods and obstacles whose contacts have columns: smooth contact is a load, of which rows in C do not tell."""
-    if not scene.touches_exactly:
-        return []
-    return list(pairs(scene))
 
 
 def _state(actuator: Actuator) -> tuple[str, str]:

@@ -8,7 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from cosserat_casadi.codegen.rows import JUDGED, contact_pairs, row_results
+from cosserat_casadi.codegen.rows import JUDGED, row_results
+from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
@@ -88,7 +89,7 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
     for actuator in scene.actuators:
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
-    for rod, obstacle in contact_pairs(scene):
+    for rod, obstacle in pairs(scene):
         own = [contact for contact in solution.contacts if (contact.rod, contact.obstacle) == (rod, obstacle.name)]
         numbers += contact_numbers(own)
     if judged is not None:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.barriers import Barriers
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, runs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
@@ -110,16 +110,14 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         factor: on the stiffness of the cushions.
     """
     cushions: list[Penetration] = []
-    for rod in scene.rods:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name):
-                name = f"cushion {len(cushions) + 1}"
-                stiffness = _unit(scene, rod.name) * max(STIFFNESS, THIN_FORCE * _thinness(obstacle, rod) ** 3)
-                cushions.append(
-                    Penetration.model_construct(
-                        name=name, rod=rod.name, obstacle=obstacle, stiffness=stiffness * factor
-                    )
-                )
+    records = {rod.name: rod for rod in scene.rods}
+    for number, (rod_name, obstacle) in enumerate(pairs(scene), start=1):
+        record = records[rod_name]
+        stiffness = _unit(record) * max(STIFFNESS, THIN_FORCE * _thinness(obstacle, record) ** 3) * factor
+        cushion = Penetration.model_construct(
+            name=f"cushion {number}", rod=rod_name, obstacle=obstacle, stiffness=stiffness
+        )
+        cushions.append(cushion)
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
     if scene.inputs is not None:
         changes["inputs"] = (*scene.inputs, *(f"{cushion.name}.stiffness" for cushion in cushions))
@@ -144,10 +142,9 @@ def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
     return 2 * rod.length / obstacle.thickness
 
 
-def _unit(scene: scenes.Scene, rod: str) -> float:
+def _unit(rod: scenes.Rod) -> float:
     """EI/ℓ⁵ of a rod, N/m⁴: a force per length, by the square of a depth, over the length."""
-    (record,) = [record for record in scene.rods if record.name == rod]
-    properties = rod_properties(record)
+    properties = rod_properties(rod)
     return properties.bending_stiffness / properties.length**5
 
 
@@ -241,8 +238,5 @@ def first_state(solution: Solution) -> ContactState:
 
 def _all_gaps(solution: Solution) -> Iterator[tuple[str, scenes.ObstacleRecord, FloatArray]]:
     """Gaps of every rod to every obstacle that concerns it, along all of it."""
-    scene = solution.model.scene
-    for rod in scene.rods:
-        for obstacle in scene.obstacles:
-            if obstacle.concerns(rod.name):
-                yield rod.name, obstacle, gap_along(solution, rod.name, obstacle, DENSE)
+    for rod, obstacle in pairs(solution.model.scene):
+        yield rod, obstacle, gap_along(solution, rod, obstacle, DENSE)

@@ -48,8 +48,6 @@ class Barriers:
 
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
         """Whether a rod comes near the middle of one on the straight way between two shapes, given by unknowns."""
-        if not self.watched:
-            return False
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
             start = self._positions(rod, before)

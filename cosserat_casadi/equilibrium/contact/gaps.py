@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.properties import RodProperties
 
 DENSE = np.linspace(0.0, 1.0, 801)
 """Abscissae at which rods are held against obstacles; they are no nodes."""
@@ -27,10 +28,16 @@ def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
 
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
-    positions = solution.pose(X, rod).position
-    distance = distance_from(obstacle).map(len(X))(positions.T)
     properties = solution.model.discrete.rods[rod].properties
-    return np.asarray((distance.full()[0] - section_radius(properties, X)) / properties.length)
+    return section_gaps(obstacle, properties, solution.pose(X, rod).position, X) / properties.length
+
+
+def section_gaps(
+    obstacle: scenes.ObstacleRecord, properties: RodProperties, positions: FloatArray, X: FloatArray
+) -> FloatArray:
+    """Distances of a rod's sections at abscissae X from an obstacle, shape (k,), m, for positions of shape (k, 3)."""
+    distances = distance_from(obstacle).map(len(X))(positions.T)
+    return np.asarray(distances.full()[0] - section_radius(properties, X))
 
 
 def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:

@@ -9,10 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, pairs
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, pairs, section_gaps
 from cosserat_casadi.equilibrium.solution import Solution
-from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
 
@@ -55,8 +53,8 @@ def is_inside_between(
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside.
     """
-    gaps_at_start = _gaps(obstacle, properties, start, SECTIONS)
-    gaps_at_end = _gaps(obstacle, properties, end, SECTIONS)
+    gaps_at_start = section_gaps(obstacle, properties, start, SECTIONS)
+    gaps_at_end = section_gaps(obstacle, properties, end, SECTIONS)
     ways = np.linalg.norm(end - start, axis=1)
     # A distance changes by no more than the way: on a shorter one nothing can have come between.
     doubtful = ways > np.maximum(gaps_at_start, 0.0) + np.maximum(gaps_at_end, 0.0)
@@ -66,13 +64,5 @@ def is_inside_between(
     shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None, None]
     positions = start[doubtful] + shares * (end - start)[doubtful]
     X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
-    gaps = _gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
+    gaps = section_gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
     return bool(gaps.min() < -deepest * properties.length)
-
-
-def _gaps(
-    obstacle: scenes.ObstacleRecord, properties: RodProperties, positions: FloatArray, X: FloatArray
-) -> FloatArray:
-    """Distances of sections at abscissae X from an obstacle, shape (k,), m."""
-    distances = distance_from(obstacle).map(len(X))(positions.T)
-    return np.asarray(distances.full()[0] - section_radius(properties, X))
