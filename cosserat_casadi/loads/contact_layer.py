@@ -57,7 +57,7 @@ class ContactLayerLoad(Load[ContactLayer]):
         return BodyPoint() if load.body == body.name else None
 
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix:
-        """K (w − g)₊⁴ / (12 w²), J/m, or J of a body."""
+        """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body."""
         width = load.obstacle.width
         energy: Matrix = load.stiffness / (12 * width**2) * _depth(load, section) ** 4
         return energy

@@ -188,11 +188,8 @@ def _plane(arrangement: Arrangement, change: Change, load_factor: float) -> Plan
         return Plane(normal, load_factor)
     first = size - len(change.state.places)
     for touch, number, factor in change.opens:
-        before = 0
-        for other in change.state.touches:
-            if other is touch:
-                break
-            before += len(other.moving)
+        earlier = change.state.touches[: _number(change.state, touch)]
+        before = sum(len(other.moving) for other in earlier)
         normal[first + before + number] = factor
     return Plane(normal, change.level)
 
