@@ -2,8 +2,9 @@
 
 from cosserat_casadi.control.condensing import Condensed, Condensing, Horizon
 from cosserat_casadi.control.embedding import Lifted, embedded, lifted
-from cosserat_casadi.control.inverse import Inverse, inverse
+from cosserat_casadi.control.inverse import inverse
 from cosserat_casadi.control.inverse_accuracy import inverse_scene
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.margin import stability_margin
 from cosserat_casadi.control.target_errors import Gap
 from cosserat_casadi.motion.stage import MotionStage, motion_stage

@@ -12,15 +12,9 @@ from cosserat_casadi.accuracy.levels import seeing_modes, verified_model
 from cosserat_casadi.accuracy.metrics import largest_turn, prolong, with_estimate
 from cosserat_casadi.accuracy.pose_change import rotation_angles
 from cosserat_casadi.accuracy.refine import FINER_MODES, LARGEST_SHAPE_ERROR
-from cosserat_casadi.control.inverse import (
-    STARTS,
-    Inverse,
-    check_targets,
-    first_solution,
-    lifted_problem,
-    search,
-    with_verdict,
-)
+from cosserat_casadi.control.inverse import STARTS, check_targets, first_solution, search
+from cosserat_casadi.control.inverse_result import Inverse, with_verdict
+from cosserat_casadi.control.lifted_problem import lifted_problem
 from cosserat_casadi.control.target_errors import POSE_ENTRIES, Gap, length_of, model_error, target_errors, wanted_poses
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.results.json_text import json_text, plain
 from cosserat_casadi.results.solution_file import result
 

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Sequence
 
-from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_table import TargetTable
 from cosserat_casadi.model.load_cases import column_indices
 

@@ -17,7 +17,9 @@ from cosserat_casadi.codegen.compiled import Compiled, load
 from cosserat_casadi.codegen.compiled_results import CompiledSolution
 from cosserat_casadi.codegen.compiler import Progress
 from cosserat_casadi.codegen.export import export
-from cosserat_casadi.control.inverse import LiftedProblem, lifted_problem, search, with_verdict
+from cosserat_casadi.control.inverse import search
+from cosserat_casadi.control.inverse_result import with_verdict
+from cosserat_casadi.control.lifted_problem import LiftedProblem, lifted_problem
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, variations

@@ -18,7 +18,7 @@ from cosserat_casadi.cli.reports.format import (
     table_of,
     title_line,
 )
-from cosserat_casadi.control.inverse import Inverse
+from cosserat_casadi.control.inverse_result import Inverse
 from cosserat_casadi.control.target_errors import Gap
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.model.registry import EFFECTS

@@ -1,0 +1,161 @@
+"""What an inverse problem ends with, and its verdict: whether the targets are met, in words too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.control.target_errors import (
+    Gap,
+    length_of,
+    model_error,
+    target_errors,
+    wanted_poses,
+    weighted_errors,
+)
+from cosserat_casadi.equilibrium.solution import Solution
+
+UNSTABLE = "Not stable: a real rod leaves this equilibrium. "
+"""How the message of an unstable result begins."""
+
+NOT_STABLE = " No stable equilibrium was found that comes as near."
+"""How it ends where a stable one was wanted."""
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """Inputs found for targets.
+
+    Attributes:
+        solution: equilibrium at the inputs found; its message says whether the targets are met.
+        targets: what was to be where: those of the scene, or of a row of a table.
+        gaps: how far each target is missed, in their order.
+        met: whether the equilibrium was found and every gap is within the scene's tolerance, and where it was
+            estimated the error of the model too; where a stable one was wanted, whether it is that as well.
+        rounds: runs of the optimiser, from all starts together.
+        starts: starts that were tried, 1 where the first has met the targets.
+        at_bounds: decision variables that ended at a bound, by name.
+    """
+
+    solution: Solution
+    targets: tuple[scenes.Target, ...]
+    gaps: tuple[Gap, ...]
+    met: bool
+    rounds: int
+    starts: int = 1
+    at_bounds: tuple[str, ...] = ()
+
+    @property
+    def unstable(self) -> bool:
+        """Whether the equilibrium is known not to be stable; without a potential none is."""
+        return self.solution.converged and self.solution.stable is False
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The inputs found, by name: a number for one entry, else an array of shape (components, k)."""
+        values: dict[str, Any] = {}
+        for name, value in self.solution.model.inputs.unpack(self.solution.inputs).items():
+            values[name] = value
+            if value.size == 1:
+                values[name] = np.float64(value.item())
+        return values
+
+
+def with_verdict(result: Inverse, stable: bool) -> Inverse:
+    """The result of a search, judged: gaps, error of the model where it was estimated, and stability.
+
+    Args:
+        result: of :func:`search`, with an estimate of its error or without.
+        stable: whether a stable equilibrium was wanted.
+    """
+    solution = result.solution
+    gaps = target_errors(solution, result.targets)
+    result = replace(result, gaps=gaps)
+    result = replace(result, met=meets_all(result))
+    message = solution.message
+    if solution.converged:
+        message += _targets_sentence(result)
+    if result.unstable:
+        message = UNSTABLE + message
+    refused = stable and result.unstable
+    if refused:
+        message += NOT_STABLE
+    return replace(
+        result,
+        solution=replace(solution, message=message),
+        met=result.met and not refused,
+    )
+
+
+def gap_left(result: Inverse) -> float:
+    """Root of the weighted squares of what the targets are missed by; infinite without an equilibrium."""
+    solution = result.solution
+    if not solution.converged:
+        return np.inf
+    wanted = ca.DM(wanted_poses(result.targets))
+    errors = weighted_errors(solution.model, result.targets, wanted, ca.DM(solution.x), ca.DM(solution.inputs))
+    return float(np.linalg.norm(ca.evalf(ca.MX(errors)).full()))
+
+
+def _targets_sentence(result: Inverse) -> str:
+    verdicts = _reached(result)
+    missed = [gap for gap, reached in zip(result.gaps, verdicts, strict=True) if not reached]
+    if missed:
+        misses = "; ".join(_words(gap) for gap in missed)
+        sentence = f" The targets are not all met; the closest that was found misses {misses}."
+        return sentence + _minimum_sentence(result)
+    if meets_all(result):
+        return " The targets are met."
+    return _model_sentence(result)
+
+
+def _minimum_sentence(result: Inverse) -> str:
+    """Where a search that leaves a gap ended: it is local, whatever the number of its starts."""
+    where = "within the bounds"
+    if result.at_bounds:
+        where = f"at the bound of {', '.join(result.at_bounds)}"
+    starts = "1 start"
+    if result.starts > 1:
+        starts = f"{result.starts} starts"
+    return f" It is a local minimum {where}, the best of {starts}."
+
+
+def _model_sentence(result: Inverse) -> str:
+    """Why targets that the discrete model meets are not met by the rod, as far as is known."""
+    scene = result.solution.model.scene
+    errors = [model_error(result.solution, target) or 0.0 for target in result.targets]
+    return (
+        " The targets are met by these modes and nodes, but not to the tolerance: the estimated error of the model, "
+        f"{max(errors):.2g} of the length, is above {scene.accuracy.tolerance:g}. Allow more modes and nodes, or a "
+        "larger tolerance."
+    )
+
+
+def _words(gap: Gap) -> str:
+    distance = f"{gap.what} by {gap.position:.3g} m"
+    if gap.angle is None:
+        return distance
+    return f"{distance} and {gap.angle:.3g} rad"
+
+
+def meets_all(result: Inverse) -> bool:
+    """Whether the equilibrium was found and meets every target: by the discrete model, and that within its error."""
+    tolerance = result.solution.model.scene.accuracy.tolerance
+    within = [gap.within(length, tolerance) for gap, length in _gaps_and_lengths(result)]
+    return result.solution.converged and all(within)
+
+
+def _reached(result: Inverse) -> list[bool]:
+    """Whether the discrete model meets each target, whatever its own error."""
+    tolerance = result.solution.model.scene.accuracy.tolerance
+    return [gap.reached(length, tolerance) for gap, length in _gaps_and_lengths(result)]
+
+
+def _gaps_and_lengths(result: Inverse) -> list[tuple[Gap, float]]:
+    """The gap of each target, and the length that it is measured by, m."""
+    lengths = [length_of(result.solution.model, target) for target in result.targets]
+    return list(zip(result.gaps, lengths, strict=True))

@@ -1,0 +1,275 @@
+"""The inverse problem as a mathematical program: equilibrium as constraints, weighted errors of targets as cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.control.decision_variables import DecisionVariables, decision_variables, scales
+from cosserat_casadi.control.inverse_result import Inverse, gap_left, meets_all
+from cosserat_casadi.control.target_errors import POSE_ENTRIES, target_errors, wanted_poses, weighted_errors
+from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solve import check_potential, solve
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+
+DAMPING = (1e-1, 1e-2, 1e-3, 1e-4, 1e-8)
+"""Weights of the inputs' distance from where a round starts, the last one for all further rounds.
+
+Strong damping at first keeps the rods on the branch that they start on.
+"""
+
+SETTLED = 1e-9
+"""Change of the inputs from round to round, in their scales, below which they have settled."""
+
+SETTLED = 1e-9
+"""Change of the inputs from round to round, in their scales, below which they have settled."""
+
+ROUNDS = 7
+"""Most rounds."""
+
+IPOPT = {
+    "print_level": 0,
+    "sb": "yes",
+    "tol": 1e-10,
+    "mu_init": 1e-4,
+    "max_iter": 300,
+    "bound_relax_factor": 0.0,
+    "honor_original_bounds": "yes",
+}
+"""Options of the interior-point method; bounds are kept as they are written."""
+
+SEED = 20_240
+"""Of the generator that scatters them: the same scene has the same starts."""
+
+AT_BOUND = 1e-6
+"""Distance from a bound, in half its range, below which an input is at it."""
+
+NEAR_BOUND = 1e-3
+"""Distance from a bound, in the scales, below which an input is tried at the bound itself."""
+
+
+@dataclass(frozen=True)
+class LiftedProblem:
+    """Unknowns and n decision variables, these as changes in their scales from an origin.
+
+    Attributes:
+        model: the model.
+        targets: what is to be where.
+        variables: the decision variables.
+        scale: a change of each that matters, shape (n,).
+        origin: stacked inputs that changes count from.
+        optimiser: the interior-point method; it takes origin and wanted poses as parameters, so that other targets of
+            the same kinds share it.
+    """
+
+    model: Model
+    targets: tuple[scenes.Target, ...]
+    variables: DecisionVariables
+    scale: FloatArray
+    origin: FloatArray
+    optimiser: ca.Function
+
+    def solve(self, x: FloatArray, change: FloatArray) -> Inverse:
+        """Rounds of the optimiser, each damped about where the one before ended, then our own solve.
+
+        The damping picks one of many solutions and keeps the problem regular; moving its centre takes the error that
+        it makes out of the result.
+
+        Args:
+            x: unknowns to start from, shape (size,).
+            change: decision variables to start from, as changes from the origin in their scales, shape (n,).
+        """
+        bounds = self._bounds()
+        size = self.model.size
+        centre = change
+        rounds = 0
+        largest_change = np.inf
+        while rounds < ROUNDS and largest_change > SETTLED:
+            damping = DAMPING[min(rounds, len(DAMPING) - 1)]
+            result = self.optimiser(
+                x0=np.concatenate([x, centre]),
+                p=self._parameters(centre, damping),
+                lbg=0.0,
+                ubg=0.0,
+                **bounds,
+            )
+            optimum = result["x"].full()[:, 0]
+            rounds += 1
+            if not np.all(np.isfinite(optimum)):
+                # What the round before ended at is still a proposal.
+                break
+            x = optimum[:size]
+            change = optimum[size:]
+            largest_change = float(np.abs(change - centre).max())
+            centre = change
+        result = self._judged(x, centre, rounds)
+        if result.met:
+            return result
+        return self._polished(result, x, centre)
+
+    def _polished(self, result: Inverse, x: FloatArray, change: FloatArray) -> Inverse:
+        """The search once more with the inputs that are near a bound held at it; the better of the two.
+
+        An interior-point method stays off a bound by the root of its tolerance where nothing presses against it.
+        """
+        lower, upper = self._ranges()
+        at_lower = change <= lower + NEAR_BOUND
+        at_upper = change >= upper - NEAR_BOUND
+        if not np.any(at_lower | at_upper):
+            return result
+        held_lower = np.where(at_upper & ~at_lower, upper, lower)
+        held_upper = np.where(at_lower, lower, upper)
+        held = np.clip(change, held_lower, held_upper)
+        unbounded = np.full(self.model.size, np.inf)
+        optimum = self.optimiser(
+            x0=np.concatenate([x, held]),
+            p=self._parameters(held, DAMPING[-1]),
+            lbg=0.0,
+            ubg=0.0,
+            lbx=np.concatenate([-unbounded, held_lower]),
+            ubx=np.concatenate([unbounded, held_upper]),
+        )["x"].full()[:, 0]
+        rounds = result.rounds + 1
+        if not np.all(np.isfinite(optimum)):
+            return replace(result, rounds=rounds)
+        polished = self._judged(optimum[: self.model.size], optimum[self.model.size :], rounds)
+        return min(polished, replace(result, rounds=rounds), key=gap_left)
+
+    def _judged(self, x: FloatArray, change: FloatArray, rounds: int) -> Inverse:
+        """The equilibrium at the inputs found, solved and judged like any other."""
+        inputs = self.inputs(change)
+        values = self.model.inputs.unpack(inputs)
+        solution = solve(self.model, values, start=x)
+        gaps = target_errors(solution, self.targets)
+        result = Inverse(solution, self.targets, gaps, False, rounds, at_bounds=self._at_bounds(inputs))
+        return replace(result, met=meets_all(result))
+
+    def change(self, inputs: FloatArray) -> FloatArray:
+        """Decision variables of stacked inputs, brought into their ranges, as changes from the origin, shape (n,)."""
+        difference = self.variables.clipped(inputs) - self.origin
+        return np.asarray(difference[self.variables.indices] / self.scale)
+
+    def inputs(self, change: FloatArray) -> FloatArray:
+        """Stacked inputs for a change of the decision variables, shape (inputs,)."""
+        inputs = self.origin.copy()
+        inputs[self.variables.indices] += self.scale * change
+        # Rounding may leave a range by the last digit.
+        return self.variables.clipped(inputs)
+
+    def scattered(self, count: int) -> FloatArray:
+        """Changes of the decision variables to start from, shape (count, n); none where no range is closed.
+
+        Entries without a range on both sides stay at the origin.
+        """
+        lower, upper = self._ranges()
+        closed = np.isfinite(upper - lower) & (upper > lower)
+        if not np.any(closed):
+            return np.zeros((0, len(self.scale)))
+        shares = np.random.default_rng(SEED).random((count, len(self.scale)))
+        least = np.where(closed, lower, 0.0)
+        most = np.where(closed, upper, 0.0)
+        return np.asarray(least + shares * (most - least))
+
+    def _at_bounds(self, inputs: FloatArray) -> tuple[str, ...]:
+        """Names of the decision variables that are at a bound, those aside that their bounds hold at one value."""
+        variables = self.variables
+        values = inputs[variables.indices]
+        near = AT_BOUND * self.scale
+        at_bound = (values <= variables.lower + near) | (values >= variables.upper - near)
+        free = variables.upper > variables.lower
+        stacked = set(variables.indices[at_bound & free].tolist())
+        slices = self.model.inputs.slices.items()
+        return tuple(name for name, entries in slices if stacked & set(range(entries.start, entries.stop)))
+
+    def _parameters(self, centre: FloatArray, damping: float) -> FloatArray:
+        """Parameters of the optimiser."""
+        return np.concatenate([centre, [damping], self.origin, wanted_poses(self.targets)])
+
+    def _ranges(self) -> tuple[FloatArray, FloatArray]:
+        """Least and largest changes of the decision variables, each of shape (n,)."""
+        start = self.origin[self.variables.indices]
+        lower = (self.variables.lower - start) / self.scale
+        upper = (self.variables.upper - start) / self.scale
+        return lower, upper
+
+    def _bounds(self) -> dict[str, FloatArray]:
+        """Ranges of the changes; the unknowns have none."""
+        unbounded = np.full(self.model.size, np.inf)
+        lower, upper = self._ranges()
+        return {
+            "lbx": np.concatenate([-unbounded, lower]),
+            "ubx": np.concatenate([unbounded, upper]),
+        }
+
+
+def lifted_problem(
+    model: Model,
+    targets: tuple[scenes.Target, ...],
+    start: Solution,
+    stable: bool,
+) -> LiftedProblem:
+    """The problem of a model, ready for searches.
+
+    Args:
+        model: as in :func:`inverse`.
+        targets: what is to be where.
+        start: the equilibrium whose inputs and sensitivities scale the problem.
+        stable: as in :func:`inverse`.
+
+    Raises:
+        SceneError: as there.
+    """
+    variables = decision_variables(model)
+    if stable:
+        check_potential(model, start.inputs)
+    scale = scales(model, variables, start)
+    optimiser = _optimiser(model, targets, variables, scale)
+    return LiftedProblem(model, targets, variables, scale, variables.clipped(start.inputs), optimiser)
+
+
+def _optimiser(
+    model: Model,
+    targets: tuple[scenes.Target, ...],
+    variables: DecisionVariables,
+    scale: FloatArray,
+) -> ca.Function:
+    """The interior-point method for min |errors|²/2 + damping |change − centre|²/2, subject to the equilibrium."""
+    count = len(scale)
+    x = ca.MX.sym("x", model.size)
+    change = ca.MX.sym("change", count)
+    centre = ca.MX.sym("centre", count)
+    damping = ca.MX.sym("damping")
+    origin = ca.MX.sym("origin", model.inputs.size)
+    wanted = ca.MX.sym("wanted", POSE_ENTRIES * len(targets))
+    inputs = origin + _scatter(variables, scale, model.inputs.size) @ change
+    errors = weighted_errors(model, targets, wanted, x, inputs)
+    damped = damping * ca.sumsqr(change - centre)
+    problem = {
+        "x": ca.vertcat(x, change),
+        "p": ca.vertcat(centre, damping, origin, wanted),
+        "f": (ca.sumsqr(errors) + damped) / 2,
+        "g": model.residual(x, inputs),
+    }
+    options = {
+        "print_time": False,
+        "error_on_fail": False,
+        "show_eval_warnings": False,
+        "ipopt": IPOPT,
+    }
+    return ca.nlpsol("inverse", "ipopt", problem, options)
+
+
+def _scatter(variables: DecisionVariables, scale: FloatArray, size: int) -> ca.DM:
+    """Matrix from n changes of the decision variables to changes of the stacked inputs, shape (size, n)."""
+    count = len(scale)
+    return ca.DM.triplet(
+        variables.indices.tolist(),
+        list(range(count)),
+        ca.DM(scale),
+        size,
+        count,
+    )
