@@ -20,7 +20,7 @@ from cosserat_casadi.maths.rotation import (
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.floating_frames import FrameName
-from cosserat_casadi.model.functions import interpolation_weights
+from cosserat_casadi.model.interpolation import interpolation_weights
 from cosserat_casadi.model.system import Arguments, System, ratio_of
 
 

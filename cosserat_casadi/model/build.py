@@ -12,11 +12,12 @@ import numpy.typing as npt
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model import functions
+from cosserat_casadi.model import operations
 from cosserat_casadi.model.actuator_assembly import actuators_have_potential
 from cosserat_casadi.model.constraints import decisive_axes
 from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, with_numbers
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.functions import ModelFunctions
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
@@ -30,7 +31,7 @@ from cosserat_casadi.rod.discretisation import Discretisation
 
 
 @dataclass(frozen=True)
-class Model(functions.ModelFunctions, MotionFunctions):
+class Model(ModelFunctions, MotionFunctions):
     """A scene as functions of its unknowns ``x`` and its stacked ``inputs``.
 
     ``x`` holds the strain coordinates of every rod, in the order of the scene, then the multipliers of supports and
@@ -118,7 +119,7 @@ class Model(functions.ModelFunctions, MotionFunctions):
 
     def operations(self, function: ca.Function) -> int:
         """Scalar operations of one of the model's functions, after expansion and sharing of common terms."""
-        return functions.operations(function)
+        return operations.operations(function)
 
     def rod_name(self, rod: str | None) -> str:
         """A rod's name; None stands for the only one.

@@ -7,13 +7,10 @@ All functions are exact for the discrete model and can be differentiated again.
 from __future__ import annotations
 
 import casadi as ca
-import numpy as np
 
-from cosserat_casadi.maths import chebyshev
-from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
-from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.actuator_assembly import rod_actuation
 from cosserat_casadi.model.contact_depth import contact_depths
 from cosserat_casadi.model.discrete_scene import DiscreteScene
@@ -27,9 +24,11 @@ from cosserat_casadi.model.function_table import (
     owned_functions,
     scene_function,
 )
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, nonlinear_inputs
+from cosserat_casadi.model.interpolation import interpolation_weights
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System, ratio_of
+from cosserat_casadi.model.unloaded_response import parametric_response, unloaded_response
 from cosserat_casadi.rod import kinematics
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.statics import Statics
@@ -43,9 +42,6 @@ Interpolation at Chebyshev nodes converges from π nodes a wave on, and the Magn
 
 RESOLVED_NORM = 1e-2
 """Error of the tip's |Q| = 1 beyond which a solution of the literal system does not follow the rod."""
-
-NOISE = 1e-14
-"""Share of the largest entry of a linear response below which an entry is rounding."""
 
 PATH = ("x", "inputs", "load_factor")
 """Arguments of the functions on the way from the unloaded scene, load factor 0, to the scene, 1."""
@@ -129,8 +125,8 @@ class ModelFunctions:
     def path_tangent(self, written: Expressions) -> list[Matrix]:
         """Inputs ↦ dx/dλ of the unloaded scene, where the Jacobian is constant."""
         if written.discrete.parameters.size:
-            return [_parametric_response(written)]
-        return [_unloaded_response(self, written["inputs"])]
+            return [parametric_response(written)]
+        return [unloaded_response(self.discrete, self.path_jacobian, self.path_rate, written["inputs"])]
 
     @scene_function(Output("resolution_index"), kernel="resolution_index")
     def resolution_index(self, written: Expressions) -> list[Matrix]:
@@ -297,65 +293,6 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _unloaded_response(model: ModelFunctions, inputs: Matrix) -> Matrix:
-    """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
-
-    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
-    lengths and bases of rods are inputs, or those of loads that depend on poses, it is the map's linear part at the
-    scene's own values.
-    """
-    discrete = model.discrete
-    size = discrete.layout.size
-    unloaded = np.zeros(discrete.size)
-    no_rate = np.zeros(size)
-    origin = np.zeros(size)
-    # What the rate is not affine in: geometry, and inputs of loads that depend on poses.
-    geometry = sorted({*discrete.layout.geometry, *nonlinear_inputs(discrete)})
-    origin[geometry] = discrete.layout.pack()[geometry]
-    jacobian = model.path_jacobian(unloaded, origin, 0.0)
-    # The rate at the origin, and with one input at a time set to one.
-    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
-    probes[:, 1:][:, geometry] = 0.0
-    all_rates = model.path_rate.map(size + 1)
-    rates = all_rates(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
-    deviation = inputs
-    if geometry:
-        rate = model.path_rate(unloaded, inputs, 0.0, no_rate, 1.0)
-        slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
-        slopes = slope(discrete.layout.pack()).full()
-        rates[:, 1:][:, geometry] = rates[:, :1] + slopes[:, geometry]
-        deviation = inputs - ca.DM(origin)
-    response = rates
-    # A scene whose rods admit no strain has nothing to solve for.
-    if discrete.size:
-        response = -np.linalg.solve(jacobian.full(), rates)
-    at_origin = response[:, :1]
-    constant = ca.DM(_without_noise(at_origin[:, 0]))
-    by_inputs = _without_noise(response[:, 1:] - at_origin)
-    return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
-
-
-def _parametric_response(written: Expressions) -> Matrix:
-    """The same where numbers of the scene are parameters: a linear system for each p."""
-    discrete = written.discrete
-    load_factor = ca.MX.sym("load_factor")
-    unloaded = ca.DM.zeros(discrete.size, 1)
-    equations = Equations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
-    if not discrete.size:
-        return ca.MX(0, 1)
-    rate = ca.jacobian(equations.residual, load_factor)
-    at_start = ca.substitute([equations.jacobian, rate], [load_factor], [ca.MX(0.0)])
-    jacobian, right_side = at_start
-    response: Matrix = -ca.solve(jacobian, right_side, "qr")
-    return response
-
-
-def _without_noise(values: FloatArray) -> FloatArray:
-    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
-    largest = float(np.abs(values).max(initial=0.0))
-    return np.where(np.abs(values) < NOISE * largest, 0.0, values)
-
-
 def _resolution_index(written: Expressions) -> Matrix:
     """Largest turn of an interval over what can be resolved; in the literal system the error of the tip's |Q|."""
     indices: list[Matrix] = [ca.MX(0.0)]
@@ -442,65 +379,3 @@ def _by_strains(written: Expressions) -> Matrix:
     before = ca.DM(7, strains.start)
     after = ca.DM(7, written.discrete.size - strains.stop)
     return ca.horzcat(before, by_own_strains, after)
-
-
-def operations(function: ca.Function) -> int:
-    """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted.
-
-    The kernels of the intervals stay functions of their own; each call counts with all its operations.
-    """
-    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
-    results = ca.cse(list(function.call(symbols)))
-    return _operations(ca.Function("scalar", symbols, results))
-
-
-def _operations(scalar: ca.Function) -> int:
-    # An instruction shows the sizes of the function that it calls, not its name: kernels differ in them.
-    called = {(f.nnz_in(), f.nnz_out()): _operations(f) for f in scalar.find_functions(0)}
-    total = 0
-    for i in range(scalar.n_instructions()):
-        kind = scalar.instruction_id(i)
-        if kind == ca.OP_CALL:
-            entries_in = len(scalar.instruction_input(i))
-            entries_out = len(scalar.instruction_output(i))
-            total += called[entries_in, entries_out]
-        elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
-            total += 1
-    return total
-
-
-def interpolation_weights(discrete: DiscreteScene, rod: str, X: Matrix) -> Matrix:
-    """Weights of the nodal values at X, M×1: Chebyshev series of the element that holds X."""
-    grid = discrete.rods[rod].grid
-    to_coefficients = chebyshev.chebyshev_coefficients(np.eye(grid.intervals + 1))
-    rows = []
-    for element in range(grid.elements):
-        start, end = grid.places[element : element + 2]
-        local = (X - start) / (end - start)
-        weights = ca.DM(to_coefficients).T @ _chebyshev_values(grid.intervals, local)
-        if grid.elements > 1:
-            weights = _inside(grid.places, element, X) * weights
-        rows.append(weights)
-    return ca.vertcat(*rows)
-
-
-def _inside(breaks: tuple[Scalar, ...], element: int, X: Matrix) -> Matrix | int:
-    """1 where X lies in the element, which owns its tip-side end, else 0."""
-    above: Matrix | int = 1
-    below: Matrix | int = 1
-    # The first and the last element hold what lies before and beyond the rod: their polynomials extrapolate.
-    if element > 0:
-        above = breaks[element] < X
-    if element + 2 < len(breaks):
-        below = breaks[element + 1] >= X
-    return above * below
-
-
-def _chebyshev_values(degree: int, X: Matrix) -> Matrix:
-    """Chebyshev polynomials on [0, 1] up to a degree at X, (degree + 1)×1, by their recurrence."""
-    x = 2 * X - 1
-    values = [ca.MX(1.0), x]
-    for _ in range(degree - 1):
-        following = 2 * x * values[-1] - values[-2]
-        values.append(following)
-    return ca.vertcat(*values[: degree + 1])

@@ -1,0 +1,30 @@
+"""How many operations a function takes."""
+
+from __future__ import annotations
+
+import casadi as ca
+
+
+def operations(function: ca.Function) -> int:
+    """Scalar operations of a function: expanded to scalars, common terms shared, inputs and outputs not counted.
+
+    The kernels of the intervals stay functions of their own; each call counts with all its operations.
+    """
+    symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+    results = ca.cse(list(function.call(symbols)))
+    return _operations(ca.Function("scalar", symbols, results))
+
+
+def _operations(scalar: ca.Function) -> int:
+    # An instruction shows the sizes of the function that it calls, not its name: kernels differ in them.
+    called = {(f.nnz_in(), f.nnz_out()): _operations(f) for f in scalar.find_functions(0)}
+    total = 0
+    for i in range(scalar.n_instructions()):
+        kind = scalar.instruction_id(i)
+        if kind == ca.OP_CALL:
+            entries_in = len(scalar.instruction_input(i))
+            entries_out = len(scalar.instruction_output(i))
+            total += called[entries_in, entries_out]
+        elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
+            total += 1
+    return total

@@ -1,0 +1,85 @@
+"""The linear response of the unloaded scene to its loads: where a load path begins."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.discrete_scene import DiscreteScene
+from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.function_table import Expressions
+from cosserat_casadi.model.load_assembly import nonlinear_inputs
+from cosserat_casadi.model.system import Arguments, System
+
+NOISE = 1e-14
+"""Share of the largest entry of a linear response below which an entry is rounding."""
+
+
+def unloaded_response(
+    discrete: DiscreteScene,
+    path_jacobian: ca.Function,
+    path_rate: ca.Function,
+    inputs: Matrix,
+) -> Matrix:
+    """dx/dλ of the unloaded scene: its linear response to the loads, size×1.
+
+    The Jacobian there is constant and the loads are linear in the inputs: an affine map, found by evaluating it. Where
+    lengths and bases of rods are inputs, or those of loads that depend on poses, it is the map's linear part at the
+    scene's own values.
+
+    Args:
+        discrete: the scene.
+        path_jacobian: derivative of the residual on the load path with x.
+        path_rate: its derivative with inputs and load factor, along their speeds.
+        inputs: stacked inputs.
+    """
+    size = discrete.layout.size
+    unloaded = np.zeros(discrete.size)
+    no_rate = np.zeros(size)
+    origin = np.zeros(size)
+    # What the rate is not affine in: geometry, and inputs of loads that depend on poses.
+    geometry = sorted({*discrete.layout.geometry, *nonlinear_inputs(discrete)})
+    origin[geometry] = discrete.layout.pack()[geometry]
+    jacobian = path_jacobian(unloaded, origin, 0.0)
+    # The rate at the origin, and with one input at a time set to one.
+    probes = np.hstack([np.zeros((size, 1)), np.eye(size)])
+    probes[:, 1:][:, geometry] = 0.0
+    all_rates = path_rate.map(size + 1)
+    rates = all_rates(unloaded, origin[:, None] + probes, 0.0, no_rate, 1.0).full()
+    deviation = inputs
+    if geometry:
+        rate = path_rate(unloaded, inputs, 0.0, no_rate, 1.0)
+        slope = ca.Function("slope", [inputs], [ca.jacobian(rate, inputs)])
+        slopes = slope(discrete.layout.pack()).full()
+        rates[:, 1:][:, geometry] = rates[:, :1] + slopes[:, geometry]
+        deviation = inputs - ca.DM(origin)
+    response = rates
+    # A scene whose rods admit no strain has nothing to solve for.
+    if discrete.size:
+        response = -np.linalg.solve(jacobian.full(), rates)
+    at_origin = response[:, :1]
+    constant = ca.DM(_without_noise(at_origin[:, 0]))
+    by_inputs = _without_noise(response[:, 1:] - at_origin)
+    return constant + ca.sparsify(ca.DM(by_inputs)) @ deviation
+
+
+def parametric_response(written: Expressions) -> Matrix:
+    """The same where numbers of the scene are parameters: a linear system for each p."""
+    discrete = written.discrete
+    load_factor = ca.MX.sym("load_factor")
+    unloaded = ca.DM.zeros(discrete.size, 1)
+    equations = Equations(System(discrete, Arguments(ca.MX(unloaded), written["inputs"], load_factor)))
+    if not discrete.size:
+        return ca.MX(0, 1)
+    rate = ca.jacobian(equations.residual, load_factor)
+    at_start = ca.substitute([equations.jacobian, rate], [load_factor], [ca.MX(0.0)])
+    jacobian, right_side = at_start
+    response: Matrix = -ca.solve(jacobian, right_side, "qr")
+    return response
+
+
+def _without_noise(values: FloatArray) -> FloatArray:
+    """Values without what is rounding beside the largest, which differs with the number of threads of a BLAS."""
+    largest = float(np.abs(values).max(initial=0.0))
+    return np.where(np.abs(values) < NOISE * largest, 0.0, values)
