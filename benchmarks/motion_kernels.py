@@ -78,7 +78,7 @@ def named(kernel: ca.Function) -> ca.Function:
 
 def equations(model: Model) -> tuple[Parted, Parted]:
     """Inverse dynamics and the motion's Jacobian in parts, as an exported folder has them."""
-    motion = motion_in_c(model, model_names("motion", model, dynamics=True))
+    motion = motion_in_c(model, model_names("moving", model, dynamics=True))
     return motion.residual, motion.matrices
 
 

@@ -154,11 +154,12 @@ class _Writing:
 
     def __init__(self, listing: Listing, signature: ca.Function, form: ColumnForm | None) -> None:
         self.listing = listing
-        self.name = signature.name()
+        self.name: str = signature.name()
         self.signature = signature
         self.form = form
         self.reals = 0
         self.place: dict[int, int] = {}
+        self.callee_names = listing.names_of_callees(f"{self.name}_")
         self.in_column = self._in_column()
         self.batch_of = self._batches()
         self.given_to_columns = self._given_to_columns()
@@ -333,7 +334,7 @@ class _Writing:
     # Functions that are called
 
     def _callee_name(self, function: ca.Function, width: int) -> str:
-        return f"{self.name}_{function.name()}{'s' if width == LANES else ''}"
+        return f"{self.callee_names[hash(function)]}{'s' if width == LANES else ''}"
 
     def _write_callees(self) -> None:
         wanted = {}
@@ -389,10 +390,9 @@ class _Writing:
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
             self._write(f"{names[-1]})({given}", lines)
             self.statements += len(block.statements)
-        size = len(form.turns)
         for first in range(0, form.stride, LANES):
             for name in names:
-                given = f"w, {self.name}_turns + {size * first}, w + {self.columns + first}, w + {room}"
+                given = f"w, {self.name}_turns + {len(form.turns) * first}, w + {self.columns + first}, w + {room}"
                 self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:

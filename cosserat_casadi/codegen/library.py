@@ -43,7 +43,14 @@ SINGLE = {"single_tolerance": "1e-5", "single_shortest": "1e-4", "single_singula
 TRACK_ITERATIONS, TRACK_STEPS = 40, 20
 """Budget of a turn of a control loop where the caller names none; turns that go well take two to five iterations."""
 
-SHARED = ("solver.h", "solver.c")
+SHARED = (
+    "solver.h",
+    "solver_newton.c",
+    "solver_path.c",
+    "solver.c",
+    "solver_sensitivity.c",
+    "solver_track.c",
+)
 DENSE = ("linear_dense.c",)
 BLOCKS = ("linear_blocks.h", "linear_blocks.c")
 FOURS = ("fours.h",)
@@ -55,8 +62,12 @@ ROLES = {
     "{name}.h": "what you include: sizes, inputs, status, every function",
     "{name}.c": "the equations of this scene, and by inclusion the solver: compile this",
     "{name}_config.h": "sizes and limits that the solver is compiled with",
-    "solver.c": "the solver, the same in every folder",
-    "solver.h": "what its parts share",
+    "solver.c": "the solver, the same in every folder: solutions and how they are judged",
+    "solver_newton.c": "Newton from an iterate",
+    "solver_path.c": "growing loads, and one input after another",
+    "solver_sensitivity.c": "derivatives of a solution",
+    "solver_track.c": "a turn of a control loop",
+    "solver.h": "what the parts of the solver share",
     "linear_dense.c": "factorisation of the Jacobian as a whole",
     "linear_blocks.c": "factorisation of the Jacobian, rod after rod",
     "linear_blocks.h": "types of the tables for it",

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from cosserat_casadi.codegen.texts import files_in_c
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import FunctionSpec, Owner, table
@@ -33,6 +34,9 @@ KEYWORDS = frozenset(_C.split()) | frozenset(_CPP.split())
 
 TAKEN = frozenset(_HEADERS.split()) | frozenset(_BUILD.split())
 """Headers of C, which the library's own would hide, and what CMake and the linker know by a name."""
+
+FILES = frozenset(file.split(".")[0] for file in files_in_c())
+"""Files of the solver, which the library's own would overwrite."""
 
 FUNCTIONS = tuple(table(ModelFunctions))
 """The named functions of every model."""
@@ -172,6 +176,8 @@ def _name_problems(name: str) -> Iterator[Problem]:
         yield Problem("--name", f"{name!r} is a word of C or C++", remedy)
     elif name.lower() in TAKEN:
         yield Problem("--name", f"{name!r} is taken by C or its tools", remedy)
+    elif name.lower() in FILES:
+        yield Problem("--name", f"{name!r} is what a file of the solver is called", remedy)
 
 
 def _symbol_problems(names: Names) -> Iterator[Problem]:

@@ -21,3 +21,8 @@ def fill(text: str, words: Mapping[str, Any]) -> str:
 def resource(folder: str, file: str) -> str:
     """Text of a file of this package."""
     return (resources.files("cosserat_casadi.codegen") / folder / file).read_text(encoding="utf-8")
+
+
+def files_in_c() -> list[str]:
+    """Names of the files of this package in C."""
+    return sorted(file.name for file in (resources.files("cosserat_casadi.codegen") / "c").iterdir())

@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for follower_reissner: names, sizes, limits. */
+/* What the solver and its headers are compiled with for follower_reissner: names, sizes, limits. */
 #include "follower_reissner.h"
 
 #define solver_real follower_reissner_real

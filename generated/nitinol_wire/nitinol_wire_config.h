@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for nitinol_wire: names, sizes, limits. */
+/* What the solver and its headers are compiled with for nitinol_wire: names, sizes, limits. */
 #include "nitinol_wire.h"
 
 #define solver_real nitinol_wire_real

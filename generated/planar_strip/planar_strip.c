@@ -71,7 +71,11 @@ static real resolution_index(const real *x, const real *inputs, workspace *work)
 }
 
 #include "linear_dense.c"
+#include "solver_newton.c"
+#include "solver_path.c"
 #include "solver.c"
+#include "solver_sensitivity.c"
+#include "solver_track.c"
 
 void planar_strip_igm(const real *q, const real *base_position, const real *base_quaternion, const real *inputs,
     real *generalised_force, real *base_force, real *base_moment) {

@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for planar_strip: names, sizes, limits. */
+/* What the solver and its headers are compiled with for planar_strip: names, sizes, limits. */
 #include "planar_strip.h"
 
 #define solver_real planar_strip_real

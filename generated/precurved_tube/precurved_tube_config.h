@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for precurved_tube: names, sizes, limits. */
+/* What the solver and its headers are compiled with for precurved_tube: names, sizes, limits. */
 #include "precurved_tube.h"
 
 #define solver_real precurved_tube_real

@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for six_rod_platform: names, sizes, limits. */
+/* What the solver and its headers are compiled with for six_rod_platform: names, sizes, limits. */
 #include "six_rod_platform.h"
 
 #define solver_real six_rod_platform_real

@@ -1,8 +1,9 @@
 /* What the parts of the solver share: types, sizes, sums over unknowns.
 
    The library's own source includes, in this order: its configuration, its kernels, this header, the equations of the
-   scene, one of linear_dense.c and linear_blocks.c, and solver.c. All is one translation unit, so that nothing but the
-   functions of the library's header is visible to a linker. */
+   scene, one of linear_dense.c and linear_blocks.c, and the parts of the solver: solver_newton.c, solver_path.c, solver.c,
+   solver_sensitivity.c, solver_track.c. All is one translation unit, so that nothing but the functions of the library's
+   header is visible to a linker. */
 #ifndef SOLVER_UNKNOWNS
 #error "This file is a part of the library's own source: compile that one."
 #endif
@@ -65,3 +66,55 @@ static int all_finite(const real *a, int count) {
   }
   return 1;
 }
+
+/* ---- Newton ---- */
+
+typedef struct {
+  solver_status status;
+  int iterations;
+  int jacobians;
+  int damped;
+  real residual_norm; /* relative: over one plus the norm of the unknowns */
+} newton_result;
+
+/* When Newton gives up; the length of the step to come below which it stops before the tolerance, 0 for never; whether
+   it begins with the Jacobian at hand. */
+typedef struct {
+  int max_iterations;
+  int max_jacobians;
+  int max_halvings;
+  real inexact;
+  int reuse_jacobian;
+} newton_limits;
+
+/* Where Newton stands at an iterate. */
+typedef struct {
+  newton_result result;
+  int reuse_jacobian;
+  real norm; /* of the residual */
+} newton_state;
+
+/* ---- Continuation ---- */
+
+/* From the unloaded scene under growing loads, or from some inputs to others; t from 0 to 1. */
+typedef struct {
+  int grows_load;
+  const real *from;
+  const real *to;
+} load_path;
+
+typedef struct {
+  int max_steps;
+  int max_iterations;
+} path_limits;
+
+/* Where a continuation stands: the last two points and room for the next, the Jacobian of the last and room for one. */
+typedef struct {
+  path_point *point;
+  path_point *previous; /* null at the first point */
+  path_point *next;
+  path_point *spare_point;
+  updated_jacobian *jacobian;
+  updated_jacobian *spare;
+  int has_jacobian;
+} progress;

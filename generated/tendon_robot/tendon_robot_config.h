@@ -1,4 +1,4 @@
-/* What solver.c and its headers are compiled with for tendon_robot: names, sizes, limits. */
+/* What the solver and its headers are compiled with for tendon_robot: names, sizes, limits. */
 #include "tendon_robot.h"
 
 #define solver_real tendon_robot_real

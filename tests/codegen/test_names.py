@@ -53,6 +53,12 @@ def test_words_of_the_languages(word: str) -> None:
         library_names(word)
 
 
+@pytest.mark.parametrize("word", ["solver", "Solver_Track", "fours", "linear_dense", "motion", "fmi3"])
+def test_files_of_the_solver_are_not_overwritten(word: str) -> None:
+    with pytest.raises(ExportError, match=rf"--name: '{word}' is what a file of the solver is called"):
+        library_names(word)
+
+
 @pytest.mark.parametrize("word", ["math", "string", "Time", "stdio", "m", "c", "all", "clean", "install"])
 def test_names_that_the_tools_have_for_themselves(word: str) -> None:
     """A math.h in the folder would stand in front of that of C; a target called m would be linked with itself."""

@@ -145,8 +145,8 @@ def test_budgets_of_the_equations_of_motion(name: str) -> None:
     assert model.size == 12
     assert model.operations(model.inverse_dynamics) <= of_residual
     assert model.operations(model.dynamics_jacobian) <= of_jacobian
-    kernel = loops(model.dynamics_jacobian, "motion")
-    assert len(kernel_sources([kernel], scene_names("motion", wanted))["motion_kernels.c"]) <= size
+    kernel = loops(model.dynamics_jacobian, "of_motion")
+    assert len(kernel_sources([kernel], scene_names("moving", wanted))["moving_kernels.c"]) <= size
 
 
 def test_interface_entries_belong_to_no_rod() -> None:

@@ -1,0 +1,176 @@
+/* Damped Newton with a Broyden-updated Jacobian, from an iterate that the caller gives.
+
+   cosserat_casadi/numerics holds the same algorithm in Python: newton.py, broyden.py. */
+
+static const newton_limits DAMPED_NEWTON = {
+    .max_iterations = MAX_ITERATIONS,
+    .max_jacobians = MAX_ITERATIONS,
+    .max_halvings = MAX_HALVINGS,
+    .inexact = 0,
+    .reuse_jacobian = 0,
+};
+
+/* What is left of a product with the inverse of the Jacobian: one rank-one update for each step and its follower. */
+static void apply_updates(const updated_jacobian *jacobian, real *result) {
+  for (int j = 0; j + 1 < jacobian->count; j++) {
+    const real share = dot(jacobian->steps[j], result) / jacobian->squares[j];
+    for (int i = 0; i < N; i++) result[i] += jacobian->steps[j + 1][i] * share;
+  }
+}
+
+/* Minus the inverse of the Jacobian times a vector. */
+static void apply_inverse(const updated_jacobian *jacobian, const real *vector, real *result, workspace *work) {
+  for (int i = 0; i < N; i++) result[i] = -vector[i];
+  back_substitute(&jacobian->factors, result, work);
+  apply_updates(jacobian, result);
+}
+
+/* The quasi-Newton step at an iterate from minus the inverse times the residual there; zero where it is not finite. The
+   update is C. G. Broyden's (Math. Comp. 19, 1965, 577-593); its inverse is applied from the steps alone: C. T. Kelley,
+   Iterative Methods for Linear and Nonlinear Equations, SIAM 1995, section 7.3. */
+static int complete_step(const updated_jacobian *jacobian, real *step) {
+  if (jacobian->count > 0) {
+    const int last = jacobian->count - 1;
+    const real share = 1 - dot(jacobian->steps[last], step) / jacobian->squares[last];
+    for (int i = 0; i < N; i++) step[i] /= share;
+  }
+  return all_finite(step, N);
+}
+
+static int newton_step(const updated_jacobian *jacobian, const real *residual, real *step, workspace *work) {
+  apply_inverse(jacobian, residual, step, work);
+  return complete_step(jacobian, step);
+}
+
+/* Minus the inverse times any vector, at an iterate with this residual: the update that belongs to the last step needs
+   the step that would follow it. Zero where the result is not finite. */
+static int response(const updated_jacobian *jacobian, const real *residual, const real *vector, real *result,
+                    workspace *work) {
+  apply_inverse(jacobian, vector, result, work);
+  if (jacobian->count > 0 && newton_step(jacobian, residual, work->next_step, work)) {
+    const int last = jacobian->count - 1;
+    const real share = dot(jacobian->steps[last], result) / jacobian->squares[last];
+    for (int i = 0; i < N; i++) result[i] += work->next_step[i] * share;
+  }
+  return all_finite(result, N);
+}
+
+/* Whether a step of this length brings the residual down far enough. */
+static int serves(real length, real trial_norm, real norm) {
+  return isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * norm;
+}
+
+/* Halves the step until the residual falls. Returns the length that served, or zero; moves x, residual and norm on. */
+static real line_search(const loads *at, const real *step, int max_halvings, real *x, real *residual, real *norm,
+                        workspace *work) {
+  real *trial = work->trial;
+  real *trial_residual = work->trial_residual;
+  real length = 1;
+  for (int k = 0; k <= max_halvings; k++) {
+    for (int i = 0; i < N; i++) trial[i] = x[i] + length * step[i];
+    residual_at(trial, at, trial_residual, work);
+    const real trial_norm = norm_of(trial_residual);
+    if (serves(length, trial_norm, *norm)) {
+      memcpy(x, trial, N * sizeof *x);
+      memcpy(residual, trial_residual, N * sizeof *residual);
+      *norm = trial_norm;
+      return length;
+    }
+    length /= 2;
+  }
+  return 0;
+}
+
+/* Remembers a full step for the updates. Returns its length. */
+static real append_step(updated_jacobian *jacobian, const real *step) {
+  const real square = dot(step, step);
+  memcpy(jacobian->steps[jacobian->count], step, N * sizeof *step);
+  jacobian->squares[jacobian->count] = square;
+  jacobian->count++;
+  return SQUARE_ROOT(square);
+}
+
+static newton_state begin_newton(const newton_limits *limits, const real *residual) {
+  const newton_state state = {
+      .result = {.status = SOLVER_MAX_ITERATIONS, .iterations = 0, .jacobians = 0, .damped = 0, .residual_norm = 0},
+      .reuse_jacobian = limits->reuse_jacobian,
+      .norm = norm_of(residual),
+  };
+  return state;
+}
+
+/* Whether Newton ends at x, by what its result says. */
+static int newton_ends(newton_state *state, const newton_limits *limits, const real *x) {
+  newton_result *result = &state->result;
+  const real size = 1 + norm_of(x);
+  result->residual_norm = state->norm / size;
+  /* Beside unknowns whose norm overflows any residual would be small. */
+  if (!isfinite(state->norm) || !isfinite(size)) {
+    result->status = SOLVER_NOT_FINITE;
+    return 1;
+  }
+  if (state->norm <= TOLERANCE * size) result->status = SOLVER_CONVERGED;
+  if (result->status == SOLVER_CONVERGED || result->iterations >= limits->max_iterations) return 1;
+  return !state->reuse_jacobian && result->jacobians == limits->max_jacobians;
+}
+
+/* Counts a new Jacobian, which no update has changed yet. */
+static void expect_jacobian(newton_state *state, updated_jacobian *jacobian) {
+  state->result.jacobians++;
+  jacobian->count = 0;
+}
+
+/* What follows from a step of this length that has left the residual with this norm; of length zero where none served.
+   Returns zero where Newton ends. */
+static int weigh_step(newton_state *state, const newton_limits *limits, const real *step, real length, real norm,
+                      updated_jacobian *jacobian) {
+  const real previous_norm = state->norm;
+  state->norm = norm;
+  if (length == 0) {
+    if (!state->reuse_jacobian) {
+      state->result.status = SOLVER_SINGULAR;
+      return 0;
+    }
+    state->reuse_jacobian = 0;
+    return 1;
+  }
+  if (length < 1) {
+    state->result.damped = 1;
+    state->reuse_jacobian = 0;
+    return 1;
+  }
+  /* The step to come is about as much shorter than this one as the residual has fallen. */
+  if (append_step(jacobian, step) * norm < limits->inexact * previous_norm) state->result.status = SOLVER_CONVERGED;
+  state->reuse_jacobian = norm <= REUSE_DECREASE * previous_norm && jacobian->count < MAX_REUSES;
+  return 1;
+}
+
+/* Newton from x, with the residual there. Moves both on, and leaves the last Jacobian. */
+static newton_result newton(const loads *at, const newton_limits *limits, real *x, real *residual,
+                            updated_jacobian *jacobian, workspace *work) {
+  newton_state state = begin_newton(limits, residual);
+  while (!newton_ends(&state, limits, x)) {
+    if (!state.reuse_jacobian) {
+      expect_jacobian(&state, jacobian);
+      if (!linearise(x, at, &jacobian->factors, work)) {
+        state.result.status = SOLVER_NOT_FINITE;
+        break;
+      }
+    }
+    state.result.iterations++;
+    real norm = state.norm;
+    real length = 0;
+    if (newton_step(jacobian, residual, work->step, work)) {
+      /* A step of an old Jacobian is not halved: a new Jacobian is worth more. */
+      const int max_halvings = state.reuse_jacobian ? 0 : limits->max_halvings;
+      length = line_search(at, work->step, max_halvings, x, residual, &norm, work);
+    }
+    if (!weigh_step(&state, limits, work->step, length, norm, jacobian)) break;
+  }
+  return state.result;
+}
+
+static void count_work(solver_info *info, const newton_result *result) {
+  info->iterations += result->iterations;
+  info->jacobians += result->jacobians;
+}

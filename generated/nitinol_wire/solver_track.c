@@ -1,0 +1,64 @@
+/* A turn of a control loop: Newton from the equilibrium of the last turn, within a budget of iterations. */
+
+static const solver_options DEFAULT_OPTIONS = {
+    .max_iterations = SOLVER_DEFAULT_ITERATIONS,
+    .max_continuation_steps = SOLVER_DEFAULT_CONTINUATION_STEPS,
+};
+
+/* From the solution for the inputs of the last turn along the straight line to the new ones; zero, and x as it was, where
+   the budget of the turn is spent before the end. */
+static int follow_last_turn(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
+                            workspace *work, solver_info *info) {
+  const load_path path = {.grows_load = 0, .from = memory->inputs, .to = inputs};
+  const path_limits limits = {
+      .max_steps = options->max_continuation_steps,
+      .max_iterations = options->max_iterations,
+  };
+  const newton_limits start_limits = {
+      .max_iterations = options->max_iterations - info->iterations,
+      .max_jacobians = options->max_iterations,
+      .max_halvings = 0,
+      .inexact = 0,
+      .reuse_jacobian = 0,
+  };
+  if (!memory->has_inputs || options->max_continuation_steps < 1) return 0;
+  const newton_result start = start_path(&path, &start_limits, x, work);
+  count_work(info, &start);
+  if (start.status != SOLVER_CONVERGED) return 0;
+  const progress end = follow_path(&path, &limits, 1, work, info);
+  if (end.point->t < 1) return 0;
+  memcpy(x, end.point->x, N * sizeof *x);
+  return 1;
+}
+
+solver_status solver_track(const real *inputs, real *x, solver_memory *memory, const solver_options *options,
+                           real *d_x_d_inputs, real *d_poses_d_inputs, solver_workspace *work, solver_info *info) {
+  const solver_options chosen = options ? *options : DEFAULT_OPTIONS;
+  /* Half of the budget is left to the continuation. */
+  const newton_limits limits = {
+      .max_iterations = (chosen.max_iterations + 1) / 2,
+      .max_jacobians = chosen.max_iterations,
+      .max_halvings = 0,
+      .inexact = 0,
+      .reuse_jacobian = memory->has_jacobian,
+  };
+  solver_info found = no_result();
+  if (!all_finite(inputs, INPUTS) || !all_finite(x, N)) return finish(x, inputs, &found, info, work);
+  work->updated_jacobians[0].factors = memory->jacobian;
+  work->updated_jacobians[0].count = 0;
+  if (!correct(&limits, inputs, x, work, &found) && !follow_last_turn(memory, &chosen, inputs, x, work, &found)) {
+    found.status = SOLVER_LOST_TRACK;
+    found.load_factor = 0;
+    return finish(x, inputs, &found, info, work);
+  }
+  for (int i = 0; i < INPUTS; i++) memory->inputs[i] = inputs[i];
+  memory->has_inputs = 1;
+  memory->has_jacobian = 0;
+  solver_status end = finish(x, inputs, &found, info, work);
+  if (end == SOLVER_CONVERGED) end = derivatives(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
+  if (end == SOLVER_CONVERGED) {
+    memory->jacobian = work->updated_jacobians[0].factors;
+    memory->has_jacobian = 1;
+  }
+  return end;
+}
