@@ -58,7 +58,7 @@ def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequ
             _verdict(solution),
             f"{solution.energy:.6g}",
             f"{solution.stability.determinant:.6g}",
-            ", ".join(digits(solution.x)),
+            ", ".join(digits(solution.angles)),
             ", ".join(digits(solution.tip().position)),
         )
     console.print(table)
@@ -118,6 +118,8 @@ def _path_table(path: TubePath) -> Table:
 def _verdict(solution: TubeSolution) -> str:
     if solution.stability.neutral:
         return "neutral"
+    if solution.stable is None:
+        return "loads without energy: stability has no meaning"
     if solution.stable:
         return "stable"
     return "unstable"
