@@ -82,19 +82,20 @@ class LoadedTubeModel(TubeFunctions):
         size = self.size
         x, _, _ = self._arguments
         stations = self._whole.stations
-        state = ca.MX.sym("state", stations.size1())
+        # Angles, torques, pose and energy, moment, place.
+        parts = [ca.MX.sym(f"part{i}", width) for i, width in enumerate((size, size, 8, COMPONENTS, 1))]
         length = ca.MX.sym("length")
         section = ca.MX.sym("section", self._stacked_sections.size1())
-        after = self._step(state, length, section)
-        columns = ca.jacobian(after, state)
-        first_moment = 2 * size + 8
-        momenta = [*range(size, 2 * size), *range(first_moment, first_moment + COMPONENTS)]
-        one_step = ca.Function("one_step", [state, length, section], [columns[:, momenta]])
+        after = self._step(ca.vertcat(*parts), length, section)
+        from_momenta = [ca.jacobian(after, parts[1]), ca.jacobian(after, parts[3])]
+        one_step = ca.Function("one_step", [*parts, length, section], [ca.horzcat(*from_momenta)])
         every_step = one_step.map(self._lengths.size2())
+        cuts = [0, size, 2 * size, 2 * size + 8, 2 * size + 11, 2 * size + 12]
+        starts = ca.vertsplit(stations[:, :-1], cuts)
         outputs = {
             "stations": stations,
             "along": ca.jacobian(ca.vec(stations), x),
-            "of_steps": every_step(stations[:, :-1], self._lengths, self._stacked_sections),
+            "of_steps": every_step(*starts, self._lengths, self._stacked_sections),
         }
         return self._function("variations", outputs)
 

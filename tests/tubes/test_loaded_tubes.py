@@ -137,7 +137,7 @@ def shot(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
     ("text", "inputs"),
     [
         (TWO + PUSH, {}),
-        (weighed(THREE) + PUSH + POKE + WEIGHT + WIND, {}),
+        pytest.param(weighed(THREE) + PUSH + POKE + WEIGHT + WIND, {}, marks=pytest.mark.slow),
         (weighed(THREE) + PUSH + POKE + WEIGHT, {"outer.translation": 0.05, "innermost.translation": 0.12}),
     ],
     ids=["push", "three tubes", "another order"],
@@ -318,6 +318,7 @@ PLAIN = {"residual": 253, "jacobian": 303, "tips": 461, "tip_jacobian": 2454}
 """Instructions of a robot without loads, as before there were any."""
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("quick_compiler")
 def test_loaded_functions_in_c(tmp_path: Path) -> None:
     robot = robot_of(parse_scene(TWO + PUSH))
