@@ -15,14 +15,19 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.plots.arrows import draw_arrows
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import FAILURE, PLAIN_TEXT, category_style, rod_colour
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
+from cosserat_casadi.tubes.arrows import load_arrows
 from cosserat_casadi.tubes.path import TubeEvent, TubePath
 from cosserat_casadi.tubes.solution import TubeSolution
 
-STROKES = {True: "-", False: "--"}
-"""Stroke of what is stable, and of what is not."""
+STROKES: dict[bool | None, str] = {True: "-", False: "--", None: "-"}
+"""Stroke of what is stable, of what is not, and of what bears loads without energy."""
+
+VERDICTS: dict[bool | None, str] = {True: "stable", False: "unstable", None: "loads without energy"}
+"""What is called so."""
 
 DRAWN = 12
 """Points that are drawn from one station to the next."""
@@ -61,6 +66,8 @@ def plot_tubes(solutions: Sequence[TubeSolution]) -> Any:
     for number, solution in enumerate(solutions):
         _draw_robot(canvas, solution, number, several=len(solutions) > 1)
         _draw_angles(panel, solution, number, several=len(solutions) > 1)
+    # Loads that follow a tube turn with it: those of the first equilibrium are shown.
+    draw_arrows(canvas, load_arrows(solutions[0]))
     canvas.label_axes()
     canvas.equalise(points)
     panel.set_xlabel("distance from the plate along the centre line, m")
@@ -78,10 +85,10 @@ def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
     first = solutions[0]
     colour = PLAIN_TEXT
     if len(solutions) > 1:
-        stable = sum(solution.stable for solution in solutions)
+        stable = sum(bool(solution.stable) for solution in solutions)
         words = f"{len(solutions)} equilibria, {stable} of them stable"
     elif first.converged:
-        verdict = {True: "stable", False: "unstable"}[first.stable]
+        verdict = VERDICTS[first.stable]
         words = f"energy {first.energy:.6g} J; {verdict}"
     else:
         words = first.message
@@ -91,7 +98,7 @@ def _draw_subtitle(axes: Any, solutions: Sequence[TubeSolution]) -> None:
 
 def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
     """What a legend calls an equilibrium."""
-    verdict = {True: "stable", False: "unstable"}[solution.stable]
+    verdict = VERDICTS[solution.stable]
     if several:
         return f"{number + 1}: {verdict}, {solution.energy:.4g} J"
     return verdict
@@ -100,7 +107,7 @@ def _name(solution: TubeSolution, number: int, *, several: bool) -> str:
 def _draw_robot(canvas: Canvas, solution: TubeSolution, number: int, *, several: bool) -> None:
     """The centre line, as thick as there are tubes in it."""
     shape = solution.shape
-    reaches = solution.inputs[1::2]
+    reaches = solution.robot.translations(solution.inputs)
     colour = rod_colour(number)
     stroke = STROKES[solution.stable]
     label: str | None = _name(solution, number, several=several)
@@ -191,11 +198,17 @@ def plot_tube_path(path: TubePath) -> Any:
                 snap_energy = event.snaps_to.energy
             _draw_event(right, event, event.solution.energy, snap_energy)
         _draw_curve(right, path, path.energy, rod_colour(len(names)), "energy")
-    for axes, words in ((left, "angle at the tip, rad"), (right, "elastic energy, J")):
+    energy = "elastic energy, J"
+    verdicts = {True: "stable", False: "unstable"}
+    if path.stable is None:
+        verdicts = {}
+    elif path.solutions and path.solutions[0].robot.loads:
+        energy = "elastic energy less the work of the loads, J"
+    for axes, words in ((left, "angle at the tip, rad"), (right, energy)):
         axes.set_xlabel(f"{path.name}, {path.unit}")
         axes.set_ylabel(words)
         axes.grid(alpha=0.3)
-        for stable, verdict in ((True, "stable"), (False, "unstable")):
+        for stable, verdict in verdicts.items():
             axes.plot([], [], color="0.3", linestyle=STROKES[stable], label=verdict)
         axes.legend(fontsize=9)
     colour = FAILURE
@@ -225,6 +238,9 @@ def _landing(event: TubeEvent, tube: int) -> float | None:
 def _draw_curve(axes: Any, path: TubePath, heights: FloatArray, colour: str, label: str) -> None:
     """A quantity along the path, dashed where it is unstable."""
     stable = path.stable
+    if stable is None:
+        axes.plot(path.values, heights, color=colour, label=label)
+        return
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(stable)]
     for start, stop in pairwise(cuts):
         part = slice(start, min(stop + 1, len(stable)))

@@ -61,10 +61,17 @@ def tube_path_table(path: TubePath) -> str:
     columns += [f"{name}.tip.{axis}" for name in names for axis in "xyz"]
     lines = [",".join(columns)]
     for value, solution in zip(path.values, path.solutions, strict=True):
-        cells = [repr(float(value)), str(solution.stable).lower(), repr(solution.energy)]
+        cells = [repr(float(value)), _word(solution.stable), repr(solution.energy)]
         cells += [repr(float(entry)) for tip in solution.tips.values() for entry in tip.position]
         lines.append(",".join(cells))
     return "\n".join(lines) + "\n"
+
+
+def _word(stable: bool | None) -> str:
+    """A verdict in a table; empty where there is none."""
+    if stable is None:
+        return ""
+    return str(stable).lower()
 
 
 def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
@@ -91,7 +98,7 @@ def _equilibrium(solution: TubeSolution) -> dict[str, Any]:
         "energy": solution.energy,
         "steps": solution.model.steps,
         "inputs": dict(zip(robot.input_names, solution.inputs.tolist(), strict=True)),
-        "tip_angles": solution.x,
+        "tip_angles": solution.angles,
         "centre_line": {"distance": shape.distance, "position": shape.position, "quaternion": shape.quaternion},
         "tubes": entries,
     }
@@ -102,7 +109,7 @@ def _point(solution: TubeSolution) -> dict[str, Any]:
     return {
         "stable": solution.stable,
         "energy": solution.energy,
-        "tip_angles": solution.x,
+        "tip_angles": solution.angles,
         "tips": {name: tip.position for name, tip in solution.tips.items()},
     }
 

@@ -59,7 +59,7 @@ acceleration = [0, 0, -9.81]
     kind: Literal["gravity"] = Field(description="weight of the rods and bodies")
     acceleration: Vector = Field(description="acceleration in world axes, m/s²")
     rods: Names | None = Field(
-        None, description="names of the rods that it acts on; all rods when neither rods nor bodies are named"
+        None, description="names of the rods, or tubes, that it acts on; all when neither rods nor bodies are named"
     )
     bodies: Names | None = Field(
         None, description="names of the bodies that it acts on; all bodies when neither rods nor bodies are named"
@@ -88,7 +88,7 @@ class SectionWrench(LoadRecord):
 
     references: ClassVar[Mapping[str, str]] = {"rod": "rods"}
 
-    rod: str = Field(description="name of the rod that it acts on")
+    rod: str = Field(description="name of the rod, or of the tube, that it acts on")
     frame: Literal["world", "body"] = Field(
         "world", description="axes of force and moment: 'world' is a dead load, 'body' follows the section"
     )

@@ -114,11 +114,14 @@ def shared_names(scene: SceneTables) -> Iterator[Fault]:
 
 def dangling_names(scene: SceneTables) -> Iterator[Fault]:
     """A table refers to an entry that the scene does not have."""
-    if not scene.named("rods"):
+    if not scene.named("rods") and not scene.named("tubes"):
         # The rods have a fault already, and every reference would dangle.
         return
     for path, record, table in _entries(scene):
         for field_path, name, key in _references(record, table):
+            if key == "rods" and scene.named("tubes"):
+                # What acts on rods names tubes where these take their place.
+                key = "tubes"
             known = scene.named(key)
             if name not in known:
                 problem = f"no {SINGULAR[key]} is named {shown(name)}"

@@ -14,8 +14,11 @@ from cosserat_casadi.scene.records import Entry, Record
 from cosserat_casadi.scene.rods import Material
 from cosserat_casadi.scene.values import Name, NotNegative, Number, Positive, numbers_of
 
-BESIDE_TUBES = ("schema", "title", "accuracy", "tubes")
+BESIDE_TUBES = ("schema", "title", "accuracy", "loads", "tubes")
 """Keys of a scene that may stand beside tubes."""
+
+LOADS_ON_TUBES = ("tip_wrench", "distributed_wrench", "gravity")
+"""Kinds of loads that act on tubes."""
 
 OF_RODS = ("shape", "modes", "nodes", "rotation", "chosen_for")
 """Keys of `[accuracy]` that are for rods."""
@@ -93,6 +96,9 @@ translation = 0.15
     material: Material | None = Field(None, description="what the tube is made of; with section")
     section: TubeSection | None = Field(None, description="its cross-section; with material")
     stiffness: TubeStiffness | None = Field(None, description="stiffnesses, N m²; instead of material and section")
+    linear_density: Positive | None = Field(
+        None, description="mass per length, kg/m; with stiffness, needed where gravity acts"
+    )
     straight: NotNegative = Field(description="length of the straight part, m")
     curved: NotNegative = Field(description="length of the curved part, which ends at the tip, m")
     curvature: Number = Field(
@@ -111,6 +117,8 @@ translation = 0.15
                 yield Fault((key,), "stands beside stiffness", "give material and section, or stiffness")
             elif "stiffness" not in given and key not in given:
                 yield Fault((key,), "missing", "give material and section, or stiffness")
+        if "linear_density" in given and "stiffness" not in given:
+            yield Fault(("linear_density",), "stands without stiffness", "give the density of the material, kg/m³")
         straight = numbers_of(given.get("straight"))
         curved = numbers_of(given.get("curved"))
         translation = numbers_of(given.get("translation"))
@@ -133,8 +141,8 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
         return
     for key in scene.keys:
         if key not in BESIDE_TUBES:
-            problem = "stands beside tubes, which are solved on their own, without loads"
-            yield Fault((key,), problem, f"leave it out; beside tubes may stand {', '.join(BESIDE_TUBES[1:3])}")
+            problem = "stands beside tubes, which are solved on their own"
+            yield Fault((key,), problem, f"leave it out; beside tubes may stand {', '.join(BESIDE_TUBES[1:4])}")
     accuracy = scene.get("accuracy")
     if isinstance(accuracy, Mapping):
         for key in OF_RODS:
@@ -144,6 +152,59 @@ def tube_faults(scene: SceneTables) -> Iterator[Fault]:
         index, _ = tubes[0]
         yield Fault(("tubes", index, "translation"), "no tube stands out of the plate", "push one out: translation > 0")
     yield from _nesting_faults(scene)
+    yield from _load_faults(scene)
+    yield from _weightless_tubes(scene)
+
+
+def _load_faults(scene: SceneTables) -> Iterator[Fault]:
+    """Loads that do not act on tubes, or in a way that tubes do not bear."""
+    names = scene.named("tubes")
+    for index, load in scene.tables("loads"):
+        kind = load.get("kind")
+        if not isinstance(kind, str):
+            continue
+        if kind not in LOADS_ON_TUBES:
+            remedy = f"on tubes act {', '.join(LOADS_ON_TUBES)}"
+            yield Fault(("loads", index, "kind"), f"{shown(kind)} does not act on tubes", remedy)
+        elif kind == "distributed_wrench":
+            for fault in _spread_faults(load):
+                yield fault.below(("loads", index))
+        name = load.get("name")
+        if isinstance(name, str) and name in names:
+            first, _ = names[name]
+            problem = f"{shown(name)} is already the name of tubes[{first}]"
+            yield Fault(("loads", index, "name"), problem, "their inputs could not be told apart")
+
+
+def _spread_faults(load: Table) -> Iterator[Fault]:
+    """What tubes do not bear of a wrench per length, without the path of the load."""
+    if "moment" in load:
+        yield Fault(("moment",), "does not act on tubes along their length", "give a force, N/m")
+    if load.get("frame") == "body":
+        yield Fault(("frame",), "does not act on tubes along their length", 'give the force in axes of the "world"')
+    force = load.get("force")
+    if isinstance(force, list) and any(isinstance(component, list | Mapping) for component in force):
+        yield Fault(("force",), "varies along the tube", "give three numbers, N/m, of the tube up to its tip")
+
+
+def _weightless_tubes(scene: SceneTables) -> Iterator[Fault]:
+    """Gravity acts on a tube whose mass is not given."""
+    for index, tube in scene.tables("tubes"):
+        weighing = [i for i, load in scene.tables("loads") if _weighs(load, tube.get("name"))]
+        if not weighing:
+            continue
+        acting = f"loads[{weighing[0]}] acts on this tube"
+        material = tube.get("material")
+        if "stiffness" in tube and "linear_density" not in tube:
+            yield Fault(("tubes", index, "linear_density"), "missing", f"{acting}: give its mass per length, kg/m")
+        elif "stiffness" not in tube and isinstance(material, Mapping) and "density" not in material:
+            yield Fault(("tubes", index, "material", "density"), "missing", f"{acting}: give its density, kg/m³")
+
+
+def _weighs(load: Table, tube: Any) -> bool:
+    """Whether a load weighs a tube of a name."""
+    rods = load.get("rods")
+    return load.get("kind") == "gravity" and (rods is None or (isinstance(rods, list) and tube in rods))
 
 
 def _reaches_out(tube: Table) -> bool:

@@ -13,20 +13,21 @@ Newton's method starts from the points of finer and finer grids until a grid fin
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.events import bracketed_zero
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.model import TubeModel
-from cosserat_casadi.tubes.robot import Robot, robot_of
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.solve import MOST_STEPS, judged, solution_near, solve_tubes
+from cosserat_casadi.tubes.solve import MOST_STEPS, judged, loaded_from, solution_near, solve_tubes
 
 MOST_TUBES = 4
 """Tubes whose equilibria are looked for: starts of Newton's method grow as a power of their number."""
@@ -63,6 +64,7 @@ class TubeEquilibria:
         solutions: the equilibria, by their energy, the least first.
         complete: whether the search ended as it should: it settled before its work ran out, all equilibria are within
             tolerance, and the signs of their determinants add up to one. Two of opposite signs could still be missing.
+            Never so under loads, where those are found that the equilibria without loads lead to.
     """
 
     robot: Robot
@@ -77,6 +79,8 @@ class TubeEquilibria:
     @property
     def message(self) -> str:
         """A sentence for the user."""
+        if self.robot.loads and self.solutions:
+            return "Equilibria were found by following those without loads while the loads grow: others may be missing."
         if self.complete:
             return (
                 "The search for all equilibria of these inputs has settled, and the signs of their determinants add up "
@@ -90,7 +94,7 @@ class TubeEquilibria:
         )
 
 
-def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeEquilibria:
+def all_equilibria(scene: scenes.Scene, values: Values = None) -> TubeEquilibria:
     """Find every equilibrium of concentric tubes.
 
     Args:
@@ -107,6 +111,39 @@ def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayL
         raise SceneError(Problem("tubes", problem, "solve it without --all"))
     # As many steps as one of them needs are a beginning for the others.
     model = solve_tubes(scene, at).model
+    if isinstance(model, LoadedTubeModel):
+        return _under_loads(model, at)
+    return _without_loads(TubeModel(robot, model.steps), at)
+
+
+def _under_loads(model: LoadedTubeModel, at: FloatArray) -> TubeEquilibria:
+    """The equilibria that those without loads lead to."""
+    robot = model.robot
+    without = _without_loads(model.unloaded, at)
+    while True:
+        finer = LoadedTubeModel(robot, 2 * model.steps)
+        reached = [loaded_from(model, at, start) for start in without.solutions]
+        solutions: list[TubeSolution] = []
+        for solution in reached:
+            if solution.converged and all(_differ(solution, known) for known in solutions):
+                solutions.append(_refined(model, finer, at, solution.x))
+        if finer.steps >= MOST_STEPS or all(solution.converged for solution in solutions):
+            by_energy = sorted(solutions, key=lambda solution: solution.energy)
+            return TubeEquilibria(robot, tuple(by_energy), complete=False)
+        model = finer
+
+
+def _differ(one: TubeSolution, other: TubeSolution) -> bool:
+    """Whether two equilibria under loads differ; a quaternion and its opposite are one frame."""
+    size = one.robot.size
+    sign = np.sign(one.x[size:] @ other.x[size:])
+    change = np.concatenate([one.angles - other.angles, one.x[size:] - sign * other.x[size:]])
+    return bool(np.abs(change).max() > SAME)
+
+
+def _without_loads(model: TubeModel, at: FloatArray) -> TubeEquilibria:
+    """Every equilibrium of tubes without loads, looked for with a model to begin with."""
+    robot = model.robot
     while True:
         search = _searched(model, at)
         finer = TubeModel(robot, 2 * model.steps)
@@ -120,7 +157,7 @@ def all_equilibria(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayL
         model = finer
 
 
-def _refined(model: TubeModel, finer: TubeModel, inputs: FloatArray, x: FloatArray) -> TubeSolution:
+def _refined(model: TubeFunctions, finer: TubeFunctions, inputs: FloatArray, x: FloatArray) -> TubeSolution:
     """An equilibrium of the finer model near one of a model, with the estimate of its error."""
     rough = solution_near(model, inputs, x)
     fine = solution_near(finer, inputs, x)
@@ -159,7 +196,7 @@ def _searched(model: TubeModel, inputs: FloatArray) -> _Search:
     """Look for every equilibrium of a model."""
     if model.size == 1:
         # One tube does not twist.
-        return _Search([inputs[::2].copy()], settled=True)
+        return _Search([model.robot.rotations(inputs).copy()], settled=True)
     if model.size == PAIR:
         return _of_two_tubes(model, inputs)
     return _of_more_tubes(model, inputs)

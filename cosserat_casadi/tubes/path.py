@@ -6,7 +6,6 @@ equilibrium that the path has at the same inputs, which lies beyond the next fol
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,13 +19,13 @@ from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
-from cosserat_casadi.tubes.model import TubeModel
-from cosserat_casadi.tubes.robot import Robot, robot_of
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.solution import TubeSolution, tip_error
-from cosserat_casadi.tubes.solve import MOST_STEPS, solution_at, solution_near, solve_at, solve_tubes
+from cosserat_casadi.tubes.solve import MOST_STEPS, model_of, solution_at, solution_near, solve_at, solve_tubes
 
 TURNING = ArcSettings(longest=0.1, load_factor_change=0.05)
-"""Limits of a path over a rotation; the angles at the tips count in rad, the input as the share of its way."""
+"""Limits of a path over a rotation or a load; angles at the tips count in rad, the input as the share of its way."""
 
 SLIDING = ArcSettings(longest=0.05, load_factor_change=0.02, min_cosine=0.0, max_distance=5.0)
 """Limits of a path over a translation.
@@ -49,7 +48,7 @@ class TubeEvent:
 
     Attributes:
         kind: "limit" or "bifurcation".
-        value: of the input there, rad or m.
+        value: of the input there.
         solution: the equilibrium there, which is neutral.
         position: index of the first point of the path that lies beyond it.
         snaps_to: the stable equilibrium at the same inputs that the robot snaps to; None where it does not lose its
@@ -64,7 +63,7 @@ class TubeEvent:
 
     @property
     def released_energy(self) -> float | None:
-        """Elastic energy that the snap sets free, J."""
+        """Energy that the snap sets free, J."""
         if self.snaps_to is None:
             return None
         return self.solution.energy - self.snaps_to.energy
@@ -77,7 +76,7 @@ class TubePath:
     Attributes:
         title: of the scene.
         name: of the input that moves.
-        unit: "rad" or "m".
+        unit: of the input.
         outcome: how the path ended.
         values: of the input at k points in the order of travel, shape (k,).
         solutions: the equilibria at these points.
@@ -106,13 +105,15 @@ class TubePath:
         return WORDS.get(self.outcome, self.outcome.value)
 
     @property
-    def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether each point is stable, shape (k,)."""
+    def stable(self) -> npt.NDArray[np.bool_] | None:
+        """Whether each point is stable, shape (k,); None where the loads have no energy."""
+        if self.solutions and not self.solutions[0].robot.has_energy:
+            return None
         return np.array([solution.stable for solution in self.solutions], dtype=np.bool_)
 
     @property
     def energy(self) -> FloatArray:
-        """Elastic energy at each point, shape (k,), J."""
+        """Energy at each point, shape (k,), J, as :attr:`TubeSolution.energy`."""
         return np.array([solution.energy for solution in self.solutions])
 
     def tip(self, tube: str | None = None) -> FloatArray:
@@ -125,7 +126,7 @@ def follow_tubes(
     scene: scenes.Scene,
     name: str,
     to: float,
-    values: Mapping[str, float] | npt.ArrayLike | None = None,
+    values: Values = None,
     *,
     progress: Progress | None = None,
 ) -> TubePath:
@@ -133,8 +134,8 @@ def follow_tubes(
 
     Args:
         scene: a scene with tubes.
-        name: of the input, such as "inner.rotation".
-        to: its value at the end, rad or m.
+        name: of the input, such as "inner.rotation" or "push.force.z".
+        to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
         progress: receives the largest share of the way.
 
@@ -187,8 +188,8 @@ class _Way:
     Attributes:
         robot: the tubes.
         name: of the input.
-        start: inputs at factor 0, shape (2 n,).
-        end: inputs at factor 1, shape (2 n,).
+        start: inputs at factor 0.
+        end: inputs at factor 1.
     """
 
     robot: Robot
@@ -199,12 +200,10 @@ class _Way:
     @property
     def unit(self) -> str:
         """Unit of the input."""
-        if self.name.endswith(".rotation"):
-            return "rad"
-        return "m"
+        return self.robot.input_units[self.robot.input_index(self.name)]
 
     def inputs(self, factor: float) -> FloatArray:
-        """All inputs at a factor, shape (2 n,)."""
+        """All inputs at a factor."""
         return self.start + factor * (self.end - self.start)
 
     def value(self, factor: float) -> float:
@@ -213,7 +212,7 @@ class _Way:
 
     def followed(self, steps: int, progress: Progress | None) -> TubePath:
         """The path of the model with a number of steps."""
-        model = TubeModel(self.robot, steps)
+        model = model_of(self.robot, steps)
         first = solve_at(model, self.start)
         if not first.converged:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
@@ -230,7 +229,7 @@ class _Way:
         traced = trace(Curve(path, DETERMINANT, settings), progress=progress)
         return self._path(model, traced)
 
-    def _path(self, model: TubeModel, traced: Trace) -> TubePath:
+    def _path(self, model: TubeFunctions, traced: Trace) -> TubePath:
         factors = [point.load_factor for point in traced.points]
         solutions = [self._solution(model, point.x, point.load_factor) for point in traced.points]
         lengths = [point.length for point in traced.points]
@@ -249,12 +248,12 @@ class _Way:
             error_estimate=None,
         )
 
-    def _solution(self, model: TubeModel, x: FloatArray, factor: float) -> TubeSolution:
+    def _solution(self, model: TubeFunctions, x: FloatArray, factor: float) -> TubeSolution:
         # The path is corrected at each of its points.
         return solution_at(model, self.inputs(factor), x, found=True)
 
     def _event(
-        self, model: TubeModel, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]
+        self, model: TubeFunctions, event: Event, position: int, factors: list[float], solutions: list[TubeSolution]
     ) -> TubeEvent:
         factor = event.point.load_factor
         at_event = self._solution(model, event.point.x, factor)
@@ -265,13 +264,13 @@ class _Way:
 
 
 def _next_stable(
-    model: TubeModel, inputs: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
+    model: TubeFunctions, inputs: FloatArray, factor: float, factors: list[float], solutions: list[TubeSolution]
 ) -> TubeSolution | None:
     """The first stable equilibrium that a path comes to at a factor.
 
     Args:
         model: the robot.
-        inputs: at the factor, shape (2 n,).
+        inputs: at the factor.
         factor: the factor.
         factors: of the points of the path from there on.
         solutions: the equilibria at these points.

@@ -1,10 +1,12 @@
-"""The tubes of a scene as numbers, and the vector of their inputs."""
+"""The tubes of a scene and their loads as numbers, and the vector of their inputs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
+import casadi as ca
 import numpy as np
 import numpy.typing as npt
 
@@ -15,9 +17,18 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.rods import shear_modulus
 from cosserat_casadi.rod.section import annulus, hooke
 from cosserat_casadi.scene.spelling import closest
+from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad, loads_of
+
+Inputs = TypeVar("Inputs", FloatArray, ca.MX)
 
 FIELDS = ("rotation", "translation")
-"""Inputs of each tube, rad and m, in the order of the inputs."""
+"""Inputs of each tube, in the order of the inputs."""
+
+UNITS = ("rad", "m")
+"""Their units."""
+
+Values = Mapping[str, npt.ArrayLike] | npt.ArrayLike | None
+"""Inputs as they are given: by name, all in order, or None for those of the scene."""
 
 SLACK = 1e-12
 """By how much, relative to a length, a translation may leave its range: what rounding does to it."""
@@ -35,7 +46,9 @@ class Robot:
         curvature: of the curved part of the unloaded tube, shape (n,), 1/m.
         straight: length of the straight part, shape (n,), m.
         curved: length of the curved part behind it, shape (n,), m.
-        inputs: rotation and translation of each tube in the scene, shape (2 n,), rad and m.
+        loads: what acts on the tubes, m inputs of three numbers.
+        inputs: rotation and translation of each tube in the scene, then the loads, shape (2 n + 3 m,), rad, m and the
+            units of the loads.
         tolerance: wanted pose error of the tips, distances relative to the length that stands out.
     """
 
@@ -46,6 +59,7 @@ class Robot:
     curvature: FloatArray
     straight: FloatArray
     curved: FloatArray
+    loads: tuple[TubeLoad, ...]
     inputs: FloatArray
     tolerance: float
 
@@ -61,8 +75,42 @@ class Robot:
 
     @property
     def input_names(self) -> tuple[str, ...]:
-        """Names ``tube.rotation`` and ``tube.translation`` of the entries of the inputs."""
-        return tuple(f"{name}.{field}" for name in self.names for field in FIELDS)
+        """Names of the entries of the inputs: ``tube.rotation``, ``tube.translation``, then ``load.field.x``."""
+        names = [f"{name}.{field}" for name in self.names for field in FIELDS]
+        for load in self.loads:
+            names += load.entries
+        return tuple(names)
+
+    @property
+    def input_units(self) -> tuple[str, ...]:
+        """Units of the entries of the inputs."""
+        units = list(UNITS * self.size)
+        for load in self.loads:
+            units += [load.unit] * COMPONENTS
+        return tuple(units)
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether all loads have an energy, so that stability has a meaning; they have where there are none."""
+        return all(load.has_energy for load in self.loads)
+
+    def rotations(self, inputs: Inputs) -> Inputs:
+        """Rotations of the drives among the inputs, n entries, rad."""
+        return inputs[: 2 * self.size : 2]
+
+    def translations(self, inputs: Inputs) -> Inputs:
+        """Translations of the tubes among the inputs, n entries, m."""
+        return inputs[1 : 2 * self.size : 2]
+
+    def load_start(self, index: int) -> int:
+        """Where the numbers of a load begin in the inputs."""
+        return 2 * self.size + COMPONENTS * index
+
+    def with_loads(self, inputs: FloatArray, factor: float) -> FloatArray:
+        """The inputs with all loads times a factor."""
+        scaled = inputs.copy()
+        scaled[2 * self.size :] *= factor
+        return scaled
 
     def input_index(self, name: str) -> int:
         """Place of an input in the inputs.
@@ -74,12 +122,12 @@ class Robot:
             raise SceneError(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
         return self.input_names.index(name)
 
-    def packed(self, values: Mapping[str, float] | npt.ArrayLike | None) -> FloatArray:
-        """The inputs, shape (2 n,).
+    def packed(self, values: Values = None) -> FloatArray:
+        """The inputs, shape (2 n + 3 m,).
 
         Args:
-            values: inputs by name, where those not named keep the scene's value; or all of them in order; None for
-                those of the scene.
+            values: inputs by name, where those not named keep the scene's value, and a load may be named whole, such
+                as "push.force"; or all of them in order; None for those of the scene.
 
         Raises:
             SceneError: with every input that is unknown, no finite number, or out of its range.
@@ -98,32 +146,45 @@ class Robot:
             raise SceneError(*problems)
         return inputs
 
-    def _named(self, values: Mapping[str, float]) -> FloatArray:
+    def _named(self, values: Mapping[str, npt.ArrayLike]) -> FloatArray:
         inputs = self.inputs.copy()
         problems = []
         for name, value in values.items():
-            number = np.asarray(value, dtype=float)
-            if name not in self.input_names:
+            numbers = np.asarray(value, dtype=float)
+            place = self._place(name)
+            if place is None:
                 problems.append(Problem(name, "is no input of the tubes", closest(name, self.input_names)))
-            elif number.size != 1:
-                problems.append(Problem(name, f"must be a number, got the shape {number.shape}"))
+            elif numbers.size != place.stop - place.start:
+                wanted = {1: "a number", COMPONENTS: "three numbers"}[place.stop - place.start]
+                problems.append(Problem(name, f"must be {wanted}, got the shape {numbers.shape}"))
             else:
-                inputs[self.input_names.index(name)] = number.item()
+                inputs[place] = numbers.ravel()
         if problems:
             raise SceneError(*problems)
         return inputs
+
+    def _place(self, name: str) -> slice | None:
+        """Which entries of the inputs a name means; None where there are none."""
+        if name in self.input_names:
+            index = self.input_names.index(name)
+            return slice(index, index + 1)
+        for index, load in enumerate(self.loads):
+            if load.name == name:
+                start = self.load_start(index)
+                return slice(start, start + COMPONENTS)
+        return None
 
     def _out_of_range(self, inputs: FloatArray) -> list[Problem]:
         problems = []
         for name, value in zip(self.input_names, inputs, strict=True):
             if not np.isfinite(value):
                 problems.append(Problem(name, f"must be finite, got {value}"))
-        for name, translation, length in zip(self.names, inputs[1::2], self.length, strict=True):
+        for name, translation, length in zip(self.names, self.translations(inputs), self.length, strict=True):
             if translation < -SLACK * length or translation > (1 + SLACK) * length:
                 problem = f"must be from 0 to the length of the tube, {length:g} m, got {translation:g}"
                 remedy = "it is how far the tip stands out of the plate"
                 problems.append(Problem(f"{name}.translation", problem, remedy))
-        if not problems and not np.any(inputs[1::2] > 0.0):
+        if not problems and not np.any(self.translations(inputs) > 0.0):
             problems.append(Problem("tubes", "no tube stands out of the plate", "push one out: translation > 0"))
         return problems
 
@@ -137,7 +198,9 @@ def robot_of(scene: scenes.Scene) -> Robot:
     if not scene.tubes:
         raise SceneError(Problem("tubes", "the scene has none", "a scene of rods is solved by solve_scene"))
     stiffness = np.array([_stiffness(tube) for tube in scene.tubes])
+    loads = loads_of(scene)
     inputs = [value for tube in scene.tubes for value in (tube.rotation, tube.translation)]
+    inputs += [value for load in loads for value in load.value]
     return Robot(
         title=scene.title,
         names=tuple(tube.name for tube in scene.tubes),
@@ -146,6 +209,7 @@ def robot_of(scene: scenes.Scene) -> Robot:
         curvature=np.array([tube.curvature for tube in scene.tubes]),
         straight=np.array([tube.straight for tube in scene.tubes]),
         curved=np.array([tube.curved for tube in scene.tubes]),
+        loads=loads,
         inputs=np.array(inputs, dtype=float),
         tolerance=scene.accuracy.tolerance,
     )

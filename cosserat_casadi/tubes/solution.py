@@ -13,7 +13,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.pose import NumericPose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.scene.spelling import closest
-from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.functions import TubeFunctions
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.stability import Stability, stability_of
 
@@ -23,7 +23,7 @@ class TubeOutcome(Enum):
 
     CONVERGED = "Equilibrium found: the tubes meet the rotations of their drives."
     NOT_FOUND = (
-        "No equilibrium found: the way from straight tubes to the curved ones could not be followed to its end; "
+        "No equilibrium found: the way from straight tubes to those of the scene could not be followed to its end; "
         "the equilibria of these inputs may be found one by one."
     )
     UNRESOLVED = "An equilibrium was found, but its error is above the tolerance: allow a larger one."
@@ -59,15 +59,16 @@ class TubeSolution:
 
     Attributes:
         model: the robot with its steps.
-        inputs: rotation and translation of each tube, shape (2 n,), rad and m.
-        x: angles at the tips against the frame of the centre line, shape (n,), rad.
+        inputs: rotation and translation of each tube, rad and m, then the loads, shape (2 n + 3 m,).
+        x: angles at the tips against the frame of the centre line, shape (n,), rad; under loads that frame's
+            quaternion in world axes behind them, shape (n + 4,).
         outcome: how the solve ended.
         residual_norm: largest angle that the tubes miss their drives by, rad.
         error_estimate: estimated pose error of the tips, distances relative to the length that stands out; None where
             it was not estimated.
     """
 
-    model: TubeModel
+    model: TubeFunctions
     inputs: FloatArray
     x: FloatArray
     outcome: TubeOutcome
@@ -95,13 +96,21 @@ class TubeSolution:
         return stability_of(self.model, self.x, self.inputs)
 
     @property
-    def stable(self) -> bool:
-        """Whether the energy rises in every direction."""
+    def angles(self) -> FloatArray:
+        """Angles at the tips against the frame of the centre line, shape (n,), rad."""
+        return self.x[: self.robot.size]
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the energy rises in every direction; None where the loads have no energy."""
         return self.stability.stable
 
     @cached_property
     def energy(self) -> float:
-        """Elastic energy of what stands out of the plate, and of torsion in the housing, J."""
+        """Elastic energy of what stands out of the plate, and of torsion in the housing, less the work of the loads, J.
+
+        The work counts where all loads have an energy.
+        """
         return float(self.model.energy(self.x, self.inputs, 1.0))
 
     @cached_property
@@ -133,21 +142,21 @@ class TubeSolution:
         """
         name = tube
         if name is None:
-            name = self.robot.names[int(np.argmax(self.inputs[1::2]))]
+            name = self.robot.names[int(np.argmax(self.robot.translations(self.inputs)))]
         if name not in self.tips:
             raise SceneError(Problem(name, "is no tube", closest(name, self.tips)))
         return self.tips[name]
 
     @cached_property
     def tip_jacobian(self) -> FloatArray:
-        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n), angular first, rad and m."""
+        """Derivatives of the poses of all tips with the inputs, shape (n, 6, 2 n + 3 m), angular first, rad and m."""
         jacobian = self.model.tip_jacobian(self.x, self.inputs, 1.0).full()
         return np.asarray(jacobian.reshape(self.robot.size, 6, -1))
 
 
 def tip_error(found: TubeSolution, finer: TubeSolution) -> float:
     """Largest pose error of the tips of one solution beside a finer one, distances relative to the length outside."""
-    length = float(finer.inputs[1::2].max())
+    length = float(finer.robot.translations(finer.inputs).max())
     rough = found.tips.values()
     exact = finer.tips.values()
     displacements = np.array([tip.position for tip in rough]) - [tip.position for tip in exact]

@@ -2,38 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.arclength import ArcSettings, Curve
 from cosserat_casadi.numerics.continuation import Path, follow
+from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
+from cosserat_casadi.paths.trace import PathOutcome, trace
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
 from cosserat_casadi.tubes.model import TubeModel
-from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.robot import Robot, Values, robot_of
 from cosserat_casadi.tubes.solution import TubeOutcome, TubeSolution, tip_error
 
 FEWEST_STEPS = 2
 """Steps of a piece that the search begins with."""
 
+LOADING = ArcSettings(longest=0.1, load_factor_change=0.05)
+"""Limits of a path over the loads; angles at the tips count in rad, the loads as their share."""
+
+ENOUGH_STEPS = 32
+"""Steps of a piece with which an equilibrium that has not been found is not looked for any more."""
+
 MOST_STEPS = 256
 """Steps of a piece beyond which it gives up."""
 
 
-def solve_tubes(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike | None = None) -> TubeSolution:
-    """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones.
+def model_of(robot: Robot, steps: int) -> TubeFunctions:
+    """The model of a robot with a number of steps; without loads it has nothing of them."""
+    if robot.loads:
+        return LoadedTubeModel(robot, steps)
+    return TubeModel(robot, steps)
+
+
+def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
+    """Find the equilibrium that the tubes have when they are bent, at these inputs, from straight ones, then loaded.
 
     It is the one that a robot has which was curved where it is; one that was turned there may be in another. Whether it
     is stable it says itself; :func:`all_equilibria` finds the others.
 
     Args:
         scene: a scene with tubes.
-        values: inputs by name, such as "inner.rotation", where those left out keep the scene's value; or all of them,
-            rotation and translation of each tube, rad and m.
+        values: inputs by name, such as "inner.rotation" or "push.force", where those left out keep the scene's value;
+            or all of them, rotation and translation of each tube, rad and m, and the loads.
 
     Raises:
         SceneError: the scene has no tubes, or an input is unknown or out of its range.
@@ -41,15 +57,16 @@ def solve_tubes(scene: scenes.Scene, values: Mapping[str, float] | npt.ArrayLike
     robot = robot_of(scene)
     at = robot.packed(values)
     steps = FEWEST_STEPS
-    found = solve_at(TubeModel(robot, steps), at)
+    found = solve_at(model_of(robot, steps), at)
     while True:
         steps *= 2
-        finer = solve_at(TubeModel(robot, steps), at)
+        finer = solve_at(model_of(robot, steps), at)
         error = None
         if found.converged and finer.converged:
             error = tip_error(found, finer)
         resolved = error is not None and error <= robot.tolerance
-        if resolved or steps >= MOST_STEPS:
+        lost = steps >= ENOUGH_STEPS and not found.converged and not finer.converged
+        if resolved or lost or steps >= MOST_STEPS:
             return judged(finer, error)
         found = finer
 
@@ -62,20 +79,45 @@ def judged(solution: TubeSolution, error: float | None) -> TubeSolution:
     return replace(solution, outcome=outcome, error_estimate=error)
 
 
-def solve_at(model: TubeModel, inputs: FloatArray) -> TubeSolution:
-    """The equilibrium of a model that straight tubes lead to, while their curvature grows."""
+def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
+    """The equilibrium of a model that straight tubes lead to, while their curvature grows, and then their loads."""
+    if isinstance(model, LoadedTubeModel):
+        curved = solve_at(model.unloaded, inputs)
+        return loaded_from(model, inputs, curved)
     path = Path(
         residual=lambda x, t: np.ravel(model.residual(x, inputs, t).full()),
         jacobian=lambda x, t: model.jacobian(x, inputs, t)[0].full(),
         rate=lambda x, t: np.ravel(model.load_rate(x, inputs, t).full()),
         # Straight tubes do not twist.
-        start=inputs[::2].copy(),
+        start=model.robot.rotations(inputs).copy(),
     )
     end = follow(path)
     return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
 
 
-def solution_near(model: TubeModel, inputs: FloatArray, start: FloatArray) -> TubeSolution:
+def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
+    """The equilibrium that one without loads leads to, while these grow, through folds if there are any."""
+    start = model.begin(curved.x, inputs)
+    if not curved.converged:
+        return solution_at(model, inputs, start, found=False)
+    change = inputs - model.robot.with_loads(inputs, 0.0)
+    path = Path(
+        residual=lambda x, t: np.ravel(model.residual(x, model.robot.with_loads(inputs, t), 1.0).full()),
+        jacobian=lambda x, t: model.jacobian(x, model.robot.with_loads(inputs, t), 1.0)[0].full(),
+        rate=lambda x, t: model.input_jacobian(x, model.robot.with_loads(inputs, t), 1.0).full() @ change,
+        start=start,
+    )
+    end = follow(path)
+    if end.outcome is Outcome.CONVERGED:
+        return solution_at(model, inputs, end.x, found=True)
+    # Where the robot snaps under its loads the way goes on beyond the folds.
+    traced = trace(Curve(path, DETERMINANT, LOADING))
+    if traced.outcome is PathOutcome.CONVERGED:
+        return solution_at(model, inputs, traced.points[-1].x, found=True)
+    return solution_at(model, inputs, end.x, found=False)
+
+
+def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
     """The equilibrium of a model that Newton's method leads to from a start."""
     equations = Equations(
         residual=lambda x: np.ravel(model.residual(x, inputs, 1.0).full()),
@@ -85,13 +127,13 @@ def solution_near(model: TubeModel, inputs: FloatArray, start: FloatArray) -> Tu
     return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
 
 
-def solution_at(model: TubeModel, inputs: FloatArray, x: FloatArray, *, found: bool) -> TubeSolution:
+def solution_at(model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool) -> TubeSolution:
     """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
 
     Args:
         model: the robot.
-        inputs: shape (2 n,).
-        x: angles at the tips, shape (n,), rad.
+        inputs: of the robot.
+        x: its unknowns.
         found: whether they are an equilibrium.
     """
     outcome = TubeOutcome.NOT_FOUND

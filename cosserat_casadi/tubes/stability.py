@@ -1,10 +1,11 @@
 """Whether an equilibrium of the tubes is stable: the second variation of its energy, by its conjugate points.
 
-The angles have the energy that `tubes.flow` writes. At a tip they are free, at the drives they are held. The steps of
+The angles have the energy that `tubes.flow` writes; under loads that keep their direction in the world the tangent
+belongs to it too. At the tip they are free, at the drives and at the plate they are held. The steps of
 the integration are symplectic: they are those of a discrete energy, whose second variation is block tridiagonal. Its
-pivots from the tip on follow from how the angles change with those at the tips, and their negative eigenvalues are as
-many as the directions in which the energy falls. For the continuous energy these are the conjugate points of I. M.
-Gelfand, S. V. Fomin, *Calculus of Variations*, 1963, sections 26 to 29. See docs/tubes.md.
+pivots from the tip on follow from how the configuration of the sections changes with that of the tip, and their
+negative eigenvalues are as many as the directions in which the energy falls. For the continuous energy these are the
+conjugate points of I. M. Gelfand, S. V. Fomin, *Calculus of Variations*, 1963, sections 26 to 29. See docs/tubes.md.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.tubes.model import TubeModel
+from cosserat_casadi.tubes.functions import TubeFunctions
+from cosserat_casadi.tubes.variations import Variations
 
 NEUTRAL = 1e-9
 """Singular value of the derivative of the drives' angles, relative to the largest, below which it is zero."""
@@ -31,48 +33,37 @@ class Stability:
     """What the second variation says of an equilibrium.
 
     Attributes:
-        falling: independent directions in which the energy falls.
+        falling: independent directions in which the energy falls; None where the loads have no energy.
         neutral: whether there is one more in which it stays the same: the robot is about to snap.
         determinant: of the derivative of the drives' angles with those at the tips; 1 of tubes that do not twist, 0
             where a robot snaps.
     """
 
-    falling: int
+    falling: int | None
     neutral: bool
     determinant: float
 
     @property
-    def stable(self) -> bool:
-        """Whether the energy rises in every direction."""
+    def stable(self) -> bool | None:
+        """Whether the energy rises in every direction; None where the loads have no energy."""
+        if self.falling is None:
+            return None
         return self.falling == 0 and not self.neutral
 
 
-def stability_of(model: TubeModel, x: FloatArray, inputs: FloatArray) -> Stability:
+def stability_of(model: TubeFunctions, x: FloatArray, inputs: FloatArray) -> Stability:
     """Judge an equilibrium.
 
     Args:
         model: the robot.
-        x: angles at the tips, shape (n,), rad.
-        inputs: shape (2 n,).
+        x: its unknowns.
+        inputs: its inputs.
     """
-    size = model.size
-    along, of_steps = model.variations(x, inputs, 1.0)
-    # Stations from the tip to the plate; of each the changes of angles, then those of torques.
-    changes = along.full().reshape(-1, 2 * size, size)
-    angles = changes[:, :size]
-    last_torques = changes[-1, size:]
-    from_torques = of_steps.full().reshape(size, -1, size).transpose(1, 0, 2)
     jacobian = model.jacobian(x, inputs, 1.0)[0].full()
     singular = np.linalg.svd(jacobian, compute_uv=False)
-
-    falling = 0
-    outermost = float(inputs[1::2].max())
-    negligible = NO_LENGTH * outermost / float(model.robot.torsion.min())
-    for before, after, step in zip(angles[:-1], angles[1:], from_torques, strict=True):
-        # A piece without length changes nothing.
-        if np.abs(step).max() > negligible:
-            falling += _negative(np.linalg.solve(-step, _divided(after, before)))
-    falling += _negative(_held(model, inputs, angles[-1], last_torques))
+    falling = None
+    if model.robot.has_energy:
+        falling = _falling(model, model.varied(x, inputs), inputs)
     return Stability(
         falling=falling,
         neutral=bool(singular[-1] <= NEUTRAL * singular[0]),
@@ -80,16 +71,30 @@ def stability_of(model: TubeModel, x: FloatArray, inputs: FloatArray) -> Stabili
     )
 
 
-def _held(model: TubeModel, inputs: FloatArray, angles: FloatArray, torques: FloatArray) -> FloatArray:
-    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, n×n, scaled.
+def _falling(model: TubeFunctions, variations: Variations, inputs: FloatArray) -> int:
+    """Directions in which the energy falls: negative eigenvalues of all pivots."""
+    falling = 0
+    configuration = variations.configuration
+    outermost = float(model.robot.translations(inputs).max())
+    negligible = NO_LENGTH * outermost / float(model.robot.torsion.min())
+    for before, after, step in zip(configuration[:-1], configuration[1:], variations.of_steps, strict=True):
+        # A piece without length changes nothing.
+        if np.abs(step).max() > negligible:
+            falling += _negative(np.linalg.solve(-step, _divided(after, before)))
+    return falling + _negative(_held(model, inputs, configuration[-1], variations.at_plate))
 
-    With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no compliance, and C⁻¹ no value:
-    1 + √C A √C has the same signs, and exists.
+
+def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, conjugate: FloatArray) -> FloatArray:
+    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, m×m, scaled.
+
+    With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no compliance, nor has the
+    plate, which holds the tangent, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.
     """
     robot = model.robot
-    root = np.sqrt((robot.length - inputs[1::2]).clip(min=0.0) / robot.torsion)
-    at_plate = -_divided(torques, angles)
-    return np.eye(model.size) + root[:, None] * at_plate * root
+    root = np.zeros(len(configuration))
+    root[: robot.size] = np.sqrt((robot.length - robot.translations(inputs)).clip(min=0.0) / robot.torsion)
+    at_plate = -_divided(conjugate, configuration)
+    return np.eye(len(root)) + root[:, None] * at_plate * root
 
 
 def _divided(numerator: FloatArray, denominator: FloatArray) -> FloatArray:

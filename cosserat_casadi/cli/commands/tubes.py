@@ -73,8 +73,12 @@ def solve_tube_scene(scene: Scene, outputs: Outputs, *, stable: bool) -> None:
     """``cosserat solve`` of tubes: one equilibrium.
 
     Raises:
+        SceneError: with ``stable``, the loads have no energy.
         Exit: none was found; with ``stable``, no stable one.
     """
+    if stable and not robot_of(scene).has_energy:
+        problem = "the loads have no energy, which would tell what is stable"
+        raise SceneError(Problem("--stable", problem, "leave it out"))
     solution = solve_tubes(scene)
     if stable and not solution.stable:
         of_least_energy = all_equilibria(scene).stable[:1]
@@ -83,7 +87,7 @@ def solve_tube_scene(scene: Scene, outputs: Outputs, *, stable: bool) -> None:
     _draw([solution], outputs.plot)
     if not outputs.as_json:
         print_tubes(Console(), solution, outputs.files)
-    if solution.converged and not solution.stable and not stable:
+    if solution.converged and solution.stable is False and not stable:
         print_tubes_unstable(Console(stderr=True))
     found = solution.converged and (solution.stable or not stable)
     if not found:
@@ -117,7 +121,7 @@ def follow_tube_scene(scene: Scene, name: str, value: FloatArray, outputs: Outpu
     """
     if value.size != 1:
         raise SceneError(
-            Problem("--to", f"must be one number, got {value.size}", "an input of tubes is an angle or a length")
+            Problem("--to", f"must be one number, got {value.size}", "name one number of a load, such as push.force.z")
         )
     with solve_display("Following the path") as display:
         path = follow_tubes(scene, name, value.item(), progress=display.show_share)

@@ -15,6 +15,7 @@ from cosserat_casadi.tubes.equilibria import TubeEquilibria
 from cosserat_casadi.tubes.path import TubePath
 from cosserat_casadi.tubes.robot import Robot
 from cosserat_casadi.tubes.solution import TubeSolution
+from cosserat_casadi.tubes.solve import FEWEST_STEPS, model_of
 
 
 def print_tubes(console: Console, solution: TubeSolution, written: Sequence[Path]) -> None:
@@ -58,7 +59,7 @@ def print_equilibria(console: Console, equilibria: TubeEquilibria, written: Sequ
             _verdict(solution),
             f"{solution.energy:.6g}",
             f"{solution.stability.determinant:.6g}",
-            ", ".join(digits(solution.x)),
+            ", ".join(digits(solution.angles)),
             ", ".join(digits(solution.tip().position)),
         )
     console.print(table)
@@ -90,7 +91,8 @@ def print_tubes_check(console: Console, robot: Robot) -> None:
         columns = (robot.bending, robot.torsion, robot.curvature, robot.straight, robot.curved)
         table.add_row(escape(name), *(f"{column[index]:.6g}" for column in columns))
     console.print(table)
-    print_plain(console, f"{counted(robot.size, 'unknown')}; inputs: {', '.join(robot.input_names)}")
+    unknowns = model_of(robot, FEWEST_STEPS).unknowns
+    print_plain(console, f"{counted(unknowns, 'unknown')}; inputs: {', '.join(robot.input_names)}")
 
 
 def _print_message(console: Console, title: str, message: str, *, good: bool) -> None:
@@ -118,6 +120,8 @@ def _path_table(path: TubePath) -> Table:
 def _verdict(solution: TubeSolution) -> str:
     if solution.stability.neutral:
         return "neutral"
+    if solution.stable is None:
+        return "loads without energy: stability has no meaning"
     if solution.stable:
         return "stable"
     return "unstable"

@@ -1,0 +1,178 @@
+"""One step along a robot that bears loads, by flows that are exact.
+
+A load leaves a force n and a moment m in a section. With the sum w = Σ EIᵢ κᵢ e(αᵢ) over the tubes and their stiffness
+B = Σ EIᵢ the centre line is curved by c = (q + w)/B, where q = (m_y, −m_x) is the moment in the axes of the frame that
+does not turn about it, as the direction that it bends towards (D. C. Rucker, B. A. Jones, R. J. Webster, IEEE Trans.
+Robot. 26 (2010) 769). These are Hamilton's equations of
+
+    H = Σ τᵢ²/(2 GJᵢ) + |q|²/(2 B) + q·w(α)/B + |w(α)|²/(2 B) + n·t,    with the tangent t.
+
+Each of its parts alone is solved in closed form. The torques turn the tubes. The moment turns the frame about itself,
+and back about the tangent. The pre-curvature turns the frame about a fixed axis, and changes the torques. The tangent
+moves the position, and changes the moment by the lever of n. Their symmetric product is a step of order two that is
+symplectic and keeps rotations; `maths.composition` makes one of order eight of it. See docs/tubes.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Self
+
+import casadi as ca
+
+from cosserat_casadi.maths.composition import SHARES
+from cosserat_casadi.maths.magnus import increment
+from cosserat_casadi.maths.pose import Pose
+from cosserat_casadi.maths.rotation import cross, quaternion_conjugate, quaternion_product, rotate
+from cosserat_casadi.maths.typing import Matrix
+
+TANGENT = ca.DM([0, 0, 1])
+"""Of the centre line, in the axes of the frame."""
+
+
+@dataclass(frozen=True)
+class LoadedState:
+    """What is integrated along a robot that bears loads.
+
+    Attributes:
+        angles: of the tubes against the frame, n×1, rad.
+        torques: in the tubes, n×1, N m.
+        pose: of the frame, its position from the tip of the robot on, in world axes.
+        energy: from the tip on, 1×1, J.
+        moment: in the section, world axes, 3×1, N m.
+        place: distance from the plate along the centre line, 1×1, m.
+    """
+
+    angles: Matrix
+    torques: Matrix
+    pose: Pose
+    energy: Matrix
+    moment: Matrix
+    place: Matrix
+
+    @property
+    def stacked(self) -> Matrix:
+        """All entries, (2 n + 12)×1."""
+        parts = (self.pose.position, self.pose.quaternion, self.energy, self.moment, self.place)
+        return ca.vertcat(self.angles, self.torques, *parts)
+
+    @classmethod
+    def of(cls, stacked: Matrix) -> Self:
+        """The state of stacked entries."""
+        size = (stacked.size1() - 12) // 2
+        cuts = [0, size, 2 * size]
+        for width in (3, 4, 1, 3, 1):
+            cuts.append(cuts[-1] + width)
+        angles, torques, position, quaternion, energy, moment, place = ca.vertsplit(stacked, cuts)
+        return cls(angles, torques, Pose(position, quaternion), energy, moment, place)
+
+
+@dataclass(frozen=True)
+class LoadedSection:
+    """What is the same all along a piece of a robot that bears loads.
+
+    Attributes:
+        torsion: GJ of every tube, n×1, N m².
+        moments: EI κ of the tubes that are curved here, zero of the others, n×1, N m.
+        bending: EI of all tubes that are here, 1×1, N m².
+        own: Σ EI κ²/2 of the tubes that are curved here, 1×1, N.
+        force: what the force in a section would be at the plate, world axes, 3×1, N.
+        weight: force per length, world axes, 3×1, N/m; None where there is none.
+        potential: whether the work of the loads counts in the energy.
+    """
+
+    torsion: Matrix
+    moments: Matrix
+    bending: Matrix
+    own: Matrix
+    force: Matrix
+    weight: Matrix | None
+    potential: bool
+
+    def moved(self, state: LoadedState, length: Matrix) -> LoadedState:
+        """Along a length the torques turn the tubes, and the tangent moves the position and the lever of the force."""
+        rates = state.torques / self.torsion
+        energy = state.energy + length * ca.dot(state.torques, rates) / 2
+        way = length * rotate(state.pose.quaternion, TANGENT)
+        force = self.force
+        if self.weight is not None:
+            force = force - (state.place + length / 2) * self.weight
+        if self.potential:
+            energy = energy - ca.dot(force, way)
+        return replace(
+            state,
+            angles=state.angles + length * rates,
+            pose=Pose(state.pose.position + way, state.pose.quaternion),
+            energy=energy,
+            moment=state.moment - cross(way, force),
+            place=state.place + length,
+        )
+
+    def loaded(self, state: LoadedState, length: Matrix) -> LoadedState:
+        """Along a length the moment turns the frame."""
+        back = quaternion_conjugate(state.pose.quaternion)
+        moment = rotate(back, state.moment)
+        share = length / self.bending
+        about_moment = increment(share * state.moment).quaternion
+        # The frame does not turn about the tangent: what the moment turns it there is taken back.
+        half = share * moment[2] / 2
+        about_tangent = ca.vertcat(ca.cos(half), 0, 0, -ca.sin(half))
+        turned = quaternion_product(about_moment, state.pose.quaternion)
+        quaternion = quaternion_product(turned, about_tangent)
+        energy = state.energy + share * (moment[0] ** 2 + moment[1] ** 2) / 2
+        return replace(state, pose=Pose(state.pose.position, quaternion), energy=energy)
+
+    def bent(self, state: LoadedState, length: Matrix) -> LoadedState:
+        """Along a length the pre-curvature turns the frame, and the torques change."""
+        cosines = self.moments * ca.cos(state.angles)
+        sines = self.moments * ca.sin(state.angles)
+        x = ca.sum1(cosines) / self.bending
+        y = ca.sum1(sines) / self.bending
+        # To bend towards x is to turn about y, towards y is to turn back about x.
+        arc = increment(length * ca.vertcat(-y, x, 0))
+        back = quaternion_conjugate(state.pose.quaternion)
+        mean = arc.pulled(rotate(back, state.moment))
+        towards_x = x + mean[1] / self.bending
+        towards_y = y - mean[0] / self.bending
+        torques = state.torques + length * (towards_x * sines - towards_y * cosines)
+        energy = state.energy + length * (self.own - self.bending * (x**2 + y**2) / 2)
+        quaternion = quaternion_product(state.pose.quaternion, arc.quaternion)
+        return replace(state, torques=torques, pose=Pose(state.pose.position, quaternion), energy=energy)
+
+    def step(self, state: LoadedState, length: Matrix) -> LoadedState:
+        """A step of order eight along a length, which is negative towards the base."""
+        before: Matrix = ca.DM(0.0)
+        for share in SHARES:
+            stage = share * length
+            # Halves of neighbouring stages are one.
+            state = self.loaded(state, (before + stage) / 2)
+            state = self.moved(state, stage / 2)
+            state = self.bent(state, stage)
+            state = self.moved(state, stage / 2)
+            before = stage
+        return self.loaded(state, before / 2)
+
+
+@cache
+def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
+    """(state, length, section) ↦ state: one step of a number of tubes that bear loads.
+
+    The section is stacked: torsion of every tube, moments of every tube, bending, own energy, force and, where the
+    loads are spread, force per length.
+
+    Args:
+        size: number of tubes.
+        spread: whether there are forces per length.
+        potential: whether the work of the loads counts in the energy.
+    """
+    state = ca.SX.sym("state", 2 * size + 12)
+    length = ca.SX.sym("length")
+    cuts = [0, size, 2 * size, 2 * size + 1, 2 * size + 2, 2 * size + 5]
+    if spread:
+        cuts.append(2 * size + 8)
+    stacked = ca.SX.sym("section", cuts[-1])
+    torsion, moments, bending, own, force, *weight = ca.vertsplit(stacked, cuts)
+    section = LoadedSection(torsion, moments, bending, own, force, weight[0] if spread else None, potential)
+    after = section.step(LoadedState.of(state), length)
+    return ca.Function("loaded_step", [state, length, stacked], [after.stacked])

@@ -1,0 +1,96 @@
+"""The loads of a scene of concentric tubes as numbers: how much of each input every tube bears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.rod.section import annulus
+from cosserat_casadi.scene.inputs import AXES
+
+COMPONENTS = 3
+"""Numbers of the input of a load: each is a vector."""
+
+
+@dataclass(frozen=True)
+class TubeLoad:
+    """An input of a load: a vector, of which each tube bears a share.
+
+    Attributes:
+        name: of the input, such as "push.force".
+        unit: of the input.
+        value: in the scene, shape (3,).
+        shares: of each tube, shape (n,): 1 of a wrench on it; mass per length of one that is weighed, kg/m.
+        is_moment: whether it is a moment, and not a force.
+        spread: whether it acts per length from the plate to the tip, and not at the tip.
+        follower: whether it turns with the tube, and does not keep its direction in the world.
+    """
+
+    name: str
+    unit: str
+    value: FloatArray
+    shares: FloatArray
+    is_moment: bool = False
+    spread: bool = False
+    follower: bool = False
+
+    @property
+    def has_energy(self) -> bool:
+        """Whether its work is that of a potential: a force that keeps its direction."""
+        return not self.is_moment and not self.follower
+
+    @property
+    def entries(self) -> list[str]:
+        """Names of its numbers, such as "push.force.x"."""
+        return [f"{self.name}.{axis}" for axis in AXES[COMPONENTS]]
+
+
+def loads_of(scene: scenes.Scene) -> tuple[TubeLoad, ...]:
+    """The inputs of the loads of a scene of tubes, in the order of the scene."""
+    found: list[TubeLoad] = []
+    for load in scene.loads:
+        found += _inputs_of(load, scene.tubes)
+    return tuple(found)
+
+
+def _inputs_of(load: scenes.Load, tubes: tuple[scenes.Tube, ...]) -> Iterator[TubeLoad]:
+    """The inputs of one load: the magnitudes that the scene gives."""
+    if isinstance(load, scenes.Gravity):
+        masses = [linear_density(tube) if load.acts_on_rod(tube.name) else 0.0 for tube in tubes]
+        value = np.array(load.acceleration)
+        unit = load.inputs["acceleration"].unit
+        yield TubeLoad(f"{load.name}.acceleration", unit, value, np.array(masses), spread=True)
+        return
+    # The rules of the scene admit no other kinds beside tubes.
+    assert isinstance(load, scenes.TipWrench | scenes.DistributedWrench)
+    shares = np.array([float(tube.name == load.rod) for tube in tubes])
+    for field, declared in load.inputs.items():
+        if field in load.model_fields_set:
+            yield TubeLoad(
+                name=f"{load.name}.{field}",
+                unit=declared.unit,
+                value=np.array(getattr(load, field), dtype=float),
+                shares=shares,
+                is_moment=field == "moment",
+                spread=isinstance(load, scenes.DistributedWrench),
+                follower=load.frame == "body",
+            )
+
+
+def linear_density(tube: scenes.Tube) -> float:
+    """Mass per length of a tube, kg/m."""
+    if tube.linear_density is not None:
+        return tube.linear_density
+    material = tube.material
+    section = tube.section
+    # The rules of the scene have seen to it that what is weighed has a mass.
+    assert material is not None
+    assert material.density is not None
+    assert section is not None
+    area = known(annulus(np.array([section.outer_radius]), np.array([section.inner_radius])).area)
+    return float(area.item() * material.density)

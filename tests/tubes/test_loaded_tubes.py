@@ -1,0 +1,337 @@
+"""Tubes that bear loads: against shooting with other unknowns, rods of this package, differences and known loads."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from cosserat_casadi import TubeSolution, parse_scene, solve_scene, solve_tubes
+from cosserat_casadi.tubes.loaded_model import LoadedTubeModel
+from cosserat_casadi.tubes.robot import robot_of
+from cosserat_casadi.tubes.solve import solution_near, solve_at
+from tests.tubes.test_tube_robots import THREE, TWO
+
+DIFFERENCE = 1e-6
+
+PUSH = """
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "inner"
+force = [0.3, -0.2, -0.4]
+"""
+
+POKE = """
+[[loads]]
+name = "poke"
+kind = "tip_wrench"
+rod = "outer"
+force = [-0.1, 0.4, 0.2]
+"""
+
+WEIGHT = """
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [1.0, 2.0, -9.0]
+"""
+
+WIND = """
+[[loads]]
+name = "wind"
+kind = "distributed_wrench"
+rod = "inner"
+force = [0.0, 0.8, 0.5]
+"""
+
+DENSITY = (0.03, 0.02, 0.01)
+
+
+def weighed(text: str) -> str:
+    """The tubes with their masses."""
+    parts = text.split("straight =")
+    masses = [f"linear_density = {density}\nstraight =" for density in DENSITY[: len(parts) - 1]]
+    return "".join(itertools.chain(*zip(parts, masses, strict=False))) + parts[-1]
+
+
+def forces_of(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
+    """Force at the tip of each tube, N, and per length along it, N/m, in world axes, shapes (n, 3)."""
+    inputs = dict(zip(found.robot.input_names, found.inputs, strict=True))
+
+    def value(name: str) -> np.ndarray:
+        return np.array([inputs.get(f"{name}.{axis}", 0.0) for axis in "xyz"])
+
+    names = found.robot.names
+    at_tips = np.zeros((len(names), 3))
+    at_tips[names.index("inner")] += value("push.force")
+    at_tips[names.index("outer")] += value("poke.force")
+    along = np.outer(DENSITY[: len(names)], value("weight.acceleration"))
+    along[names.index("inner")] += value("wind.force")
+    return at_tips, along
+
+
+def shot(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
+    """Torques at the plate and position of the tip, by shooting from the plate.
+
+    The frame is that of the first tube, which turns about the tangent; unknown are the torques of the tubes and the
+    bending moment at the plate. D. C. Rucker, B. A. Jones, R. J. Webster, IEEE Trans. Robot. 26 (2010) 769.
+    """
+    robot = found.robot
+    n = robot.size
+    reach = robot.translations(found.inputs)
+    bends = reach - robot.curved
+    at_tips, along = forces_of(found)
+    inside = (robot.length - reach) / robot.torsion
+    cuts = sorted({0.0, *np.maximum(bends, 0.0), *reach})
+
+    def rate(s: float, y: np.ndarray) -> np.ndarray:
+        angles, torques, moment = y[:n], y[n : 2 * n], y[2 * n : 2 * n + 3]
+        rotation = y[2 * n + 3 : 2 * n + 12].reshape(3, 3)
+        here = s < reach
+        force = here @ (at_tips + (reach - s)[:, None] * along)
+        stiffness = robot.bending * here
+        wanted = np.zeros((n, 2))
+        for i in range(n):
+            angle = angles[i] - angles[0]
+            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+            wanted[i] = turn @ [0.0, robot.curvature[i] * (s > bends[i])]
+        u = np.zeros(3)
+        u[:2] = (moment[:2] + stiffness @ wanted) / stiffness.sum()
+        u[2] = torques[0] / robot.torsion[0]
+        bending = stiffness[:, None] * (u[:2] - wanted)
+        gained = bending[:, 0] * wanted[:, 1] - bending[:, 1] * wanted[:, 0]
+        spin = np.array([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+        moment_rate = -np.cross(u, moment) - np.cross([0, 0, 1], rotation.T @ force)
+        return np.concatenate([torques / robot.torsion, gained, moment_rate, (rotation @ spin).ravel(), rotation[:, 2]])
+
+    def tip(unknown: np.ndarray) -> np.ndarray:
+        torques, bending = unknown[:n], unknown[n:]
+        angles = robot.rotations(found.inputs) + inside * torques
+        c, s = np.cos(angles[0]), np.sin(angles[0])
+        # The first tube's own axes are turned by its angle at the plate.
+        start = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+        y = np.concatenate([angles, torques, bending, [torques.sum()], start.ravel(), np.zeros(3)])
+        for first, last in itertools.pairwise(cuts):
+            y = solve_ivp(rate, (first + 1e-14, last - 1e-14), y, method="DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
+        return y
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        return tip(unknown)[n : 2 * n + 2]
+
+    start = np.concatenate([found.shape.torques[0], np.zeros(2)])
+    end = root(missed, start, tol=1e-12)
+    assert np.abs(end.fun).max() < 1e-9
+    return end.x[:n], tip(end.x)[-3:]
+
+
+@pytest.mark.parametrize(
+    ("text", "inputs"),
+    [
+        (TWO + PUSH, {}),
+        pytest.param(weighed(THREE) + PUSH + POKE + WEIGHT + WIND, {}, marks=pytest.mark.slow),
+        (weighed(THREE) + PUSH + POKE + WEIGHT, {"outer.translation": 0.05, "innermost.translation": 0.12}),
+    ],
+    ids=["push", "three tubes", "another order"],
+)
+def test_against_shooting(text: str, inputs: dict[str, float]) -> None:
+    found = solve_tubes(parse_scene(text), inputs)
+    assert found.converged
+    assert found.error_estimate is not None
+    assert found.error_estimate <= 1e-8
+    torques, position = shot(found)
+    assert_allclose(found.shape.torques[0], torques, rtol=0, atol=1e-8)
+    assert_allclose(found.tip().position, position, rtol=0, atol=1e-8)
+
+
+ONE = """
+schema = 1
+accuracy = { tolerance = 1e-10 }
+[[tubes]]
+name = "tube"
+stiffness = { bending = 0.05, torsion = 0.04 }
+linear_density = 0.05
+straight = STRAIGHT
+curved = 0.2
+curvature = CURVATURE
+translation = 0.2
+"""
+
+ROD = """
+schema = 1
+accuracy = { tolerance = 1e-10 }
+[[rods]]
+name = "tube"
+length = 0.2
+strain = "kirchhoff"
+stiffness = { bending_x = 0.05, bending_y = 0.05, torsion = 0.04 }
+linear_density = 0.05
+intrinsic = { curvature = [0, CURVATURE, 0] }
+"""
+
+
+def wrench(**keys: object) -> str:
+    lines = [f"{key} = {value}" for key, value in keys.items()]
+    return '[[loads]]\nname = "wrench"\nkind = "tip_wrench"\nrod = "tube"\n' + "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("curvature", [0.0, 9.0])
+@pytest.mark.parametrize(
+    "load",
+    [
+        wrench(force=[0.5, -0.3, -1.2]),
+        wrench(force=[0.5, -0.3, -1.2], frame='"body"'),
+        wrench(moment=[0.04, 0.03, 0.06]),
+        wrench(moment=[0.04, 0.03, 0.06], force=[0.2, 0.1, 0.3], frame='"body"'),
+        WEIGHT + wrench(force=[0.0, 0.6, 0.0]),
+    ],
+    ids=["force", "follower", "moment", "following wrench", "weight"],
+)
+def test_one_tube_is_a_rod(load: str, curvature: float) -> None:
+    found = solve_tubes(parse_scene(ONE.replace("CURVATURE", f"{curvature}").replace("STRAIGHT", "0.0") + load))
+    rod = solve_scene(parse_scene(ROD.replace("CURVATURE", f"{curvature}") + load))
+    assert found.converged
+    assert rod.converged
+    tip = rod.tip("tube")
+    assert_allclose(found.tip().position, tip.position[0], rtol=0, atol=1e-8)
+    assert_allclose(found.tip().rotation, tip.rotation[0], rtol=0, atol=1e-7)
+    assert found.stable == rod.stable
+
+
+def test_a_tube_in_its_housing_twists_there() -> None:
+    text = ONE.replace("CURVATURE", "0.0").replace("STRAIGHT", "0.3")
+    found = solve_tubes(parse_scene(text + wrench(moment=[0.0, 0.0, 0.02])))
+    # Straight, and twisted from the drive to the tip.
+    assert_allclose(found.tip().position, [0.0, 0.0, 0.2], rtol=0, atol=1e-14)
+    assert_allclose(found.angles[0], 0.02 / 0.04 * 0.5, rtol=1e-12, atol=0)
+
+
+def test_aligned_tubes_are_a_rod_of_their_summed_stiffness() -> None:
+    tubes = ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0")
+    # Of one shape, and of one ratio of torsion to bending: they twist alike.
+    other = (
+        tubes.partition("[[tubes]]")[2].replace('"tube"', '"other"').replace("0.05,", "0.1,").replace("0.04", "0.08")
+    )
+    load = wrench(force=[0.5, -0.9, -1.2])
+    found = solve_tubes(parse_scene(tubes + "[[tubes]]" + other + load))
+    summed = ROD.replace("CURVATURE", "9.0").replace("0.05,", "0.15,").replace("0.04 }", "0.12 }")
+    rod = solve_scene(parse_scene(summed + load))
+    assert_allclose(found.tip("tube").position, rod.tip("tube").position[0], rtol=0, atol=1e-8)
+    assert_allclose(found.angles[0], found.angles[1], rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize(("share", "falling"), [(1 - 1e-5, 0), (1 + 1e-5, 2), (9 - 1e-3, 2), (9 + 1e-3, 4)])
+def test_a_straight_tube_buckles_at_eulers_load(share: float, falling: int) -> None:
+    euler = np.pi**2 * 0.05 / (4 * 0.2**2)
+    text = ONE.replace("CURVATURE", "0.0").replace("STRAIGHT", "0.1")
+    robot = robot_of(parse_scene(text + wrench(force=[0.0, 0.0, -share * euler])))
+    model = LoadedTubeModel(robot, 16)
+    straight = np.array([0.0, 1.0, 0.0, 0.0, 0.0])
+    found = solution_near(model, robot.inputs, straight)
+    assert_allclose(found.x, straight, rtol=0, atol=1e-14)
+    # It buckles to all sides alike: in two independent directions.
+    assert found.stability.falling == falling
+    assert found.stable == (falling == 0)
+
+
+def test_order_eight() -> None:
+    scene = parse_scene(weighed(THREE) + PUSH + POKE + WEIGHT)
+    robot = robot_of(scene)
+    tips = []
+    for steps in (3, 6, 24):
+        found = solve_at(LoadedTubeModel(robot, steps), robot.inputs)
+        tips.append(found.tip().position)
+    rate = np.log2(np.abs(tips[0] - tips[2]).max() / np.abs(tips[1] - tips[2]).max())
+    assert 7.0 < rate < 10.0
+
+
+def moved(found: TubeSolution, index: int, by: float) -> TubeSolution:
+    inputs = found.inputs.copy()
+    inputs[index] += by
+    return solution_near(found.model, inputs, found.x)
+
+
+def test_derivatives_of_energy_and_tips() -> None:
+    found = solve_tubes(parse_scene(weighed(TWO) + PUSH + WEIGHT))
+    robot = found.robot
+    for index, name in enumerate(robot.input_names):
+        ahead = moved(found, index, DIFFERENCE)
+        behind = moved(found, index, -DIFFERENCE)
+        assert ahead.converged
+        assert behind.converged
+        for tube, tip in enumerate(robot.names):
+            position = (ahead.tip(tip).position - behind.tip(tip).position) / (2 * DIFFERENCE)
+            turn = (ahead.tip(tip).rotation - behind.tip(tip).rotation) / (2 * DIFFERENCE)
+            spin = turn @ found.tip(tip).rotation.T
+            assert_allclose(found.tip_jacobian[tube, 3:, index], position, rtol=0, atol=1e-7)
+            assert_allclose(found.tip_jacobian[tube, :3, index], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=2e-6)
+        rate = (ahead.energy - behind.energy) / (2 * DIFFERENCE)
+        if name.endswith(".rotation"):
+            # The drive's torque is what the plate takes from the tube.
+            tube = robot.names.index(name.removesuffix(".rotation"))
+            assert_allclose(rate, -found.shape.torques[0, tube], rtol=0, atol=1e-7)
+        if name.startswith("push.force"):
+            # A dead force does its work on the tip.
+            axis = "xyz".index(name[-1])
+            assert_allclose(rate, -found.tip("inner").position[axis], rtol=0, atol=1e-8)
+
+
+def test_moments_about_the_plate_balance() -> None:
+    found = solve_tubes(parse_scene(TWO + PUSH + POKE))
+    at_tips, _ = forces_of(found)
+    arms = [found.tip(name).position for name in found.robot.names]
+    moment = np.cross(arms, at_tips).sum(axis=0)
+    assert_allclose(found.shape.torques[0].sum(), moment[2], rtol=0, atol=1e-10)
+
+
+def test_without_force_the_loaded_model_is_the_other_one() -> None:
+    found = solve_tubes(parse_scene(TWO + PUSH), {"push.force": [0.0, 0.0, 0.0]})
+    plain = solve_tubes(parse_scene(TWO))
+    assert_allclose(found.angles, plain.x, rtol=0, atol=1e-8)
+    assert_allclose(found.tip().position, plain.tip().position, rtol=0, atol=1e-9)
+    assert_allclose(found.energy, plain.energy, rtol=1e-8, atol=0)
+    assert_allclose(found.stability.determinant, plain.stability.determinant, rtol=1e-6, atol=0)
+    assert np.isfinite(found.tip_jacobian).all()
+
+
+def test_tubes_without_loads_pay_nothing_for_them() -> None:
+    model = solve_tubes(parse_scene(TWO)).model
+    counted = {name: getattr(model, name).n_instructions() for name in ("residual", "jacobian", "tips", "tip_jacobian")}
+    assert counted == PLAIN
+    # Of what acts at a tip those do not pay for weight.
+    sizes = []
+    for load in (PUSH, PUSH + WEIGHT):
+        loaded = LoadedTubeModel(robot_of(parse_scene(weighed(TWO) + load)), 4)
+        sizes.append(loaded._step.n_instructions())
+    assert sizes == [5965, 6208]
+
+
+PLAIN = {"residual": 253, "jacobian": 303, "tips": 461, "tip_jacobian": 2454}
+"""Instructions of a robot without loads, as before there were any."""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("quick_compiler")
+def test_loaded_functions_in_c(tmp_path: Path) -> None:
+    robot = robot_of(parse_scene(TWO + PUSH))
+    found = solve_at(LoadedTubeModel(robot, 1), robot.inputs)
+    generator = ca.CodeGenerator("tubes.c")
+    generator.add(found.model.equilibrium)
+    generator.add(found.model.tip_jacobian)
+    (tmp_path / "tubes.c").write_text(generator.dump())
+    command = [os.environ["CC"], "-shared", "-fPIC", "-o", "tubes.so", "tubes.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    library = str(tmp_path / "tubes.so")
+    x, missed = ca.external("equilibrium", library)(found.x + 0.01, found.inputs)
+    assert float(missed) < 1e-11
+    assert_allclose(x.full()[:, 0], found.x, rtol=0, atol=1e-11)
+    jacobian = ca.external("tip_jacobian", library)(x, found.inputs, 1.0)
+    assert_allclose(jacobian.full().reshape(2, 6, 7), found.tip_jacobian, rtol=0, atol=1e-10)
