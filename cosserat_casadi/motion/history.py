@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
 from cosserat_casadi.motion.mean_frames import MeanFrames
-from cosserat_casadi.motion.momentum import MomentumKeeper, flies_free
+from cosserat_casadi.motion.momentum import MomentumKeeper, flies_alone, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.motion.slack_cables import SlackCables
@@ -33,6 +33,8 @@ CONSISTENT = 1e-8
 DIFFERENTIATED = 0.01
 """Share of a piece in which constraints are differentiated to find the multipliers that it begins with."""
 
+REMEMBERED_TIMES = 16
+"""Times at which the inputs are remembered: those of a step and some more."""
 
 MOST_AT_ONCE = 60
 """Changes between slack and taut that may follow each other in next to no time before they count as without end."""
@@ -54,13 +56,15 @@ def equations_of(
     """
     inverse_dynamics = RepeatedCall(model.inverse_dynamics)
     parameters = [] if p is None else [p]
+    # Every iteration of a step asks for the inputs at the same stages.
+    inputs_at = lru_cache(maxsize=REMEMBERED_TIMES)(piece.at)
 
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
-        value, rate, acceleration = piece.at(t)
+        value, rate, acceleration = inputs_at(t)
         return inverse_dynamics(x, v, a, value, *parameters, rate, acceleration)
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        value, rate, acceleration = piece.at(t)
+        value, rate, acceleration = inputs_at(t)
         stiffness, damping, mass, _ = model.dynamics_jacobian(x, v, a, value, *parameters, rate, acceleration)
         return stiffness.full(), damping.full(), mass.full()
 
@@ -69,7 +73,7 @@ def equations_of(
 
     def mean_frames(times: FloatArray, x: FloatArray) -> list[MeanFrame]:
         middle = float(times[len(times) // 2])
-        return frames.along(x, piece.at(middle).value)
+        return frames.along(x, inputs_at(middle).value)
 
     return MotionEquations(model.discrete.unknowns.differential, residual, jacobians, mean_frames=mean_frames)
 
@@ -206,7 +210,7 @@ def integrated(
     """
     cables = SlackCables(model)
     keeper = MomentumKeeper(model) if flies_free(model) else None
-    frames = MeanFrames(model) if flies_free(model) else None
+    frames = MeanFrames(model) if flies_alone(model) else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
     phases = cables.first_phases(x, pieces[0].at(at.time).value)

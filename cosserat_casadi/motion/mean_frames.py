@@ -9,18 +9,16 @@ from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.motion.momentum import MOMENTA
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.mean_frame import MeanFrame
-
-MOMENTA = 6
-"""Entries of momentum and angular momentum."""
 
 
 class MeanFrames:
     """The mean frames of a model over its unknowns.
 
     Args:
-        model: of one rod that flies free, see :func:`motion.momentum.flies_free`.
+        model: of one rod that flies free, see :func:`motion.momentum.flies_alone`.
     """
 
     def __init__(self, model: Model) -> None:

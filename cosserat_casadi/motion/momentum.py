@@ -1,9 +1,9 @@
-"""The momentum of a rod that flies free, put right after each step: exact to rounding, not to the order of the steps.
+"""The momentum of what flies free, put right after each step: exact to rounding, not to the order of the steps.
 
-The position of the base and the strains are coordinates, and momentum is no quadratic function of them, so that no
-method of collocation keeps it. What a step misses is that of a small rigid motion: added to the velocities, it leaves
-the strains and their rates as they are. What momentum has to become is what it was, plus the impulse of the loads by
-the quadrature of the step, which has the order of the step.
+The positions of bases and the strains are coordinates, and momentum is no quadratic function of them, so that no
+method of collocation keeps it. What a step misses is that of a small rigid motion of all rods and bodies together:
+added to the velocities, it leaves the strains, the joints and their rates as they are. What momentum has to become is
+what it was, plus the impulse of the loads by the quadrature of the step, which has the order of the step.
 """
 
 from __future__ import annotations
@@ -20,6 +20,10 @@ from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
 from cosserat_casadi.numerics.motion_equations import Instant
 from cosserat_casadi.numerics.step import Step, stages_of
+from cosserat_casadi.scene import Scene
+
+MOMENTA = 6
+"""Entries of momentum and angular momentum."""
 
 MOST_CORRECTIONS = 8
 """Most corrections of the velocities after one step."""
@@ -32,26 +36,50 @@ CONTRACTING = 0.1
 
 
 def flies_free(model: Model) -> bool:
-    """Whether a scene is one rod that nothing holds."""
-    kinds = {block.kind for block in model.discrete.unknowns.blocks}
-    frames = [block for block, _ in model.discrete.unknowns.of_kind(BlockKind.POSE)]
-    return len(model.discrete.rods) == 1 and len(frames) == 1 and BlockKind.MULTIPLIER not in kinds
+    """Whether a scene is one piece, of rods and bodies that are joined to each other, which nothing holds."""
+    scene = model.scene
+    held = [rod for rod in scene.rods if rod.base.rod is None and not rod.base.free]
+    return not held and not scene.supports and _pieces(scene) == 1
+
+
+def flies_alone(model: Model) -> bool:
+    """Whether a scene is one rod that nothing holds, without bodies."""
+    return flies_free(model) and len(model.discrete.frames) == 1
+
+
+def _pieces(scene: Scene) -> int:
+    """Number of parts of a scene that neither joints nor bases on other rods connect."""
+    links = [(rod.name, rod.base.rod) for rod in scene.rods if rod.base.rod is not None]
+    # A body is no rod, even where it bears the name of one.
+    links += [(joint.rod, f"body {joint.body}") for joint in scene.joints]
+    names = [rod.name for rod in scene.rods] + [f"body {body.name}" for body in scene.bodies]
+    piece_of = {name: number for number, name in enumerate(names)}
+    for one, other in links:
+        joined = piece_of[one]
+        left = piece_of[other]
+        piece_of = {name: joined if piece == left else piece for name, piece in piece_of.items()}
+    return len(set(piece_of.values()))
 
 
 class MomentumKeeper:
-    """What puts the velocities of a free rod right after a step.
+    """What puts the velocities of free rods right after a step.
 
     Args:
-        model: one rod that flies free.
+        model: of what flies free, see :func:`flies_free`.
     """
 
     def __init__(self, model: Model) -> None:
         self._loaded = bool(model.scene.loads)
-        ((_, self._pose),) = model.discrete.unknowns.of_kind(BlockKind.POSE)
-        self._units = np.eye(model.size)[:, self._pose]
+        self._size = model.size
+        self._frames = [
+            (entries, frame)
+            for (_, entries), frame in zip(
+                model.discrete.unknowns.of_kind(BlockKind.POSE), model.discrete.frames.values(), strict=True
+            )
+        ]
         momentum, self._rate = _functions(model)
         self._momentum = RepeatedCall(momentum)
-        self._momenta = momentum.map(self._units.shape[1])
+        self._momenta = momentum.map(MOMENTA)
         self._inverse: FloatArray | None = None
 
     def settled(self, step: Step, piece: Piece) -> Instant:
@@ -60,6 +88,7 @@ class MomentumKeeper:
         rounding = ROUNDING * np.abs(wanted).max()
         before = 0.0
         end = step.end
+        motions = self.rigid_motions(end.x)
         for _ in range(MOST_CORRECTIONS):
             missing = wanted - self._momentum_of(end, piece)
             largest = float(np.abs(missing).max())
@@ -67,13 +96,11 @@ class MomentumKeeper:
                 break
             inverse: FloatArray | None = self._inverse
             if inverse is None or largest > CONTRACTING * before > 0.0:
-                # The least rates: none along the norm of the quaternion, which no momentum belongs to.
-                inverse = np.asarray(np.linalg.pinv(self._by_pose(end, piece)), dtype=np.float64)
+                # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
+                inverse = np.asarray(np.linalg.pinv(self._momenta_of(motions, end, piece)), dtype=np.float64)
                 self._inverse = inverse
             before = largest
-            v = end.v.copy()
-            v[self._pose] += inverse @ missing
-            end = replace(end, v=v)
+            end = replace(end, v=end.v + motions @ (inverse @ missing))
         return end
 
     def _impulse(self, step: Step, piece: Piece) -> FloatArray:
@@ -91,20 +118,44 @@ class MomentumKeeper:
         inputs = piece.at(instant.time)
         return self._momentum(instant.x, instant.v, inputs.value, inputs.rate)
 
-    def _by_pose(self, instant: Instant, piece: Piece) -> FloatArray:
-        """Derivative of momentum, which is linear in velocities, with those of the base, shape (6, 7)."""
+    def rigid_motions(self, x: FloatArray) -> FloatArray:
+        """Rates of the unknowns as all moves along an axis of the world, and turns about one, shape (size, 6)."""
+        motions = np.zeros((self._size, MOMENTA))
+        for entries, frame in self._frames:
+            deviation = x[entries]
+            place = frame.start.position / frame.length + deviation[:3]
+            w, i, j, k = frame.start.quaternion + deviation[3:]
+            motions[entries, :] = np.block(
+                [
+                    [np.eye(3) / frame.length, -_cross(place)],
+                    [np.zeros((4, 3)), 0.5 * np.array([[-i, -j, -k], [w, k, -j], [-k, w, i], [j, -i, w]])],
+                ]
+            )
+        return motions
+
+    def _momenta_of(self, motions: FloatArray, instant: Instant, piece: Piece) -> FloatArray:
+        """Momentum of rigid motions, in which it is linear, shape (6, 6)."""
         value = piece.at(instant.time).value
-        return np.asarray(self._momenta(instant.x, self._units, value, np.zeros(len(value))).full())
+        return np.asarray(self._momenta(instant.x, motions, value, np.zeros(len(value))).full())
+
+
+def _cross(vector: FloatArray) -> FloatArray:
+    """The matrix of a cross product from the left, shape (3, 3)."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _functions(model: Model) -> tuple[ca.Function, ca.Function]:
     """Momentum (x, v, inputs, rate), and its rate along a motion (x, v, a, inputs, rate, acceleration), 6×1 each."""
     x, v, a = (ca.MX.sym(name, model.size) for name in ("x", "v", "a"))
     inputs, rate, acceleration = (ca.MX.sym(name, model.inputs.size) for name in ("inputs", "rate", "acceleration"))
-    momentum = ca.vertcat(*model.momentum(x, v, inputs, rate))
-    directions = ((x, v), (v, a), (inputs, rate), (rate, acceleration))
-    along = sum(ca.jtimes(momentum, argument, direction) for argument, direction in directions)
-    return (
-        ca.Function("momentum", [x, v, inputs, rate], [ca.densify(momentum)]),
-        ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [along]),
+    momentum = ca.Function(
+        "momentum", [x, v, inputs, rate], [ca.densify(ca.vertcat(*model.momentum(x, v, inputs, rate)))]
     )
+    # One symbol for all that changes: one sweep for its direction, where each of four would cost as much.
+    state = ca.MX.sym("state", 2 * model.size + 2 * model.inputs.size)
+    sizes = [model.size, model.size, model.inputs.size, model.inputs.size]
+    parts = ca.vertsplit(state, np.cumsum([0, *sizes]).tolist())
+    along = ca.jtimes(momentum(*parts), state, ca.vertcat(v, a, rate, acceleration))
+    along = ca.graph_substitute(along, [state], [ca.vertcat(x, v, inputs, rate)])
+    return momentum, ca.Function("momentum_rate", [x, v, a, inputs, rate, acceleration], [ca.densify(along)])
