@@ -90,7 +90,10 @@ def _most(modes: int | tuple[int, ...]) -> int:
 
 def _same_contacts(first: Solution, second: Solution) -> bool:
     """Whether the same rods touch the same obstacles in the same way."""
-    names = [[(touch.rod, touch.obstacle, touch.kind) for touch in solution.contacts] for solution in (first, second)]
+    names = [
+        [(touch.rod, touch.obstacle, touch.kind, touch.of_body) for touch in solution.contacts]
+        for solution in (first, second)
+    ]
     return names[0] == names[1]
 
 
@@ -100,7 +103,8 @@ def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
     Forces count relative to EI/ℓ² or to the largest one, whichever is more.
     """
     judged = with_estimate(coarse, fine)
-    units = [coarse.model.discrete.tension_unit(contact.rod) for contact in coarse.contacts]
+    discrete = coarse.model.discrete
+    units = [discrete.contact_unit(contact.rod, of_body=contact.of_body) for contact in coarse.contacts]
     largest = max([0.0, *units, *(float(np.linalg.norm(contact.force)) for contact in fine.contacts)])
     distances = [0.0]
     for first, second in zip(coarse.contacts, fine.contacts, strict=True):

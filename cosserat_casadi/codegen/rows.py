@@ -19,7 +19,7 @@ from cosserat_casadi.codegen.names import Names, model_names
 from cosserat_casadi.codegen.plain import pointer
 from cosserat_casadi.codegen.stability import stability_sources
 from cosserat_casadi.codegen.texts import fill, render
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
@@ -36,6 +36,9 @@ STABILITY = ("smallest_eigenvalue", "stable")
 
 CONTACT = ("contacts", "from", "to", "force.x", "force.y", "force.z")
 """Columns of a rod and an obstacle: number of contacts, abscissae between which they lie, their resultant (N)."""
+
+BODY_CONTACT = ("contacts", "force.x", "force.y", "force.z")
+"""Columns of a body and an obstacle: one where they touch, else zero, and the force (N)."""
 
 POSE = ("x", "y", "z", "qw", "qx", "qy", "qz")
 """Columns of a pose: position (m), quaternion."""
@@ -158,6 +161,7 @@ def row_results(scene: Scene, *, stability: bool = False) -> tuple[str, ...]:
     poses = [f"{name}.{axis}" for name in posed for axis in POSE]
     # Smooth contact is a load, of which rows do not tell.
     contacts = [f"{rod}.{obstacle.name}.{word}" for rod, obstacle in pairs(scene) for word in CONTACT]
+    contacts += [f"{body.name}.{obstacle.name}.{word}" for body, obstacle in body_pairs(scene) for word in BODY_CONTACT]
     return (*JUDGED, *poses, *states, *contacts, *(STABILITY if stability else ()))
 
 

@@ -47,12 +47,12 @@ class BaseWrench:
 
 @dataclass(frozen=True)
 class Contact:
-    """Where a rod touches an obstacle, and how it is held off.
+    """Where a rod, or a body, touches an obstacle, and how it is held off.
 
     Attributes:
         obstacle: name of the obstacle.
         rod: name of the rod, or of the body.
-        start: abscissa X at which contact begins.
+        start: abscissa X at which contact begins; 0 of a body.
         end: abscissa at which it ends; the same for a point.
         force: resultant on the rod, world axes, shape (3,), N.
         ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.

@@ -1,7 +1,8 @@
-"""The force of an obstacle on one section: energy −N d(r) with d the distance, so that the force is N along its normal.
+"""The force of an obstacle on one section, or on a body that is a ball: energy −N d(r) with d the distance.
 
-What holds a section off an obstacle acts through its centre: without friction it has no moment about it. N is no input
-of the scene but follows from the contact, see equilibrium/contact; no scene file names this load.
+So the force is N along the normal. It acts through the centre of the section or of the ball: without friction it has no
+moment about it. N is no input of the scene but follows from the contact, see equilibrium/contact; no scene file names
+this load.
 """
 
 from __future__ import annotations
@@ -9,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, final
 
-from cosserat_casadi.loads.load import Load, Section
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.load import BodyPoint, Load, Section
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -18,15 +20,16 @@ from cosserat_casadi.scene.loads import LoadRecord
 
 
 class ContactPoint(LoadRecord):
-    """An obstacle that touches one section of a rod."""
+    """An obstacle that touches one section of a rod, or a body."""
 
     inputs: ClassVar[Mapping[str, InputField]] = {"force": InputField("N", 1, lower=0.0)}
 
     kind: Literal["contact_point"] = "contact_point"
-    rod: str
+    rod: str | None
     obstacle: Any
     at: Any
     force: float
+    body: str | None = None
 
 
 @final
@@ -39,6 +42,10 @@ class ContactPointLoad(Load[ContactPoint]):
         """The section that is touched."""
         at: Scalar = load.at
         return at
+
+    def on_body(self, load: ContactPoint, body: scenes.Body) -> BodyPoint | None:
+        """The origin of the body, about which it is a ball."""
+        return BodyPoint() if load.body == body.name else None
 
     def energy(self, load: ContactPoint, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−N d(r), J."""

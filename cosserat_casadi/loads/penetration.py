@@ -1,7 +1,7 @@
 """A cushion in front of an obstacle, energy k/3 (ρ − d)₊³ per length: where contact is, before it is found exactly.
 
-Rods sink into it by a small share of their length. What it gives is a first guess of places and forces, never a result;
-no scene file names this load.
+Rods sink into it by a small share of their length, and so do bodies, as balls of their radius. What it gives is a first
+guess of places and forces, never a result; no scene file names this load.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from typing import Any, ClassVar, Literal, final
 import casadi as ca
 import numpy as np
 
-from cosserat_casadi.loads.load import Load, Section, Site
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.loads.load import BodyPoint, Load, Section, Site
 from cosserat_casadi.loads.radius import section_radii
 from cosserat_casadi.maths.numbers import Numbers, known
 from cosserat_casadi.maths.typing import FloatArray, Matrix
@@ -28,21 +29,31 @@ class Penetration(LoadRecord):
     inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m³", 1)}
 
     kind: Literal["penetration"] = "penetration"
-    rod: str
+    rod: str | None
     obstacle: Any
     stiffness: float
+    body: str | None = None
+    radius: float = 0.0
 
 
 @final
 class PenetrationLoad(Load[Penetration]):
-    """k (ρ − d)² per length along the normal of the obstacle, where a section of radius ρ is in it; k in N/m³."""
+    """k (ρ − d)² per length along the normal of the obstacle, where a section of radius ρ is in it; k in N/m³.
+
+    On a body that is no force per length but a force, and k is in N/m².
+    """
 
     record = Penetration
 
+    def on_body(self, load: Penetration, body: scenes.Body) -> BodyPoint | None:
+        """The origin of the body, about which it is a ball."""
+        return BodyPoint() if load.body == body.name else None
+
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
-        """k/3 (ρ − d)³, J/m."""
+        """k/3 (ρ − d)³, J/m, or J of a body."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
-        depth = ca.fmax(section.data[0] - distance, 0.0)
+        radius = load.radius if load.body is not None else section.data[0]
+        depth = ca.fmax(radius - distance, 0.0)
         energy: Matrix = values["stiffness"] / 3 * depth**3
         return energy
 

@@ -264,6 +264,17 @@ class DiscreteScene:
         discrete_rod = self.rods[rod]
         return discrete_rod.energy_unit / discrete_rod.properties.length
 
+    def body_frame(self, body: str) -> FloatingFrame:
+        """The frame of a body, in units of the stiffest and the longest rod that holds it."""
+        return self.frames[FrameName("body", body)]
+
+    def contact_unit(self, name: str, *, of_body: bool) -> float:
+        """What forces of contact on a rod, or on a body, are counted in, N."""
+        if not of_body:
+            return self.tension_unit(name)
+        frame = self.body_frame(name)
+        return frame.unit / frame.length
+
 
 def discrete_scene(
     scene: scenes.Scene, layout: InputLayout, discretisation: Mapping[str, Discretisation]

@@ -15,8 +15,8 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
-from cosserat_casadi.equilibrium.contact.gaps import pairs
-from cosserat_casadi.equilibrium.contact.passage import SECTIONS, is_inside_between
+from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.passage import SECTIONS, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
 from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
@@ -29,6 +29,7 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
+from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT
@@ -253,8 +254,38 @@ class Arrangement:
         bends = properties.length * np.cross(in_world, tangents.reshape(-1, 3))
         return np.asarray(bends.reshape(tangents.shape))
 
+    @cached_property
+    def _body_positions(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ positions of the bodies of the scene, world axes, one column each, m."""
+        written = self.equations.written
+        positions = [written.system.frame(FrameName("body", body.name)).position for body in self.scene.bodies]
+        return ca.Function("body_positions", written.arguments, [ca.horzcat(*positions)])
+
+    def body_positions(self, z: FloatArray, load_factor: float) -> dict[str, FloatArray]:
+        """Positions of the bodies of the scene by name, world axes, shape (1, 3) each, m."""
+        if not self.scene.bodies:
+            return {}
+        columns = self._body_positions(*self.equations.parts(z), self.inputs(load_factor)).full()
+        return {body.name: column[None, :] for body, column in zip(self.scene.bodies, columns.T, strict=True)}
+
+    def body_gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], float]:
+        """Distances of bodies from the obstacles that they must not enter, by the names of body and obstacle."""
+        pairs_of_bodies = list(body_pairs(self.scene))
+        if not pairs_of_bodies:
+            return {}
+        positions = self.body_positions(z, load_factor)
+        gaps = {}
+        for body, obstacle in pairs_of_bodies:
+            (gap,) = ball_gaps(obstacle, ball_radius(body), positions[body.name])
+            gaps[body.name, obstacle.name] = float(gap) / self._length_of(body)
+        return gaps
+
+    def _length_of(self, body: scenes.Body) -> float:
+        """Length that distances of a body are relative to, m."""
+        return self.equations.nominal.model.discrete.body_frame(body.name).length
+
     def goes_through(self, start: ArcPoint, end: ArcPoint) -> bool:
-        """Whether a rod is inside an obstacle on the straight way from one point of the curve to another."""
+        """Whether a rod or a body is inside an obstacle on the straight way from one point of the curve to another."""
         for rod, obstacle in pairs(self.scene):
             properties = self.equations.nominal.model.discrete.rods[rod].properties
             start_positions, end_positions = (
@@ -262,7 +293,16 @@ class Arrangement:
             )
             if is_inside_between(obstacle, properties, start_positions, end_positions):
                 return True
-        return False
+        pairs_of_bodies = list(body_pairs(self.scene))
+        if not pairs_of_bodies:
+            return False
+        before, after = (self.body_positions(self.z(point), point.load_factor) for point in (start, end))
+        return any(
+            ball_is_inside_between(
+                obstacle, ball_radius(body), self._length_of(body), before[body.name], after[body.name]
+            )
+            for body, obstacle in pairs_of_bodies
+        )
 
     def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> Pose:
         """Poses of sections at abscissae X."""
@@ -303,7 +343,10 @@ class Arrangement:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
+                # Every row of the Jacobian is in a unit of its own.
+                discrete = self.equations.nominal.model.discrete
+                unit = discrete.rods[touch.rod].energy_unit / discrete.unknowns.units
+                hessian = hessian + ends[0] / bend * np.outer(unit * own[1], own[1])
         return admissible_eigenvalues(*restricted(hessian, held, self._variations))
 
 

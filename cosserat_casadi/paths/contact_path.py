@@ -13,7 +13,7 @@ import numpy.typing as npt
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.state import TIP, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.state import TIP, Touch, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
 from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.equilibrium.stability import stability_of
@@ -55,11 +55,8 @@ class ContactPath(EquilibriumPath):
         arrangement = self.arrangements[self.arrangement[index]]
         contacts = []
         for touch, ends, _ in arrangement.parts(self.x[index]):
-            unit = self.model.discrete.tension_unit(touch.rod)
-            forces = tuple((unit * ends).tolist())
-            contacts.append(
-                PathContact(touch.obstacle, touch.rod, float(touch.start), float(touch.end), touch.kind, forces)
-            )
+            unit = self.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
+            contacts.append(_path_contact(touch, tuple((unit * ends).tolist())))
         return tuple(contacts)
 
     def tip(self, rod: str | None = None) -> Pose:
@@ -265,9 +262,15 @@ class Travel:
                 1,
                 beyond,
                 arrangement=number,
-                contact=PathContact(touch.obstacle, touch.rod, float(touch.start), float(touch.end), touch.kind, ()),
+                contact=_path_contact(touch, ()),
             )
         )
+
+
+def _path_contact(touch: Touch, forces: tuple[float, ...]) -> PathContact:
+    """A contact at its place, with the forces at its ends, N."""
+    start, end = float(touch.start), float(touch.end)
+    return PathContact(touch.obstacle, touch.rod, start, end, touch.kind, forces, touch.of_body)
 
 
 def follow_contact_path(

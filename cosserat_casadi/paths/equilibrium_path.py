@@ -23,11 +23,12 @@ class PathContact:
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod.
-        start: abscissa X at which it begins.
+        rod: name of the rod, or of the body.
+        start: abscissa X at which it begins; 0 of a body.
         end: abscissa at which it ends; the same for a point.
         kind: "point" or "line".
         ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
+        of_body: whether it is a body that touches.
     """
 
     obstacle: str
@@ -36,6 +37,7 @@ class PathContact:
     end: float
     kind: str
     ends: tuple[float, ...]
+    of_body: bool = False
 
 
 @dataclass(frozen=True)

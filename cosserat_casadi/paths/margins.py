@@ -42,6 +42,7 @@ class Watch(Enum):
     """What a margin is of."""
 
     GAP = "least distance of a rod from an obstacle, beside its contacts"
+    BODY_GAP = "distance of a body from an obstacle that it does not touch"
     FORCE = "force at a point, or at an end of a line times its length"
     PRESSURE = "least force per length along a line"
     CURVATURE = "second derivative of the gap at a point: below zero the rod lies down"
@@ -58,7 +59,7 @@ class Key:
         watch: what it is of.
         number: of the contact in the arrangement; −1 for a gap.
         end: number of the end of a line whose force it is.
-        pair: rod and obstacle.
+        pair: rod, or body, and obstacle.
     """
 
     watch: Watch
@@ -104,6 +105,9 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
             at = float(touch.start + width * SAMPLES[int(pressure.argmin())])
             found[Key(Watch.PRESSURE, number, pair)] = Margin(weakest, at)
             found[Key(Watch.WIDTH, number, pair)] = Margin(width - OPEN, float(touch.start))
+        elif touch.of_body:
+            # It has no place along a rod that could change.
+            continue
         elif touch.moving:
             _, _, curvature = gaps[pair].at(touch.start)
             found[Key(Watch.CURVATURE, number, pair)] = Margin(curvature, float(touch.start))
@@ -111,11 +115,19 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
             _, slope, _ = gaps[pair].at(TIP)
             found[Key(Watch.SLOPE, number, pair)] = Margin(-slope, TIP)
     for pair, gap in gaps.items():
-        taken = [(touch.start, touch.end) for touch, _, _ in parts if (touch.rod, touch.obstacle) == pair]
+        taken = [
+            (touch.start, touch.end)
+            for touch, _, _ in parts
+            if (touch.rod, touch.obstacle) == pair and not touch.of_body
+        ]
         X = nearest(gap, taken)
         if X is not None:
             distance, _, _ = gap.at(X)
             found[Key(Watch.GAP, -1, pair)] = Margin(distance, X)
+    touching = {(touch.rod, touch.obstacle) for touch, _, _ in parts if touch.of_body}
+    for pair, distance in arrangement.body_gaps(z, load_factor).items():
+        if pair not in touching:
+            found[Key(Watch.BODY_GAP, -1, pair)] = Margin(distance, 0.0)
     return found
 
 

@@ -87,10 +87,15 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         rod, obstacle = key.pair
         yield _added(state, Touch.point(obstacle, rod, X))
         return
+    if key.watch is Watch.BODY_GAP:
+        body, obstacle = key.pair
+        yield _added(state, Touch.ball(obstacle, body))
+        return
     touch = state.touches[key.number]
     others = [other for number, other in enumerate(state.touches) if number != key.number]
     if key.watch is Watch.FORCE and not touch.is_line:
-        yield Change("lift_off", touch, ContactState.of(others), Key(Watch.GAP, -1, key.pair))
+        gap = Watch.BODY_GAP if touch.of_body else Watch.GAP
+        yield Change("lift_off", touch, ContactState.of(others), Key(gap, -1, key.pair))
     elif key.watch is Watch.CURVATURE:
         half = WIDER * OPEN / 2
         yield _opened("point_to_line", touch, others, replace(touch, start=X - half, end=X + half, is_line=True))

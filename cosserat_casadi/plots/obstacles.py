@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.equilibrium.contact.surfaces import distance_from
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
@@ -69,11 +70,10 @@ def _mark_contacts(canvas: Canvas, solution: Solution) -> None:
     """Mark points of contact, and draw stretches that lie on an obstacle once more."""
     label: str | None = "contact"
     for contact in solution.contacts:
-        if contact.of_body:
+        if contact.of_body and contact.width is not None:
             continue
         is_stretch = contact.start < contact.end
-        X = np.linspace(contact.start, contact.end, 41 if is_stretch else 1)
-        points = solution.pose(X, contact.rod).position
+        points = touching_points(solution, contact, 41)
         if is_stretch:
             canvas.line(points, color="black", linewidth=1.6, zorder=8)
         canvas.markers(points[[0, -1]], marker="o", markersize=5, color="black", zorder=9, label=label)

@@ -126,14 +126,13 @@ def _event_entry(path: EquilibriumPath, event: PathEvent) -> dict[str, Any]:
 
 
 def _contact_entry(contact: PathContact) -> dict[str, Any]:
-    """Where and how a rod touches an obstacle."""
-    return {
-        "obstacle": contact.obstacle,
-        "rod": contact.rod,
-        "from": contact.start,
-        "to": contact.end,
-        "kind": contact.kind,
-    }
+    """Where and how a rod touches an obstacle; or which body does."""
+    entry: dict[str, Any] = {"obstacle": contact.obstacle}
+    if contact.of_body:
+        entry["body"] = contact.rod
+    else:
+        entry |= {"rod": contact.rod, "from": contact.start, "to": contact.end}
+    return {**entry, "kind": contact.kind}
 
 
 def _stability_entry(path: EquilibriumPath, index: int) -> dict[str, bool | float | None]:

@@ -33,7 +33,7 @@ from cosserat_casadi.scene.values import (
 SHEARS = {3, 4}
 """Indices of the shears among the strains."""
 
-SMOOTH_KEYS = ("width", "stiffness", "damping", "bodies")
+SMOOTH_KEYS = ("width", "stiffness", "damping")
 """Keys of an obstacle whose contact is smooth."""
 
 SMOOTH_FORM = "give the obstacle a width, m, for a contact that is smooth, as in width = 1e-3"
@@ -44,7 +44,7 @@ FEWEST_POINTS = 2
 
 
 class ObstacleRecord(Entry):
-    """What the centre lines of rods keep away from, by the radius of their sections.
+    """What the centre lines of rods keep away from by the radius of their sections, and bodies by theirs.
 
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
     """
@@ -57,8 +57,8 @@ class ObstacleRecord(Entry):
     )
     bodies: Names | None = Field(
         None,
-        description="with width: names of the bodies that may not enter it, as balls of their radius about their "
-        "origin; none when left out",
+        description="names of the bodies that may not enter it, as balls of their radius about their origin; none when "
+        "left out",
     )
     width: Positive | None = Field(
         None,
@@ -108,7 +108,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that are not round, bodies without radius; where contact is exact rods that shear and of assemblies."""
+        """Rods that are not round, bodies without radius; where contact is exact rods that shear, and free ones."""
         named = given.get("rods", [] if "bodies" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
@@ -117,23 +117,16 @@ class ObstacleRecord(Entry):
             )
             yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
         yield from _unfit_bodies(given, scene)
-        tied = _tied_rods(scene)
+        if exact and given.get("bodies"):
+            for name, (_, rod) in scene.named("rods").items():
+                if _is_free(rod):
+                    yield Fault((), *_held_by_contact_alone(name))
         for name, (_, rod) in scene.named("rods").items():
             if isinstance(named, list | tuple) and name not in named:
                 continue
             yield from _not_round(name, rod)
             if exact:
-                yield from _without_exact_contact(name, rod, tied)
-
-
-def _tied_rods(scene: SceneTables) -> set[str]:
-    """Names of rods that joints hold, that carry others or are carried, or that nothing holds."""
-    tied = {joint.get("rod") for _, joint in scene.tables("joints")}
-    for name, (_, rod) in scene.named("rods").items():
-        base = rod.get("base")
-        if isinstance(base, Mapping) and (base.get("rod") is not None or base.get("free")):
-            tied |= {name, base.get("rod")}
-    return {name for name in tied if isinstance(name, str)}
+                yield from _without_exact_contact(name, rod)
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -156,7 +149,7 @@ def _not_round(name: str, rod: Table) -> Iterator[Fault]:
         yield Fault((), problem, "take a round section, or stiffness, whose centre line touches")
 
 
-def _without_exact_contact(name: str, rod: Table, tied: set[str]) -> Iterator[Fault]:
+def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
     """What in a rod keeps its exact contact from being found; a smooth one needs none of it."""
     if SHEARS & set(admitted_strains(rod.get("strain"))):
         # At a point of contact the centre line of a rod that shears would have a corner that points into the obstacle:
@@ -164,9 +157,21 @@ def _without_exact_contact(name: str, rod: Table, tied: set[str]) -> Iterator[Fa
         problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
         remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
         yield Fault((), problem, remedy)
-    if name in tied:
-        problem = f"the rod {name!r} is one of an assembly, or free: its exact contact is not found"
-        yield Fault((), problem, f"{SMOOTH_FORM}; or leave the rod out of rods")
+    if _is_free(rod):
+        yield Fault((), *_held_by_contact_alone(name))
+
+
+def _is_free(rod: Table) -> bool:
+    """Whether nothing in the scene holds the base of a rod."""
+    base = rod.get("base")
+    return isinstance(base, Mapping) and base.get("free") is True
+
+
+def _held_by_contact_alone(name: str) -> tuple[str, str]:
+    """What is wrong with a free rod, and what to do."""
+    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
+    problem = f"the rod {name!r} is free: at rest contact alone would have to hold it"
+    return problem, f"give its base a place; or let it move: {SMOOTH_FORM}"
 
 
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from cosserat_casadi.codegen.rows import JUDGED, row_results
-from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.gaps import body_pairs, pairs
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.errors import SceneError
@@ -90,8 +90,9 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
         # The effort and its conjugate, such as tension and length.
         numbers.extend(solution.actuator(actuator.name).values())
     for rod, obstacle in pairs(scene):
-        own = [contact for contact in solution.contacts if (contact.rod, contact.obstacle) == (rod, obstacle.name)]
-        numbers += contact_numbers(own)
+        numbers += contact_numbers(_contacts_of(solution, rod, obstacle.name, of_body=False))
+    for body, obstacle in body_pairs(scene):
+        numbers += body_contact_numbers(_contacts_of(solution, body.name, obstacle.name, of_body=True))
     if judged is not None:
         verdict = (judged.smallest_eigenvalue, judged.stable)
         numbers += [np.nan if number is None else float(number) for number in verdict]
@@ -99,12 +100,27 @@ def result_row(solution: Solution, width: int, judged: Solution | None = None) -
     return row
 
 
+def _contacts_of(solution: Solution, name: str, obstacle: str, *, of_body: bool) -> list[Contact]:
+    """The contacts of a rod, or of a body, with an obstacle."""
+    wanted = (name, obstacle, of_body)
+    return [contact for contact in solution.contacts if (contact.rod, contact.obstacle, contact.of_body) == wanted]
+
+
+def body_contact_numbers(contacts: Sequence[Contact]) -> list[float]:
+    """Number of the contacts of a body with an obstacle, and their resultant."""
+    return [float(len(contacts)), *_resultant(contacts)]
+
+
+def _resultant(contacts: Sequence[Contact]) -> list[float]:
+    resultant: list[float] = sum((contact.force for contact in contacts), start=np.zeros(3)).tolist()
+    return resultant
+
+
 def contact_numbers(contacts: Sequence[Contact]) -> list[float]:
     """Number of the contacts of a rod with an obstacle, where they begin and end, NaN without any, their resultant."""
     first = min((contact.start for contact in contacts), default=np.nan)
     last = max((contact.end for contact in contacts), default=np.nan)
-    resultant = sum((contact.force for contact in contacts), start=np.zeros(3))
-    return [float(len(contacts)), first, last, *resultant.tolist()]
+    return [float(len(contacts)), first, last, *_resultant(contacts)]
 
 
 @lru_cache(maxsize=2)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.gaps import touching_points
 from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.solve import solve
@@ -88,12 +89,13 @@ class ContactSession:
 
 
 def _drawn_contact(solution: Solution, contact: Contact) -> dict[str, Any]:
-    """Points of a rod at which it touches, and the resultant on it there, world axes, m and N; and where, in words."""
-    X = np.linspace(contact.start, contact.end, ALONG_LINE if contact.start < contact.end else 1)
-    points = solution.pose(X, contact.rod).position
-    place = f"at X = {contact.start:.3g}"
-    if len(X) > 1:
-        place = f"from X = {contact.start:.3g} to {contact.end:.3g}"
+    """Points of a rod or a ball at which it touches, the resultant on it, world axes, m and N; and where, in words."""
+    points = touching_points(solution, contact, ALONG_LINE)
+    place = f" at X = {contact.start:.3g}"
+    if contact.of_body:
+        place = ""
+    elif contact.start < contact.end:
+        place = f" from X = {contact.start:.3g} to {contact.end:.3g}"
     force = float(np.linalg.norm(contact.force))
-    words = f"{contact.rod} touches {contact.obstacle} {place} with {force:.3g} N"
+    words = f"{contact.rod} touches {contact.obstacle}{place} with {force:.3g} N"
     return {"points": points.tolist(), "force": contact.force.tolist(), "words": words.replace("_", " ")}

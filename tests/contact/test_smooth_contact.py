@@ -306,7 +306,7 @@ kind = "fixed"
 
 @pytest.mark.slow
 @pytest.mark.parametrize("assembly", ["sheared", "carried", "body"])
-def test_rods_that_exact_contact_leaves_out(assembly: str) -> None:
+def test_rods_that_shear_assemblies_and_bodies(assembly: str) -> None:
     text = {
         "sheared": SHEARED + PUSH + TABLE,
         "carried": CARRIED + PUSH.replace('rod = "rod"', 'rod = "second"') + TABLE,
@@ -320,10 +320,15 @@ def test_rods_that_exact_contact_leaves_out(assembly: str) -> None:
     assert contact.of_body == (assembly == "body")
     forces = sum((contact.force for contact in held.contacts), np.array([0.0, 0.0, -0.6]))
     assert_allclose(held.base_wrench("rod").force, -forces, rtol=0, atol=5e-3 if assembly != "body" else 1e-9)
-    with pytest.raises(SceneError) as refused:
-        with_exact_contact(parse_scene(text))
-    if assembly != "body":
-        assert any("give the obstacle a width" in problem.remedy for problem in refused.value.problems)
+    if assembly == "sheared":
+        with pytest.raises(SceneError, match="admits shear"):
+            with_exact_contact(parse_scene(text))
+        return
+    exact = solve(build(with_exact_contact(parse_scene(text))))
+    assert exact.converged
+    (touching,) = exact.contacts
+    assert touching.of_body == (assembly == "body")
+    assert_allclose(exact.tip("rod").position, held.tip("rod").position, rtol=0, atol=0.01)
 
 
 BALL = """
@@ -464,13 +469,14 @@ def test_the_command_line_tells_that_contact_is_smooth(tmp_path: Path) -> None:
     assert "smooth plane" in checked.stdout
 
 
-def test_bodies_have_no_exact_contact() -> None:
+def test_the_scene_with_exact_contact_keeps_its_bodies() -> None:
     """Without its bodies the table would hold off the rod, which it does not concern."""
     body = '[[bodies]]\nname = "ball"\nradius = 0.02\n'
     weld = '[[joints]]\nname = "weld"\nkind = "fixed"\nrod = "rod"\nbody = "ball"\n'
-    scene = parse_scene(ROD + PUSH + body + weld + TABLE + 'bodies = ["ball"]\n')
-    with pytest.raises(SceneError, match=r"obstacles\[0\].bodies: exact contact of bodies is not found"):
-        with_exact_contact(scene)
+    scene = with_exact_contact(parse_scene(ROD + PUSH + body + weld + TABLE + 'bodies = ["ball"]\n'))
+    (table,) = scene.obstacles
+    assert table.bodies == ("ball",)
+    assert table.width is None
 
 
 LUMEN = 'name = "it"\nkind = "lumen"\npoints = [[0, 0, -0.1], [0, 0, 0.2]]\nradius = 0.01\nrods = ["rod"]\n'
@@ -496,7 +502,6 @@ REFUSED = {
         "has no radius",
     ),
     "body": (TABLE + 'bodies = ["none"]\n', "obstacles[0].bodies[0]", "no body is named"),
-    "exact body": (TABLE.replace("width = 0.01", 'bodies = ["b"]'), "obstacles[0].bodies", "without width contact"),
 }
 
 

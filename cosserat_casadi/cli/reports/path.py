@@ -89,6 +89,8 @@ def _table_rows(path: EquilibriumPath, abscissae: dict[str, float]) -> list[_Tab
 
 def _event_kind(event: PathEvent) -> str:
     contact = event.contact
+    if contact is not None and contact.of_body:
+        return f"{CONTACT_WORDS[event.kind]}, {contact.rod} on {contact.obstacle}"
     if contact is not None:
         return f"{CONTACT_WORDS[event.kind]}, {contact.rod} X = {contact.start:.4g} on {contact.obstacle}"
     if event.multiplicity == 1:

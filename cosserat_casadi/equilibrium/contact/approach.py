@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.barriers import Barriers
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs, runs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.load_path import input_path, load_path
 from cosserat_casadi.equilibrium.relax import can_relax, relaxed
@@ -39,11 +39,20 @@ ELEMENTS = 10
 MODES = 3
 NODES = 6
 
+MODES_ALONE = 5
+"""Modes of a rod that touches no obstacle, which needs no elements for it."""
+
 STIFFNESS = 1e6
 """First stiffness of a cushion, in units of EI/ℓ⁵."""
 
 SHALLOW = 0.01
 """Depth, relative to the length, to which rods may sink into it."""
+
+BALL_STIFFNESS = 1e5
+"""First stiffness of a cushion on a body, in units of EI/ℓ⁴: where it is SHALLOW it pushes with 10 EI/ℓ²."""
+
+THIN_BALL_FORCE = 40.0
+"""Least stiffness times the square of the distance to the middle: half of it deep it pushes with 10 EI/ℓ²."""
 
 LONG = 0.2
 """Stretch of pressure from which a line of contact is tried before a point."""
@@ -118,6 +127,7 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
             name=f"cushion {number}", rod=rod_name, obstacle=obstacle, stiffness=stiffness
         )
         cushions.append(cushion)
+    cushions += _cushions_of_bodies(scene, factor)
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
     if scene.inputs is not None:
         changes["inputs"] = (*scene.inputs, *(f"{cushion.name}.stiffness" for cushion in cushions))
@@ -125,6 +135,9 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     discretisation = {}
     for rod in scene.rods:
         own = element_ends(scene, rod.name)
+        if not any(obstacle.concerns(rod.name) for obstacle in scene.obstacles):
+            discretisation[rod.name] = Discretisation((MODES_ALONE,) * len(rod.admitted), NODES, own)
+            continue
         # None as short as the distance of an end of the loads from one of ours may be.
         thinnest = max(_thinness(obstacle, rod) for obstacle in scene.obstacles)
         # Nodes are no farther apart than the thinnest bar is thick.
@@ -133,6 +146,25 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         modes = (MODES,) * len(rod.admitted)
         discretisation[rod.name] = Discretisation(modes, NODES, tuple(sorted([*own, *map(float, further)])))
     return build(soft, discretisation)
+
+
+def _cushions_of_bodies(scene: scenes.Scene, factor: float) -> Iterator[Penetration]:
+    """The cushion of every obstacle on every body that it concerns, in units of the rods that hold it."""
+    records = {rod.name: rod for rod in scene.rods}
+    for number, (body, obstacle) in enumerate(body_pairs(scene), start=1):
+        holding = [records[joint.rod] for joint in scene.joints if joint.body == body.name]
+        unit = max(_unit(rod) * rod.length for rod in holding)
+        length = max(rod.length for rod in holding)
+        radius = ball_radius(body)
+        thinness = length / (obstacle.thickness / 2 + radius)
+        yield Penetration.model_construct(
+            name=f"cushion of body {number}",
+            rod=None,
+            body=body.name,
+            radius=radius,
+            obstacle=obstacle,
+            stiffness=unit * max(BALL_STIFFNESS, THIN_BALL_FORCE * thinness**2) * factor,
+        )
 
 
 def _thinness(obstacle: scenes.ObstacleRecord, rod: scenes.Rod) -> float:
@@ -202,7 +234,7 @@ def _under_growing_loads(
 def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
     """A path without steps through bars and balls."""
     barriers = Barriers(model, inputs)
-    if not barriers.watched:
+    if not barriers.watched and not barriers.watched_bodies:
         return path
     return replace(path, admits=lambda before, after: not barriers.are_between(before, after))
 
@@ -222,8 +254,10 @@ def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Soluti
 
 
 def depth(solution: Solution) -> float:
-    """How deep rods sink into obstacles, relative to their lengths."""
-    return max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
+    """How deep rods and bodies sink into obstacles, relative to their lengths."""
+    of_rods = max((float(-gaps.min()) for _, _, gaps in _all_gaps(solution)), default=0.0)
+    of_bodies = [-body_gap(solution, body, obstacle) for body, obstacle in body_pairs(solution.model.scene)]
+    return max([of_rods, *of_bodies])
 
 
 def first_state(solution: Solution) -> ContactState:
@@ -233,6 +267,9 @@ def first_state(solution: Solution) -> ContactState:
         # Quadratic in the depth, as the cushions are.
         pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
         touches += [pressure.touch() for pressure in pressed]
+    for body, obstacle in body_pairs(solution.model.scene):
+        if body_gap(solution, body, obstacle) < 0.0:
+            touches.append(Touch.ball(obstacle.name, body.name))
     return ContactState.of(touches)
 
 

@@ -1,4 +1,4 @@
-"""Bars and balls that rods must not come out of on the other side while contact is looked for on soft cushions.
+"""Bars and balls that rods and bodies must not come out of on the other side while they lie on soft cushions.
 
 A cushion does not hold in its middle: a rod that is pushed, or jumps, beyond it is outside again, in an equilibrium
 that it cannot have come to.
@@ -13,8 +13,8 @@ from math import isfinite
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs
-from cosserat_casadi.equilibrium.contact.passage import SECTIONS, is_inside_between
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs
+from cosserat_casadi.equilibrium.contact.passage import SECTIONS, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -46,23 +46,44 @@ class Barriers:
             if isfinite(obstacle.thickness) and gap_along(unloaded, rod, obstacle, DENSE).min() >= 0.0
         ]
 
+    @cached_property
+    def watched_bodies(self) -> list[tuple[scenes.Body, scenes.ObstacleRecord]]:
+        """Bodies with what they must not pass through."""
+        unloaded = self._shape(self.model.unloaded())
+        return [
+            (body, obstacle)
+            for body, obstacle in body_pairs(self.model.scene)
+            if isfinite(obstacle.thickness) and body_gap(unloaded, body, obstacle) >= 0.0
+        ]
+
     def are_between(self, before: FloatArray, after: FloatArray) -> bool:
-        """Whether a rod comes near the middle of one on the straight way between two shapes, given by unknowns."""
+        """Whether a rod or a body comes near the middle of one on the way between two shapes, given by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
             start = self._positions(rod, before)
             end = self._positions(rod, after)
             if is_inside_between(obstacle, properties, start, end, self._deepest(rod, obstacle)):
                 return True
+        for body, obstacle in self.watched_bodies:
+            length = self.model.discrete.body_frame(body.name).length
+            pose = self.model.body[body.name]
+            way = (pose(before, self.inputs)[0].full().T, pose(after, self.inputs)[0].full().T)
+            if ball_is_inside_between(obstacle, ball_radius(body), length, *way, self._deepest_ball(body, obstacle)):
+                return True
         return False
 
     def give_way(self, x: FloatArray) -> bool:
-        """Whether a rod has sunk into one by more than half of what is admitted."""
+        """Whether a rod or a body has sunk into one by more than half of what is admitted."""
         shape = self._shape(x)
-        return any(
+        rods_sink = any(
             gap_along(shape, rod, obstacle, DENSE).min() < -self._deepest(rod, obstacle) / 2
             for rod, obstacle in self.watched
         )
+        bodies_sink = any(
+            body_gap(shape, body, obstacle) < -self._deepest_ball(body, obstacle) / 2
+            for body, obstacle in self.watched_bodies
+        )
+        return rods_sink or bodies_sink
 
     @cached_property
     def _interpolation(self) -> dict[str, FloatArray]:
@@ -79,6 +100,11 @@ class Barriers:
         """Depth that is admitted, relative to the length of the rod."""
         radius = obstacle.thickness / 2
         return MIDDLE * radius / self.model.discrete.rods[rod].properties.length
+
+    def _deepest_ball(self, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
+        """The same of a body, whose centre may come as near to the middle."""
+        radii = obstacle.thickness / 2 + ball_radius(body)
+        return MIDDLE * radii / self.model.discrete.body_frame(body.name).length
 
     def _shape(self, x: FloatArray) -> Solution:
         """The rods at some unknowns, which need not be in equilibrium."""

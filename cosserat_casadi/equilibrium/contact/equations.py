@@ -1,9 +1,10 @@
-"""Equations of rods in known contact: their balance, no gap where they touch, no slope of the gap where contact moves.
+"""Equations of rods and bodies in known contact: balance, no gap where they touch, no slope where contact moves.
 
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
 are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a stretch gives the same at
-its ends, and the moments of d − ρ with the polynomials of its force. Elements end at p and move with it, so that every
-field is smooth inside an element and the accuracy of the polynomials is kept. See docs/contact.md.
+its ends, and the moments of d − ρ with the polynomials of its force. A body is a ball: it gives d(r) = ρ. Elements end
+at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept. See
+docs/contact.md.
 """
 
 from __future__ import annotations
@@ -16,7 +17,15 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.state import SHORTEST, ContactState, Place, contact_loads, with_contacts
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius
+from cosserat_casadi.equilibrium.contact.state import (
+    SHORTEST,
+    ContactState,
+    Place,
+    Touch,
+    contact_loads,
+    with_contacts,
+)
 from cosserat_casadi.equilibrium.contact.surfaces import surface
 from cosserat_casadi.equilibrium.load_path import column
 from cosserat_casadi.loads.contact_line import ContactLine
@@ -28,6 +37,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discrete_scene import DiscreteScene, with_numbers
 from cosserat_casadi.model.equations import Equations as SceneEquations
+from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.places import element_ends
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.numerics.newton import Equations
@@ -93,15 +103,18 @@ class Placed:
 
     @cached_property
     def force_units(self) -> FloatArray:
-        """What one unit of each force stands for, shape (k,): EI/ℓ² of its rod, in N, or EI/ℓ³, in N/m."""
+        """What one unit of each force stands for, shape (k,): EI/ℓ² of its rod or body, in N, or EI/ℓ³, in N/m."""
+        discrete = self.model.discrete
         units = []
         for load in contact_loads(self.model.scene):
-            unit = self.model.discrete.tension_unit(load.rod)
             if isinstance(load, ContactLine):
-                length = self.model.discrete.rods[load.rod].length
-                units += [unit / length] * len(load.force[0])
+                unit = discrete.tension_unit(load.rod) / discrete.rods[load.rod].length
+                units += [unit] * len(load.force[0])
+            elif load.body is not None:
+                units.append(discrete.contact_unit(load.body, of_body=True))
             else:
-                units.append(unit)
+                assert load.rod is not None, "what is of no body is of a rod"
+                units.append(discrete.tension_unit(load.rod))
         return np.array(units)
 
     @cached_property
@@ -165,6 +178,9 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> M
     """What the contacts ask to be zero, without unit: for each, the rows of its ends, then the moments along it."""
     rows: list[Matrix] = [ca.MX(0, 1)]
     for touch in state.touches:
+        if touch.of_body:
+            rows.append(_body_gap(system, touch))
+            continue
         distances = Distances(system, touch.rod, obstacle_of(system.discrete.scene, touch.obstacle))
         for end, moves in zip(touch.ends, touch.moves, strict=True):
             gap, slope = distances.at(end)
@@ -174,6 +190,15 @@ def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> M
         if touch.is_line:
             rows.append(distances.moments(touch.start, touch.end, touch.moment_count(modes[touch.rod])))
     return ca.vertcat(*rows)
+
+
+def _body_gap(system: System, touch: Touch) -> Matrix:
+    """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
+    body = system.discrete.bodies[touch.rod]
+    position = system.frame(FrameName("body", touch.rod)).position
+    distance, _, _ = surface(obstacle_of(system.discrete.scene, touch.obstacle))(position)
+    gap: Matrix = (distance - ball_radius(body)) / system.discrete.body_frame(touch.rod).length
+    return gap
 
 
 @dataclass(frozen=True)
@@ -363,7 +388,7 @@ class ContactEquations:
 
     @staticmethod
     def _places_on(state: ContactState, rod: str) -> list[float]:
-        return [float(end) for touch in state.touches if touch.rod == rod for end in touch.ends]
+        return [float(end) for touch in state.along(rod) for end in touch.ends]
 
     def moved_strains(self, p: FloatArray) -> FloatArray:
         """What the unknowns of elements that stay are multiplied by to be those of elements moved to p, shape (n,).

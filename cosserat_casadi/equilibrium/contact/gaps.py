@@ -1,4 +1,4 @@
-"""Distances of solved rods from obstacles, between the nodes too."""
+"""Distances of solved rods, between the nodes too, and of bodies from obstacles."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
@@ -26,6 +26,14 @@ def pairs(scene: scenes.Scene) -> Iterator[tuple[str, scenes.ObstacleRecord]]:
                 yield rod.name, obstacle
 
 
+def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.ObstacleRecord]]:
+    """Every body with every obstacle that it touches exactly, if at all, as a ball of its radius about its origin."""
+    for body in scene.bodies:
+        for obstacle in scene.obstacles:
+            if obstacle.concerns_body(body.name) and not obstacle.is_smooth:
+                yield body, obstacle
+
+
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
     properties = solution.model.discrete.rods[rod].properties
@@ -40,11 +48,48 @@ def section_gaps(
     return np.asarray(distances.full()[0] - section_radius(properties, X))
 
 
+def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
+    """Distance of a body's surface from an obstacle, over the length of the longest rod that holds it."""
+    length = solution.model.discrete.body_frame(body.name).length
+    (gap,) = ball_gaps(obstacle, ball_radius(body), solution.body(body.name).position)
+    return float(gap) / length
+
+
+def ball_gaps(obstacle: scenes.ObstacleRecord, radius: float, positions: FloatArray) -> FloatArray:
+    """Distances of a ball at positions (k, 3) from an obstacle, shape (k,), m."""
+    distances = distance_from(obstacle).map(len(positions))(positions.T)
+    return np.asarray(distances.full()[0] - radius)
+
+
+def ball_radius(body: scenes.Body) -> float:
+    """Radius of a body that an obstacle names, m."""
+    assert body.radius is not None, "the rules of the scene ask for one"
+    return body.radius
+
+
+def body_normal(solution: Solution, body: str, obstacle: scenes.ObstacleRecord) -> FloatArray:
+    """Normal of an obstacle at a body, shape (3,)."""
+    _, gradient, _ = surface(obstacle)(solution.body(body).position[0])
+    return np.asarray(gradient.full()[:, 0])
+
+
 def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Normals of an obstacle at the sections of a rod, shape (k, 3)."""
     positions = solution.pose(X, rod).position
     _, gradient, _ = surface(obstacle).map(len(X))(positions.T)
     return np.asarray(gradient.full().T)
+
+
+def touching_points(solution: Solution, contact: Contact, along: int) -> FloatArray:
+    """Centres of the sections that touch, as many along a line as are asked for; of a body where its ball touches."""
+    if contact.of_body:
+        (body,) = [body for body in solution.model.scene.bodies if body.name == contact.rod]
+        (obstacle,) = [record for record in solution.model.scene.obstacles if record.name == contact.obstacle]
+        normal = body_normal(solution, body.name, obstacle)
+        return np.asarray(solution.body(body.name).position - ball_radius(body) * normal)
+    count = along if contact.start < contact.end else 1
+    X = np.linspace(contact.start, contact.end, count)
+    return solution.pose(X, contact.rod).position
 
 
 def runs(chosen: npt.NDArray[np.bool_]) -> Iterator[slice]:

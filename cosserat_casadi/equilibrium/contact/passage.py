@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, pairs, section_gaps
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_gaps, ball_radius, body_pairs, pairs, section_gaps
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
@@ -28,13 +28,43 @@ DEEP = 1e-3
 
 
 def passes_through(before: Solution, after: Solution) -> bool:
-    """Whether a section is inside an obstacle on the straight way from one shape to the other."""
+    """Whether a section or a body is inside an obstacle on the straight way from one shape to the other."""
     for rod, obstacle in pairs(after.model.scene):
         start = before.pose(SECTIONS, rod).position
         end = after.pose(SECTIONS, rod).position
         if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end):
             return True
+    for body, obstacle in body_pairs(after.model.scene):
+        length = after.model.discrete.body_frame(body.name).length
+        way = (before.body(body.name).position, after.body(body.name).position)
+        if ball_is_inside_between(obstacle, ball_radius(body), length, *way):
+            return True
     return False
+
+
+def ball_is_inside_between(
+    obstacle: scenes.ObstacleRecord,
+    radius: float,
+    length: float,
+    start: FloatArray,
+    end: FloatArray,
+    deepest: float = DEEP,
+) -> bool:
+    """Whether a ball is inside an obstacle on the straight way from one position to another, shape (1, 3) each, m.
+
+    Args:
+        obstacle: the obstacle.
+        radius: of the ball, m.
+        length: what depths are relative to, m.
+        start: position.
+        end: another.
+        deepest: depth on the way up to which it is not inside.
+    """
+    way = float(np.linalg.norm(end - start))
+    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
+    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None]
+    gaps = ball_gaps(obstacle, radius, start + shares * (end - start))
+    return bool(gaps.min() < -deepest * length)
 
 
 def is_inside_between(

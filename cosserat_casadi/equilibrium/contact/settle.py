@@ -1,8 +1,8 @@
 """From a first guess of the contacts to those that hold: states are tried until one has no fault.
 
-A state is at fault where a force pulls, or a section is inside an obstacle; what is at fault says which states to try
-next. States that were tried are remembered and their number is bounded, so that the search ends; where it ends without
-a state that holds, it says so. See docs/contact.md.
+A state is at fault where a force pulls, or a section or a body is inside an obstacle; what is at fault says which
+states to try next. States that were tried are remembered and their number is bounded, so that the search ends; where it
+ends without a state that holds, it says so. See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids, Placed
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, gap_along, pairs, runs
+from cosserat_casadi.equilibrium.contact.gaps import DENSE, body_gap, body_pairs, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.projection import projected
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
 from cosserat_casadi.equilibrium.solution import Solution
@@ -91,7 +91,7 @@ class Found:
         return max((pull for _, pull in self.pulls()), default=0.0)
 
     def penetrations(self, tolerance: float) -> Iterator[Penetrated]:
-        """Stretches that are inside an obstacle by more than a tolerance."""
+        """Stretches and bodies that are inside an obstacle by more than a tolerance."""
         for rod, obstacle in pairs(self.placed.model.scene):
             X = np.union1d(DENSE, self._beside_contacts(rod))
             gaps = gap_along(self.solution, rod, obstacle, X)
@@ -99,11 +99,15 @@ class Found:
                 inside = X[stretch]
                 deepest = int(np.argmin(gaps[stretch]))
                 yield Penetrated(rod, obstacle.name, inside[0], inside[-1], inside[deepest], -gaps[stretch][deepest])
+        for body, obstacle in body_pairs(self.placed.model.scene):
+            gap = body_gap(self.solution, body, obstacle)
+            if gap < -tolerance:
+                yield Penetrated(body.name, obstacle.name, 0.0, 0.0, 0.0, -gap, of_body=True)
 
     def _beside_contacts(self, rod: str) -> FloatArray:
         """Abscissae close to the places of contact, where a rod that lies on starts to enter."""
         beside = np.concatenate([-np.geomspace(1e-4, 2e-2, 12), np.geomspace(1e-4, 2e-2, 12)])
-        ends = [end for touch in self.state.touches if touch.rod == rod for end in touch.ends]
+        ends = [end for touch in self.state.along(rod) for end in touch.ends]
         X = (np.array(ends)[:, None] + beside).ravel() if ends else np.zeros(0)
         return X[(X > 0.0) & (X < 1.0)]
 
@@ -114,15 +118,16 @@ class Found:
 
 @dataclass(frozen=True)
 class Penetrated:
-    """A stretch of a rod that is inside an obstacle.
+    """A stretch of a rod that is inside an obstacle; or a body.
 
     Attributes:
-        rod: name of the rod.
+        rod: name of the rod, or of the body.
         obstacle: name of the obstacle.
         start: abscissa of its first section.
         end: of its last one.
         deepest: of the one that is deepest inside.
         depth: there, relative to the length of the rod.
+        of_body: whether it is a body.
     """
 
     rod: str
@@ -131,6 +136,7 @@ class Penetrated:
     end: float
     deepest: float
     depth: float
+    of_body: bool = False
 
     def joined(self, other: Penetrated) -> Penetrated:
         """One stretch from the start of the first to the end of the last."""
@@ -139,7 +145,7 @@ class Penetrated:
 
     def is_at(self, touch: Touch) -> bool:
         """Whether it begins or ends at a contact."""
-        if (touch.rod, touch.obstacle) != (self.rod, self.obstacle):
+        if (touch.rod, touch.obstacle, touch.of_body) != (self.rod, self.obstacle, self.of_body):
             return False
         return bool(touch.start - NEAR <= self.end and self.start <= touch.end + NEAR)
 
@@ -306,6 +312,9 @@ def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
     """What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it."""
+    if penetrated.of_body:
+        yield (Touch.ball(penetrated.obstacle, penetrated.rod),)
+        return
     here = penetrated.deepest if penetrated.deepest < TIP - AT_TIP else TIP
     point = Touch.point(penetrated.obstacle, penetrated.rod, here)
     if touch is None:
@@ -336,9 +345,9 @@ def _otherwise(state: ContactState) -> Iterator[ContactState]:
         if touch.is_line:
             for option in instead_of_pulling(touch):
                 yield ContactState.of([*rest, *option])
-        elif touch.end == TIP:
+        elif touch.reaches_tip:
             yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])
             yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.rod, LIES_FROM, TIP)])
-        else:
+        elif not touch.of_body:
             yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP)])
         yield ContactState.of(rest)

@@ -26,14 +26,15 @@ SHORTEST = 1e-5
 
 @dataclass(frozen=True)
 class Touch:
-    """One contact of a rod with an obstacle: a point, or a stretch that lies on it.
+    """One contact of a rod with an obstacle, a point or a stretch that lies on it; or of a body, a ball.
 
     Attributes:
         obstacle: name of the obstacle.
-        rod: name of the rod.
-        start: abscissa X at which contact begins.
+        rod: name of the rod, or of the body.
+        start: abscissa X at which contact begins; 0 for a body.
         end: abscissa at which it ends; the same for a point.
         is_line: whether a stretch lies on the obstacle.
+        of_body: whether it is a body that touches.
     """
 
     obstacle: str
@@ -41,6 +42,12 @@ class Touch:
     start: Place
     end: Place
     is_line: bool = False
+    of_body: bool = False
+
+    @classmethod
+    def ball(cls, obstacle: str, body: str) -> Touch:
+        """Contact of a body, whose place on the obstacle follows from where it is."""
+        return cls(obstacle, body, 0.0, 0.0, of_body=True)
 
     @classmethod
     def point(cls, obstacle: str, rod: str, at: float) -> Touch:
@@ -59,7 +66,9 @@ class Touch:
 
     @property
     def moves(self) -> tuple[bool, ...]:
-        """Whether each of its ends is sought: all but the tip."""
+        """Whether each of its ends is sought: all but the tip, none of a body."""
+        if self.of_body:
+            return (False,)
         return tuple(is_symbolic(end) or end < TIP for end in self.ends)
 
     @property
@@ -70,7 +79,7 @@ class Touch:
     @property
     def reaches_tip(self) -> bool:
         """Whether it ends at the tip."""
-        return not self.moves[-1]
+        return not self.of_body and not self.moves[-1]
 
     @property
     def kind(self) -> str:
@@ -79,6 +88,8 @@ class Touch:
 
     def moved(self, places: Sequence[Place]) -> Touch:
         """The same contact at other places, one for each that is sought."""
+        if self.of_body:
+            return self
         ends = [*places, TIP][: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
 
@@ -97,7 +108,7 @@ class ContactState:
     """All contacts of a scene.
 
     Attributes:
-        touches: sorted by rod and abscissa.
+        touches: sorted by rod and abscissa, those of bodies last.
     """
 
     touches: tuple[Touch, ...]
@@ -105,17 +116,23 @@ class ContactState:
     @classmethod
     def of(cls, touches: Sequence[Touch]) -> ContactState:
         """The state of some contacts, in order."""
-        return cls(tuple(sorted(touches, key=lambda touch: (touch.rod, touch.start, touch.obstacle))))
+        return cls(tuple(sorted(touches, key=_order)))
 
     @property
-    def signature(self) -> tuple[tuple[str, str, str, bool], ...]:
+    def signature(self) -> tuple[tuple[str, str, str, bool, bool], ...]:
         """What of the state is discrete: two states with the same differ in their places alone."""
-        return tuple((touch.rod, touch.obstacle, touch.kind, touch.reaches_tip) for touch in self.touches)
+        return tuple(
+            (touch.rod, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
+        )
 
     @property
     def places(self) -> FloatArray:
         """All abscissae that are sought, shape (k,)."""
         return np.array([float(place) for touch in self.touches for place in touch.moving])
+
+    def along(self, rod: str) -> list[Touch]:
+        """The contacts of a rod, from base to tip."""
+        return [touch for touch in self.touches if touch.rod == rod and not touch.of_body]
 
     def at(self, places: Sequence[Place]) -> ContactState:
         """The same contacts at other places: numbers, or expressions."""
@@ -146,9 +163,8 @@ class ContactState:
     @property
     def in_order(self) -> bool:
         """Whether the places of each rod follow each other between base and tip, a little apart."""
-        rods = {touch.rod for touch in self.touches}
-        for rod in rods:
-            ends = [0.0, *(end for touch in self.touches if touch.rod == rod for end in touch.ends)]
+        for rod in {touch.rod for touch in self.touches}:
+            ends = [0.0, *(end for touch in self.along(rod) for end in touch.ends)]
             gaps = np.diff(ends)
             if np.any(gaps < SHORTEST) or ends[-1] > TIP:
                 return False
@@ -168,7 +184,12 @@ class ContactState:
             for end in touch.ends:
                 loads.append(
                     ContactPoint.model_construct(
-                        name=f"contact {len(loads) + 1}", rod=touch.rod, obstacle=obstacle, at=end, force=0.0
+                        name=f"contact {len(loads) + 1}",
+                        rod=None if touch.of_body else touch.rod,
+                        body=touch.rod if touch.of_body else None,
+                        obstacle=obstacle,
+                        at=end,
+                        force=0.0,
                     )
                 )
             if touch.is_line:
@@ -221,6 +242,16 @@ def state_in(scene: scenes.Scene) -> ContactState:
             start, end = line.span
             touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
     ends_of_lines = {(touch.rod, touch.obstacle, end) for touch in touches for end in touch.ends}
-    points = [point for point in loads if isinstance(point, ContactPoint)]
-    alone = [point for point in points if (point.rod, point.obstacle.name, point.at) not in ends_of_lines]
-    return ContactState.of([*touches, *(Touch.point(point.obstacle.name, point.rod, point.at) for point in alone)])
+    for point in loads:
+        if not isinstance(point, ContactPoint):
+            continue
+        if point.body is not None:
+            touches.append(Touch.ball(point.obstacle.name, point.body))
+        elif point.rod is not None and (point.rod, point.obstacle.name, point.at) not in ends_of_lines:
+            touches.append(Touch.point(point.obstacle.name, point.rod, point.at))
+    return ContactState.of(touches)
+
+
+def _order(touch: Touch) -> tuple[bool, str, Place, str]:
+    """What contacts are sorted by."""
+    return touch.of_body, touch.rod, touch.start, touch.obstacle

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import normals
+from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.settle import Found
 from cosserat_casadi.equilibrium.contact.state import Touch
 from cosserat_casadi.equilibrium.contact.surfaces import surface
@@ -74,15 +74,27 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
     """The contacts by name, with the forces on the rods."""
     contacts = []
     for touch, ends, line in found.parts():
-        unit = found.placed.model.discrete.tension_unit(touch.rod)
+        unit = found.placed.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
         obstacle = found.placed.obstacle(touch.obstacle)
         forces = unit * ends
-        normal = normals(found.solution, touch.rod, obstacle, np.array(touch.ends))
+        if touch.of_body:
+            normal = body_normal(found.solution, touch.rod, obstacle)[None, :]
+        else:
+            normal = normals(found.solution, touch.rod, obstacle, np.array(touch.ends))
         total = forces @ normal
         if touch.is_line:
             total = total + unit * _resultant(found, touch, obstacle, line)
         contacts.append(
-            Contact(touch.obstacle, touch.rod, touch.start, touch.end, total, tuple(map(float, forces)), touch.kind)
+            Contact(
+                obstacle=touch.obstacle,
+                rod=touch.rod,
+                start=touch.start,
+                end=touch.end,
+                force=total,
+                ends=tuple(map(float, forces)),
+                kind=touch.kind,
+                of_body=touch.of_body,
+            )
         )
     return tuple(contacts)
 
@@ -122,7 +134,9 @@ def _eigenvalues(found: Found) -> FloatArray:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
+                # Every row of the Jacobian is in a unit of its own.
+                unit = model.discrete.rods[touch.rod].energy_unit / model.discrete.unknowns.units
+                jacobian = jacobian + ends[0] / bend * np.outer(unit * own[1], own[1])
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 
