@@ -131,7 +131,7 @@ def _with_zero_row_sums(matrix: FloatArray) -> FloatArray:
     return matrix
 
 
-def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
+def interpolation_matrix(N: int, X: npt.ArrayLike, beyond: float = 0.0) -> FloatArray:
     """The matrix from values at the points to values of the interpolant elsewhere, exact at the points.
 
     The second barycentric formula (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501), which is (B.4)
@@ -140,6 +140,7 @@ def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
     Args:
         N: number of intervals, at least 1.
         X: (n,) abscissae in [0, 1].
+        beyond: how far outside they may lie all the same.
 
     Returns:
         (n, N + 1).
@@ -148,7 +149,8 @@ def interpolation_matrix(N: int, X: npt.ArrayLike) -> FloatArray:
         ValueError: an abscissa outside [0, 1], where interpolation would be extrapolation.
     """
     abscissae = np.atleast_1d(np.asarray(X, dtype=float))
-    inside = (abscissae >= -_ROUNDING) & (abscissae <= 1 + _ROUNDING)
+    margin = beyond + _ROUNDING
+    inside = (abscissae >= -margin) & (abscissae <= 1 + margin)
     if not np.all(inside):
         raise ValueError(f"abscissae lie between 0 and 1, but these are {abscissae.tolist()}")
     gaps = abscissae[:, None] - nodes(N)

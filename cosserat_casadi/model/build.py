@@ -22,7 +22,7 @@ from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
 from cosserat_casadi.model.motion_functions import MotionFunctions
-from cosserat_casadi.model.obstacle_checks import check_obstacles, refuse_obstacles
+from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout
 from cosserat_casadi.model.rank import check_constraints
 from cosserat_casadi.model.system import Arguments, ratio_of
@@ -188,15 +188,13 @@ def build(
 
     Raises:
         SceneError: joints over-constrain; or, at rest, leave a body free to turn; a load or an obstacle cannot be
-            where it is; or a scene with obstacles is to move.
+            where it is.
     """
     refuse_tubes(scene)
     check_constraints(scene, moving=moving)
     chosen = discretise(scene) if discretisation is None else discretisation
     nominal = discrete_scene(scene, input_layout(scene), chosen)
     check_loads(nominal)
-    if moving:
-        refuse_obstacles(scene, "a motion")
     if scene.obstacles:
         check_obstacles(nominal)
     parameters = parameter_layout(scene)

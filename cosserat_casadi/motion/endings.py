@@ -27,6 +27,7 @@ OUTCOMES = {
     StepOutcome.SINGULAR: MotionOutcome.STEP_TOO_SMALL,
     StepOutcome.INTERRUPTED: MotionOutcome.INTERRUPTED,
     StepOutcome.TOO_MANY_STEPS: MotionOutcome.TOO_MANY_STEPS,
+    StepOutcome.STALLED: MotionOutcome.CONTACT_UNSETTLED,
     StepOutcome.GUARDED: MotionOutcome.STEP_TOO_SMALL,
 }
 
@@ -85,10 +86,24 @@ def message_of(history: History, outcome: MotionOutcome) -> str:
     """The sentence of the outcome, with time and size of the step where the motion ended early."""
     if outcome in (MotionOutcome.COMPLETED, MotionOutcome.UNRESOLVED):
         return str(outcome.value)
+    if outcome is MotionOutcome.CONTACT_UNSETTLED:
+        return f"{outcome.value} {unsettled(history)}"
     reached = f"t = {history.end.time:.6g} s, with a step of {history.next_size:.3g} s"
     if outcome is MotionOutcome.SNAPPED:
         return f"{outcome.value} Reached: {reached}; the cable is {', '.join(snapping_cables(history))}."
     return f"{outcome.value} Reached: {reached}; what moves most violently there is {most_violent(history)}."
+
+
+def unsettled(history: History) -> str:
+    """Where contact did not settle, in a sentence."""
+    restart = history.legs[-1].restart
+    if restart.stalled is not None:
+        return restart.stalled
+    last = [event for leg in history.legs for event in leg.restart.events][-1]
+    return (
+        f"At t = {history.end.time:.6g} s {last.rod!r} touches {last.obstacle!r} and lifts off over and over about X = "
+        f"{last.place:.4g}."
+    )
 
 
 def most_violent(history: History) -> str:

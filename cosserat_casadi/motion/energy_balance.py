@@ -39,7 +39,8 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
 
     stored = kinetic[0] + elastic[0] + potential
     gained = stored[1:] - stored[0]
-    impacts = _lost_by_impacts(history, times)
+    impacts, pushed = _in_impacts(history, times)
+    work = work + pushed
     left_over = gained + dissipated + impacts - work
     parts = np.stack([kinetic[0, 1:], elastic[0, 1:], potential[1:] - potential[0], dissipated, work, impacts])
     largest = float(np.abs(parts).max(initial=0.0))
@@ -49,12 +50,15 @@ def energies_of(history: History, times: FloatArray, moving: frozenset[str]) -> 
     return Energies(kinetic[0, 1:], elastic[0, 1:], potential[1:], dissipated, work, impacts, left_over)
 
 
-def _lost_by_impacts(history: History, times: FloatArray) -> FloatArray:
-    """Energy that impacts have taken up to each time, shape (T,), J; at the time of one, before it."""
+def _in_impacts(history: History, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Energy that impacts have taken, and work done in them, up to each time, shape (T,) each, J; before one, at it."""
     lost = np.zeros(len(times))
+    work = np.zeros(len(times))
     for leg in history.legs:
-        lost += np.where(times > leg.start.instant.time, leg.lost, 0.0)
-    return lost
+        later = times > leg.start.instant.time
+        lost += np.where(later, leg.lost, 0.0)
+        work += np.where(later, leg.restart.work, 0.0)
+    return lost, work
 
 
 def _still(model: Model, moving: frozenset[str]) -> FloatArray:
@@ -79,8 +83,11 @@ def _integrals(history: History, times: FloatArray, working: FloatArray) -> tupl
         nothing = np.zeros(len(times))
         return nothing, nothing
     places = [place for leg, step in history.steps for place in _stage_places(leg, step)]
-    dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, places, accelerations=True)
+    of_model = [(leg, history.of_model(instant)) for leg, instant in places]
+    dissipated, of_loads, of_actuators, of_bases = _called(history.model.powers, of_model, accelerations=True)
     put_in = working @ of_loads + of_actuators.sum(axis=0) + of_bases[0]
+    if history.contacts is not None:
+        put_in = put_in + history.contacts.powers([instant for _, instant in places])
     powers = np.stack([dissipated[0], put_in])
     stages = history.steps[0][1].method.stages
     by_step = powers.reshape(2, len(history.steps), stages)

@@ -13,15 +13,18 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.closing import Closing
+from cosserat_casadi.motion.contact_record import ContactRecord, MotionContact, Stretch
+from cosserat_casadi.motion.exact_contact import ExactContacts
 from cosserat_casadi.motion.mean_frames import MeanFrames
 from cosserat_casadi.motion.momentum import MomentumKeeper, flies_alone, flies_free
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
+from cosserat_casadi.motion.restart import ContactEvent, Restart, Switching
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.motion.trajectory import MotionState, StepStatistics
 from cosserat_casadi.numerics.collocation import Collocation
 from cosserat_casadi.numerics.consistent_start import ConsistentStart
-from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings
+from cosserat_casadi.numerics.integration import AfterStep, Integration, StepOutcome, StepSettings, stalled_at
 from cosserat_casadi.numerics.mean_frame import MeanFrame
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 from cosserat_casadi.numerics.step import Step
@@ -37,7 +40,7 @@ REMEMBERED_TIMES = 16
 """Times at which the inputs are remembered: those of a step and some more."""
 
 MOST_AT_ONCE = 60
-"""Changes between slack and taut that may follow each other in next to no time before they count as without end."""
+"""Changes between slack and taut, or of contact, in next to no time from which on they count as without end."""
 
 AT_ONCE = 1e-6
 """Such a time, relative to the duration."""
@@ -80,19 +83,27 @@ def equations_of(
 
 @dataclass(frozen=True)
 class Leg:
-    """The steps over one piece, or over a part of it in which no cable becomes slack or taut.
+    """The steps over one piece, or over a part of it in which no cable becomes slack or taut, and the same touches.
 
     Attributes:
         piece: the inputs.
-        start: how it begins.
-        integration: the steps.
-        lost: kinetic energy that an impact has taken where it begins, J.
+        integration: the steps; beside the unknowns of the model they have the forces of contacts.
+        restart: what has changed where it begins, and what holds in it.
     """
 
     piece: Piece
-    start: ConsistentStart
+    restart: Restart
     integration: Integration
-    lost: float = 0.0
+
+    @property
+    def start(self) -> ConsistentStart:
+        """How it begins."""
+        return self.restart.start
+
+    @property
+    def lost(self) -> float:
+        """Energy that an impact has taken where it begins, J."""
+        return self.restart.lost
 
 
 @dataclass(frozen=True)
@@ -101,7 +112,8 @@ class History:
 
     Attributes:
         model: the model.
-        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut.
+        legs: one for each piece that was begun, and one more for each time at which a cable becomes slack or taut, or
+            contact changes.
     """
 
     model: Model
@@ -120,7 +132,7 @@ class History:
     @property
     def end(self) -> Instant:
         """The last instant that was reached."""
-        return self.legs[-1].integration.end
+        return self.of_model(self.legs[-1].integration.end)
 
     @property
     def next_size(self) -> float:
@@ -154,11 +166,35 @@ class History:
 
     def locate(self, time: float) -> tuple[Leg, Instant]:
         """The motion at a time that was reached, and the piece that it belongs to; at a jump, the one before it."""
+        leg, instant = self.with_forces(time)
+        return leg, self.of_model(instant)
+
+    def with_forces(self, time: float) -> tuple[Leg, Instant]:
+        """The same with the forces of contacts behind the unknowns of the model."""
         if not self.steps:
             leg = self.legs[0]
             return leg, leg.start.instant
         leg, step = self.steps[self.number_at(time)]
         return leg, step.at(time)
+
+    def touching(self, time: float) -> tuple[MotionContact, ...]:
+        """The contacts at a time that was reached; none in a scene without exact contact."""
+        if self.contacts is None or not self.steps:
+            return ()
+        _, instant = self.with_forces(time)
+        return self.contacts.at(self.number_at(time), instant)
+
+    @property
+    def events(self) -> tuple[ContactEvent, ...]:
+        """Impacts and other changes of contact."""
+        return tuple(event for leg in self.legs for event in leg.restart.events)
+
+    def of_model(self, instant: Instant) -> Instant:
+        """A state without the forces of contacts."""
+        size = self.model.size
+        if len(instant.x) == size:
+            return instant
+        return Instant(instant.time, instant.x[:size], instant.v[:size], instant.a[:size])
 
     def number_at(self, time: float) -> int:
         """Number of the step that holds a time; at the end of a step, that one."""
@@ -173,6 +209,14 @@ class History:
         x = np.array([instant.x for _, instant in places])
         inputs = np.array([leg.piece.at(instant.time).value for leg, instant in places])
         return x, inputs
+
+    @cached_property
+    def contacts(self) -> ContactRecord | None:
+        """What touches, and how hard; None in a scene without exact contact."""
+        if not self.model.scene.touches_exactly:
+            return None
+        stretches = [Stretch(leg.piece, leg.restart.phases, leg.integration.steps) for leg in self.legs]
+        return ContactRecord(self.model, stretches)
 
     @cached_property
     def _closing(self) -> Closing:
@@ -208,12 +252,12 @@ def integrated(
     Raises:
         SceneError: the start contradicts the constraints.
     """
-    cables = SlackCables(model)
+    switching: Switching = ExactContacts(model) if model.scene.touches_exactly else SlackCables(model)
     keeper = MomentumKeeper(model) if flies_free(model) else None
     frames = MeanFrames(model) if flies_alone(model) else None
     legs: list[Leg] = []
     at = Instant(pieces[0].start, x, v, np.zeros(model.size))
-    phases = cables.first_phases(x, pieces[0].at(at.time).value)
+    phases = switching.first_phases(x, pieces[0].at(at.time).value)
     guard: int | None = None
     for number, piece in enumerate(pieces, start=1):
         plain = equations_of(model, piece, p, frames)
@@ -221,21 +265,26 @@ def integrated(
             # Accelerations and multipliers jump where an input or its rates do. Next to the end of a piece its inputs
             # go on beyond it: in what is left of it rounding would be all that is differentiated.
             interval = DIFFERENTIATED * (piece.end - piece.start)
-            restart = cables.restarted(plain, piece, at, phases, guard, interval)
+            restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
                 _check_start(restart.start, pieces[-1].end)
-            equations = cables.equations(plain, piece, phases)
-            guards = cables.guards(piece, phases)
+            equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
-            settled = None if keeper is None else partial(keeper.settled, piece=piece)
-            integration = integrate(equations, begin, piece.end, method, settings, after_step, guards, settled)
-            legs.append(Leg(piece, restart.start, integration, restart.lost))
+            # What touches an obstacle keeps no momentum.
+            free = keeper is not None and equations.size == model.size
+            settled = partial(keeper.settled, piece=piece) if free and keeper is not None else None
+            if restart.stalled is not None:
+                legs.append(Leg(piece, restart, stalled_at(begin)))
+                return History(model, tuple(legs))
+            own = _with_forces(settings, equations.size)
+            integration = integrate(equations, begin, piece.end, method, own, after_step, guards, settled)
+            legs.append(Leg(piece, restart, integration))
             if integration.outcome not in (StepOutcome.COMPLETED, StepOutcome.GUARDED):
                 return History(model, tuple(legs))
             if _chatters(legs, pieces[-1].end):
-                stalled = replace(integration, outcome=StepOutcome.STEP_TOO_SMALL)
-                legs[-1] = replace(legs[-1], integration=stalled)
+                ended = StepOutcome.STALLED if model.scene.touches_exactly else StepOutcome.STEP_TOO_SMALL
+                legs[-1] = replace(legs[-1], integration=replace(integration, outcome=ended))
                 return History(model, tuple(legs))
             at = integration.end
             guard = integration.guard
@@ -247,8 +296,16 @@ def integrated(
     return History(model, tuple(legs))
 
 
+def _with_forces(settings: StepSettings, size: int) -> StepSettings:
+    """Settings for equations with forces of contacts as further unknowns, which have no tolerance."""
+    more = size - len(settings.tolerance)
+    if more == 0:
+        return settings
+    return replace(settings, tolerance=np.concatenate([settings.tolerance, np.ones(more)]))
+
+
 def _chatters(legs: Sequence[Leg], duration: float) -> bool:
-    """Whether cables have become slack and taut over and over in next to no time."""
+    """Whether cables have become slack and taut, or contacts have changed, over and over in next to no time."""
     if len(legs) <= MOST_AT_ONCE:
         return False
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration

@@ -18,7 +18,6 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -128,6 +127,10 @@ class Simulator:
         """The inputs over time."""
         return moving_inputs(self.model)
 
+    @property
+    def _constrained(self) -> bool:
+        return self.model.scene.touches_exactly or not np.all(self.model.discrete.unknowns.differential)
+
     @cached_property
     def displacements(self) -> FloatArray:
         """Largest displacement over the length that a unit of each unknown makes, shape (size,)."""
@@ -136,8 +139,8 @@ class Simulator:
     def controlled(self, tolerance: float) -> History:
         """The motion with steps whose errors stay below a tolerance, over the length, by Radau IIA."""
         newton = NEWTON
-        if not np.all(self.model.discrete.unknowns.differential):
-            # What Newton's method leaves is what supports and joints are open by.
+        if self._constrained:
+            # What Newton's method leaves is what supports and joints are open by, or contacts.
             newton = min(newton, CLOSED / tolerance)
         settings = StepSettings(tolerance=tolerance / self.displacements, newton=newton)
         return self._integrated(radau(STAGES), settings)
@@ -259,7 +262,6 @@ def simulate(
     Raises:
         SceneError: the scene says nothing of a simulation, or cannot be simulated so.
     """
-    refuse_obstacles(model.scene, "a motion")
     model = model.at()
     asked = simulation or model.scene.simulation
     check_simulation(model, asked)
@@ -424,6 +426,8 @@ def motion_of(simulator: Simulator, history: History, outcome: MotionOutcome, er
         start=simulator.start.sentence,
         interpolant=history.at,
         warnings=tuple(warnings(simulator)),
+        contacts=tuple(history.touching(float(time)) for time in times),
+        events=history.events,
     )
 
 

@@ -22,7 +22,8 @@ from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.motion.repeated_call import RepeatedCall
-from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
+from cosserat_casadi.motion.restart import Restart
+from cosserat_casadi.numerics.consistent_start import consistent_start, impact
 from cosserat_casadi.numerics.guards import THROUGH, Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -31,21 +32,6 @@ Phases = tuple[bool, ...]
 
 TOUCHING = 1e-9
 """Sag, relative to the rod's length, from which on a cable counts as taut where a motion starts."""
-
-
-@dataclass(frozen=True)
-class Restart:
-    """How a motion goes on after an event, or begins.
-
-    Attributes:
-        start: state with accelerations and tensions.
-        phases: which cables are taut.
-        lost: kinetic energy that an impact has taken, J.
-    """
-
-    start: ConsistentStart
-    phases: Phases
-    lost: float
 
 
 @dataclass(frozen=True)
@@ -98,6 +84,10 @@ class SlackCables:
             return stiffness, damping, mass
 
         return replace(plain, residual=residual, jacobians=jacobians)
+
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Phases) -> tuple[MotionEquations, Guards | None]:
+        """The equations, and what has to stay at zero or above while they hold."""
+        return self.equations(plain, piece, phases), self.guards(piece, phases)
 
     def guards(self, piece: Piece, phases: Phases) -> Guards | None:
         """What has to stay at zero or above: the sag of a slack cable, the tension of a taut one; None without any."""

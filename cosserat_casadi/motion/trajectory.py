@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.poses import (
     ActuatorStates,
     Poses,
@@ -18,6 +19,7 @@ from cosserat_casadi.motion.poses import (
     section_poses,
     tip_poses,
 )
+from cosserat_casadi.motion.restart import ContactEvent
 
 
 class MotionOutcome(Enum):
@@ -50,6 +52,7 @@ class MotionOutcome(Enum):
         "The motion ended early: at its pace the rest would take hundreds of thousands of steps. A load may be far "
         "beyond the rod, or the tolerance too tight for what vibrates; damp the rod."
     )
+    CONTACT_UNSETTLED = "The motion ended early: contact did not settle."
 
     @property
     def label(self) -> str:
@@ -106,7 +109,7 @@ class Energies:
         potential: of dead forces, gravity and smooth contact.
         dissipated: by the damping of rods and of smooth contact since the start.
         work: done since the start by all other loads, by actuators, and by moving bases and lengths.
-        impacts: lost since the start where slack cables snapped taut.
+        impacts: lost since the start where slack cables snapped taut, or rods met obstacles without a width.
         imbalance: what is left over of the balance of the other six, relative to the largest energy; without unit.
     """
 
@@ -160,6 +163,8 @@ class Motion:
         start: a sentence on how the motion was started.
         interpolant: the state at a time between the first and the last: the dense output of the steps.
         warnings: sentences on what limits the accuracy, such as a load that jumps.
+        contacts: the sections that touch obstacles without a width at each of the times; empty where there are none.
+        events: impacts and other changes of contact, in their order.
     """
 
     model: Model
@@ -176,6 +181,8 @@ class Motion:
     start: str
     interpolant: Callable[[float], MotionState]
     warnings: tuple[str, ...] = ()
+    contacts: tuple[tuple[MotionContact, ...], ...] = ()
+    events: tuple[ContactEvent, ...] = ()
 
     @property
     def converged(self) -> bool:

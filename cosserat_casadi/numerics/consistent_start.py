@@ -178,9 +178,14 @@ def _in_time(
     coefficients = chebyshev.chebfit(nodes, values, DEGREE)
     # The nodes run over two units while the interval passes.
     stretch = 2.0 / interval
-    rates = stretch * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 1))
-    accelerations = stretch**2 * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 2))
-    return _ConstraintsInTime(values[0], np.asarray(rates), np.asarray(accelerations))
+    rates = np.asarray(stretch * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 1)))
+    accelerations = np.asarray(stretch**2 * chebyshev.chebval(-1.0, chebyshev.chebder(coefficients, 2)))
+    if equations.rates_of_last is not None:
+        exact_rates, exact_accelerations = equations.rates_of_last(instant.time, instant.x, instant.v)
+        first = len(rates) - len(exact_rates)
+        rates[first:] = exact_rates
+        accelerations[first:] = exact_accelerations
+    return _ConstraintsInTime(values[0], rates, accelerations)
 
 
 def _pseudo_inverse(matrix: FloatArray) -> tuple[FloatArray, int]:

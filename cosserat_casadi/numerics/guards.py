@@ -27,6 +27,9 @@ THROUGH = 1e-10
 WATCHED = np.linspace(0.0, 1.0, 9)
 """Shares of a step at which guards are asked for."""
 
+MOST_HALVINGS = 12
+"""Halvings of the time between two of them in which a guard that lies on zero is looked for above it."""
+
 
 @dataclass(frozen=True)
 class Crossing:
@@ -57,11 +60,18 @@ def crossing(step: Step, guards: Guards) -> Crossing | None:
 
 def _zero(step: Step, guards: Guards, guard: int, first: tuple[float, float], last: tuple[float, float]) -> Crossing:
     """Where one guard vanishes between two times of a step, given with its values there."""
-    if first[1] <= 0.0:
-        # It lay on zero already.
-        return Crossing(float(first[0]), guard)
 
     def value(time: float) -> float:
         return float(guards(step.at(time))[guard])
 
+    if first[1] <= 0.0:
+        # It lay on zero already: it may have risen from there for a while.
+        for halvings in range(1, MOST_HALVINGS + 1):
+            time = first[0] + (last[0] - first[0]) / 2.0**halvings
+            risen = value(time)
+            if risen > 0.0:
+                first = (time, risen)
+                break
+        else:
+            return Crossing(float(first[0]), guard)
     return Crossing(float(bracketed_zero(value, first, last)), guard)

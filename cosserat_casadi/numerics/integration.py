@@ -27,6 +27,7 @@ class StepOutcome(Enum):
     )
     INTERRUPTED = "The motion was computed in part: it was interrupted."
     TOO_MANY_STEPS = "The motion was computed in part: its steps are so short that hundreds of thousands were needed."
+    STALLED = "The motion was computed to where none of its equations go on."
     GUARDED = "The motion was computed to where it goes on under other equations."
 
 
@@ -105,6 +106,11 @@ class Integration:
         if self.outcome is StepOutcome.COMPLETED:
             return sentence
         return f"{sentence} Reached: t = {self.end.time:.9g} s, with a step of {self.next_size:.3g} s."
+
+
+def stalled_at(start: Instant) -> Integration:
+    """A piece without a step: there are no equations to go on with."""
+    return Integration(start, (), StepOutcome.STALLED, float("nan"), StepStatistics(0, 0, 0, 0, 0))
 
 
 AfterStep = Callable[[float, float], None]

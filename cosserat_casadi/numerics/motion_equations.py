@@ -66,6 +66,8 @@ class MotionEquations:
             is as quick.
         mean_frames: (t (k,), x (k, n)) ↦ the mean frames of what flies free at k instants of a step; None where nothing
             does.
+        rates_of_last: (t, x, v) ↦ rates, and second derivatives without the part of a, of constraints that are the last
+            rows, shape (m,) each; None where all constraints are differentiated along the motion by a polynomial.
     """
 
     differential: npt.NDArray[np.bool_]
@@ -73,6 +75,7 @@ class MotionEquations:
     jacobians: Callable[[float, FloatArray, FloatArray, FloatArray], tuple[FloatArray, FloatArray, FloatArray]]
     residuals: Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray] | None = None
     mean_frames: Callable[[FloatArray, FloatArray], Sequence[MeanFrame]] | None = None
+    rates_of_last: Callable[[float, FloatArray, FloatArray], tuple[FloatArray, FloatArray]] | None = None
 
     @property
     def size(self) -> int:

@@ -28,6 +28,9 @@ MOST_LENGTHS = 8
 NEARBY = 1e-3
 """Share of a step before its end at which a guard is compared for its rate."""
 
+AT_START = 1e-10
+"""Share of a step after its start in which a guard counts as zero where the step starts."""
+
 ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
@@ -247,7 +250,8 @@ class StepRun:
         self.steps.pop()
         wanted = self.size
         begin = self.now.time
-        if found.time - begin > RESOLVED_TIME * max(abs(begin), abs(self.stop)):
+        shortest = max(RESOLVED_TIME * max(abs(begin), abs(self.stop)), AT_START * whole.size)
+        if found.time - begin > shortest:
             self._step_to(restricted(whole, found.time), found.guard)
         self.size = wanted
         return True
@@ -256,11 +260,13 @@ class StepRun:
         """Take a step that ends where a guard vanishes.
 
         Args:
-            cut: the part of a longer step to the time, about, at which it does; it stands where no step is found.
+            cut: the part of a longer step to the time, about, at which it does; where no step is found that ends on
+                the guard the first one found stands, which keeps the constraints, else this part.
             guard: number of the guard.
         """
         assert self.guards is not None
         time = cut.end.time
+        stands = cut
         for _ in range(MOST_LENGTHS):
             self.size = time - cut.start.time
             solution = self.solve()
@@ -274,10 +280,12 @@ class StepRun:
             if abs(value) <= ON_GUARD:
                 return
             self.steps.pop()
+            if stands is cut:
+                stands = step
             following = time - float(value / rate) if rate < 0.0 else time
             latest = min(2.0 * cut.end.time - cut.start.time, self.stop)
             # What needs a change of the time below its rounding, or another step altogether, is not found so.
             if not cut.start.time < following < latest or following == time:
                 break
             time = following
-        self.steps.append(cut)
+        self.steps.append(stands)

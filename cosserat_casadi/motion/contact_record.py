@@ -1,0 +1,124 @@
+"""What touches in a motion that was computed: places and forces at any time, and how deep rods are inside obstacles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_sections import Facing, facings
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.touching import Follower, Touches
+from cosserat_casadi.numerics.motion_equations import Instant
+from cosserat_casadi.numerics.step import Step
+
+
+@dataclass(frozen=True)
+class MotionContact:
+    """A section that touches an obstacle at some time.
+
+    Attributes:
+        obstacle: name of the obstacle.
+        rod: name of the rod.
+        at: abscissa X of the section.
+        force: on the rod, world axes, shape (3,), N.
+    """
+
+    obstacle: str
+    rod: str
+    at: float
+    force: FloatArray
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of a motion in which the same sections touch.
+
+    Attributes:
+        piece: of the inputs.
+        touches: the sections, with their places where it begins.
+        steps: of the motion, with the forces of contact behind the unknowns of the model.
+    """
+
+    piece: Piece
+    touches: Touches
+    steps: Sequence[Step]
+
+
+@dataclass(frozen=True)
+class ContactRecord:
+    """The contacts of a motion.
+
+    Attributes:
+        model: the model, built for a motion.
+        stretches: of the motion, one after the other.
+    """
+
+    model: Model
+    stretches: Sequence[Stretch]
+
+    def at(self, number: int, instant: Instant) -> tuple[MotionContact, ...]:
+        """The contacts at an instant of a step.
+
+        Args:
+            number: of the step, counted from the start of the motion; none where there are no steps.
+            instant: with forces of contact.
+        """
+        if not self._begins:
+            return ()
+        stretch, touches = self._begins[number]
+        follower = Follower(self._facings, touches)
+        size = self.model.size
+        places, gaps = follower.gaps(instant.x[:size], stretch.piece.at(instant.time).value)
+        found = []
+        for facing, place, gap, force in zip(follower.facings, places, gaps, instant.x[size:], strict=True):
+            total = force * self.model.discrete.tension_unit(facing.rod) * gap.normal
+            found.append(MotionContact(facing.obstacle.name, facing.rod, min(max(place, 0.0), 1.0), total))
+        return tuple(found)
+
+    def powers(self, stages: Sequence[Instant]) -> FloatArray:
+        """What bases and lengths that move do against the forces of contact at all stages of all steps, shape (k,), W.
+
+        A contact does no work: its force on the unknowns does what it takes from what moves otherwise.
+        """
+        powers = np.zeros(len(stages))
+        by_step = len(stages) // max(1, len(self._begins))
+        size = self.model.size
+        for number, instant in enumerate(stages):
+            stretch, touches = self._begins[number // by_step]
+            inputs = stretch.piece.at(instant.time)
+            if not touches or not np.any(inputs.rate):
+                continue
+            x = instant.x[:size]
+            follower = Follower(self._facings, touches)
+            _, gaps = follower.gaps(x, inputs.value)
+            for facing, gap, force in zip(follower.facings, gaps, instant.x[size:], strict=True):
+                unit = self.model.discrete.tension_unit(facing.rod) * facing.length
+                powers[number] -= force * unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
+        return powers
+
+    def deepest(self, x: FloatArray, inputs: FloatArray) -> float:
+        """How deep a section is inside an obstacle at a state, over the length of its rod; negative outside."""
+        gaps = [facing.gaps(facing.nodes(x, inputs)).min() for facing in self._facings]
+        return -float(min(gaps))
+
+    @cached_property
+    def _facings(self) -> list[Facing]:
+        return facings(self.model)
+
+    @cached_property
+    def _begins(self) -> list[tuple[Stretch, Touches]]:
+        """The stretch of each step, and what touches where the step begins."""
+        size = self.model.size
+        begins = []
+        for stretch in self.stretches:
+            follower = Follower(self._facings, stretch.touches)
+            for step in stretch.steps:
+                places, _ = follower.follow(step.start.x[:size], stretch.piece.at(step.start.time).value)
+                touches = [touch._replace(place=place) for touch, place in zip(stretch.touches, places, strict=True)]
+                begins.append((stretch, tuple(touches)))
+        return begins

@@ -1,0 +1,71 @@
+"""How a motion goes on where its equations change: what cables and contacts have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.numerics.consistent_start import ConsistentStart
+from cosserat_casadi.numerics.guards import Guards
+from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
+
+
+@dataclass(frozen=True)
+class ContactEvent:
+    """A change of contact in a motion.
+
+    Attributes:
+        kind: "impact", "lift_off", "slide_to_end" or "slide_from_end".
+        time: s.
+        rod: name of the rod.
+        obstacle: name of the obstacle.
+        place: abscissa X of the section.
+        energy: kinetic energy that the impact took, J; zero of the others.
+        impulse: of the obstacle on the rod, along its normal there, N s; zero of the others.
+    """
+
+    kind: str
+    time: float
+    rod: str
+    obstacle: str
+    place: float
+    energy: float = 0.0
+    impulse: float = 0.0
+
+
+@dataclass(frozen=True)
+class Restart:
+    """How a motion goes on after an event, or begins.
+
+    Attributes:
+        start: state with accelerations and tensions, or forces of contact.
+        phases: which cables are taut, or what touches.
+        lost: energy that an impact has taken, J.
+        work: that a base or another input in motion has done in it, J.
+        events: changes of contact.
+        stalled: why there is nothing to go on with; None where there is.
+    """
+
+    start: ConsistentStart
+    phases: Any
+    lost: float = 0.0
+    work: float = 0.0
+    events: tuple[ContactEvent, ...] = ()
+    stalled: str | None = None
+
+
+class Switching(Protocol):
+    """What switches between equations of motion that are smooth for a while each."""
+
+    def first_phases(self, x: FloatArray, inputs: FloatArray) -> Any:
+        """What holds at a state."""
+
+    def arranged(self, plain: MotionEquations, piece: Piece, phases: Any) -> tuple[MotionEquations, Guards | None]:
+        """The equations that hold with it, and what has to stay at zero or above while they do."""
+
+    def restarted(
+        self, plain: MotionEquations, piece: Piece, at: Instant, phases: Any, guard: int | None, interval: float
+    ) -> Restart:
+        """How a motion goes on, or begins."""
