@@ -19,6 +19,7 @@ from cosserat_casadi.codegen.compiled_motion import (
     StepSensitivity,
     StepState,
 )
+from cosserat_casadi.codegen.contact.compiled import CompiledContact, CompiledContactSolution, load_in_contact
 from cosserat_casadi.codegen.export import export
 from cosserat_casadi.codegen.fmu import write_fmu
 from cosserat_casadi.codegen.motion_stage import CompiledMotionStage, compiled_motion_stage
@@ -62,6 +63,8 @@ __version__ = version("cosserat-casadi")
 
 __all__ = [
     "Compiled",
+    "CompiledContact",
+    "CompiledContactSolution",
     "CompiledMotionStage",
     "CompiledStep",
     "CosseratError",
@@ -119,6 +122,7 @@ __all__ = [
     "inverse_scene",
     "linearise",
     "load",
+    "load_in_contact",
     "modes_of",
     "modes_of_scene",
     "modes_result",

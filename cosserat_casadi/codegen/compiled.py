@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -27,7 +26,7 @@ from cosserat_casadi.codegen.compiled_results import (
 )
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.library import VERBATIM
-from cosserat_casadi.codegen.manifest import MANIFEST
+from cosserat_casadi.codegen.manifest import EXPORT_FIRST, MANIFEST, is_in_contact, read_manifest
 from cosserat_casadi.codegen.names import FUNCTIONS, Names, library_names
 from cosserat_casadi.codegen.parameter_values import ListedParameters, ParameterValues, listed_parameters
 from cosserat_casadi.codegen.plain import EXPORT_WITH, IN_PYTHON, PlainFunction, pointer, vector
@@ -353,7 +352,12 @@ def load(
         ExportError: the folder is not one of an export, there is no compiler, or it fails.
     """
     folder = Path(directory)
-    described = _manifest(folder)
+    described = read_manifest(folder)
+    if is_in_contact(described):
+        problem = "is the folder of a scene in exact contact, whose unknowns change with the contacts"
+        raise ExportError(Problem(str(folder), problem, "load it with load_in_contact"))
+    if not _is_manifest(described):
+        raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", EXPORT_FIRST))
     rods = dict.fromkeys(entry["rod"] for entry in described["unknowns"])
     actuators = tuple(entry["name"] for entry in described.get("actuators", []))
     names = Names(described["name"], tuple(rods), actuators, tuple(described.get("bodies", [])))
@@ -373,19 +377,6 @@ def _scene_text(folder: Path) -> str:
         return (folder / SCENE).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return ""
-
-
-def _manifest(folder: Path) -> dict[str, Any]:
-    remedy = "write one with cosserat export"
-    try:
-        described: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except OSError:
-        raise ExportError(Problem(str(folder), f"holds no {MANIFEST} that can be read", remedy)) from None
-    except (ValueError, RecursionError):
-        raise ExportError(Problem(str(folder / MANIFEST), "is not JSON", remedy)) from None
-    if not _is_manifest(described):
-        raise ExportError(Problem(str(folder / MANIFEST), "is not the manifest of an exported folder", remedy))
-    return described
 
 
 def _is_manifest(described: Any) -> bool:

@@ -8,6 +8,9 @@ import re
 from pathlib import Path
 
 from cosserat_casadi.codegen.assembled import assembled
+from cosserat_casadi.codegen.contact.arrangements import chosen_arrangements
+from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
+from cosserat_casadi.codegen.contact.sources import contact_files
 from cosserat_casadi.codegen.derivatives import differentiable
 from cosserat_casadi.codegen.folder import check_folder, write_folder
 from cosserat_casadi.codegen.kernels import kernel_sources, kernels, sources
@@ -15,9 +18,11 @@ from cosserat_casadi.codegen.library import library_sources
 from cosserat_casadi.codegen.manifest import MANIFEST, manifest
 from cosserat_casadi.codegen.motion_parts import motion_in_c
 from cosserat_casadi.codegen.motion_sources import motion_entry
-from cosserat_casadi.codegen.names import Names, library_names, model_names
+from cosserat_casadi.codegen.names import Names, library_names, model_names, scene_names
 from cosserat_casadi.codegen.stability import check_stability, stability_sources
+from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.scene.writing import scene_text
@@ -32,6 +37,7 @@ def export(
     derivatives: bool = False,
     dynamics: bool = False,
     stability: bool = False,
+    load_cases: FloatArray | None = None,
 ) -> Path:
     """Write a model as a folder of C99 sources: equations with their Jacobians, solver, demo, build file, README.
 
@@ -45,19 +51,29 @@ def export(
         dynamics: whether the folder holds motions too: a step of fixed length with its derivatives, inverse dynamics
             and their linearisation.
         stability: whether it holds the function that says whether an equilibrium is stable.
+        load_cases: stacked inputs, a row for each case, shape (k, m): of a scene in exact contact the library knows the
+            arrangements of contacts that it meets on the way from its own inputs to each of them, one after the other.
 
     Returns:
         the folder.
 
     Raises:
-        ExportError: the name, the folder, a motion or the stability of this scene is refused; nothing was written.
+        ExportError: the name, the folder, a motion, the stability or the contact of this scene is refused; nothing was
+            written.
     """
+    asked = {"derivatives": derivatives, "dynamics": dynamics, "stability": stability}
+    check_contact(model.scene, asked)
+    check_load_cases(model.scene, load_cases)
     if stability:
         check_stability(model)
     folder = Path(directory)
     chosen = re.sub(r"\W", "_", folder.resolve().name) if name is None else name
     stale = check_export(folder, chosen)
-    files = folder_files(model, chosen, error_estimate, derivatives=derivatives, dynamics=dynamics, stability=stability)
+    if model.scene.touches_exactly:
+        names = scene_names(chosen, without_contacts(model.scene))
+        files = contact_files(model, chosen_arrangements(model, load_cases), names, error_estimate)
+    else:
+        files = folder_files(model, chosen, error_estimate, **asked)
     write_folder(folder, files, stale)
     return folder
 

@@ -158,7 +158,7 @@ def _words(
         "is_shape": numbers(model.discrete.unknowns.differential.astype(int).tolist()),
         "first": first_step(model),
         **status_words(names),
-        **_input_words(model, names),
+        **input_words(model, names),
         **result_struct_words(model, names),
         **_unknown_words(model),
         # The demo solves, and shows the tip of the first rod.
@@ -172,15 +172,16 @@ def _words(
         "prototypes": "".join(function.prototype(render) for function in functions),
         "functions": "".join(function.wrapper(render) for function in functions),
         "function_rows": _function_rows(functions),
-        "title": _comment(model.scene.title or names.name),
+        "title": comment(model.scene.title or names.name),
         "version": version("cosserat-casadi"),
-        **_version_words(),
+        **version_words(),
         "casadi_version": ca.CasadiMeta.version(),
         "accuracy_note": _accuracy_note(model, error_estimate),
     }
 
 
-def _version_words() -> dict[str, str]:
+def version_words() -> dict[str, str]:
+    """The version of this package in three numbers."""
     major, minor, patch = re.findall(r"\d+", version("cosserat-casadi"))[:3]
     return {"version_major": major, "version_minor": minor, "version_patch": patch}
 
@@ -233,7 +234,8 @@ def _solver_constants(model: Model) -> dict[str, Any]:
     }
 
 
-def _input_words(model: Model, names: Names) -> dict[str, str]:
+def input_words(model: Model, names: Names) -> dict[str, str]:
+    """What the templates say of inputs: macros, struct, table, default values."""
     entries = input_entries(model)
     macros = list[str]()
     rows = list[str]()
@@ -324,7 +326,7 @@ def _accuracy_note(model: Model, error_estimate: float | None) -> str:
     )
 
 
-def _comment(text: str) -> str:
+def comment(text: str) -> str:
     """A title that cannot end the comment it stands in, splice its line, or change the direction of what follows."""
     printable = "".join(character if character.isprintable() else " " for character in text)
     harmless = printable.replace("\\", "/").replace("??/", "?? /").replace("*/", "* /").replace("/*", "/ *")

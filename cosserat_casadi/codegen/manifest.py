@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -13,6 +15,7 @@ from cosserat_casadi.codegen.fours import InFours
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.kernels import Kernel
 from cosserat_casadi.codegen.names import Names
+from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
 from cosserat_casadi.model.inputs import Input
@@ -20,6 +23,31 @@ from cosserat_casadi.model.parameters import Parameter
 from cosserat_casadi.rod.properties import STRAINS
 
 MANIFEST = "manifest.json"
+
+ARRANGEMENTS = "arrangements"
+"""Key of the arrangements of contacts, which a folder of a scene in exact contact has alone."""
+
+EXPORT_FIRST = "write one with cosserat export"
+"""What helps where there is no manifest."""
+
+
+def read_manifest(folder: Path) -> Any:
+    """The manifest of a folder, not checked yet.
+
+    Raises:
+        ExportError: it cannot be read, or is not JSON.
+    """
+    try:
+        return json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    except OSError:
+        raise ExportError(Problem(str(folder), f"holds no {MANIFEST} that can be read", EXPORT_FIRST)) from None
+    except (ValueError, RecursionError):
+        raise ExportError(Problem(str(folder / MANIFEST), "is not JSON", EXPORT_FIRST)) from None
+
+
+def is_in_contact(described: Any) -> bool:
+    """Whether a manifest is of a scene in exact contact."""
+    return isinstance(described, dict) and ARRANGEMENTS in described
 
 
 def manifest(model: Model, names: Names, kernels: list[Kernel], error_estimate: float | None) -> dict[str, Any]:

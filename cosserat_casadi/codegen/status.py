@@ -11,6 +11,9 @@ from cosserat_casadi.numerics.outcome import Outcome
 OUTCOMES = tuple(outcome for outcome in Outcome if outcome is not Outcome.CONTACT_UNSETTLED)
 """Statuses of the solver in C, in the order of their numbers: it does not look for contact."""
 
+CONTACT_OUTCOMES = tuple(Outcome)
+"""Statuses of the solver of rods in exact contact, in the order of their numbers."""
+
 
 def status_words(names: Names) -> dict[str, str]:
     """What the templates say of statuses: all of it follows from the outcomes."""
@@ -20,6 +23,17 @@ def status_words(names: Names) -> dict[str, str]:
         "status_names": "\n".join(f"#define SOLVER_{outcome.name} {symbols[outcome]}" for outcome in OUTCOMES),
         "text_cases": _cases({symbols[outcome]: outcome.value for outcome in OUTCOMES}),
         "label_cases": _cases({symbols[outcome]: outcome.label for outcome in OUTCOMES}),
+    }
+
+
+def contact_status_words(names: Names) -> dict[str, str]:
+    """What the templates of exact contact say of statuses."""
+    symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in CONTACT_OUTCOMES}
+    return {
+        "status_lines": _enumerators({symbol: outcome.value for outcome, symbol in symbols.items()}),
+        "status_names": "\n".join(f"#define CONTACT_{outcome.name} {symbols[outcome]}" for outcome in CONTACT_OUTCOMES),
+        "text_cases": _cases({symbols[outcome]: outcome.value for outcome in CONTACT_OUTCOMES}),
+        "label_cases": _cases({symbols[outcome]: outcome.label for outcome in CONTACT_OUTCOMES}),
     }
 
 

@@ -134,7 +134,7 @@ class ModelFunctions:
 
         Where rods are deeper inside obstacles than their widths it is their depth in widths, if that is more.
         """
-        return [_resolution_index(written)]
+        return [resolution_index(written)]
 
     @scene_function(Output("depth"))
     def contact_depth(self, written: Expressions) -> list[Matrix] | None:
@@ -293,7 +293,7 @@ class ModelFunctions:
         return None if potential is None else [potential]
 
 
-def _resolution_index(written: Expressions) -> Matrix:
+def resolution_index(written: Expressions) -> Matrix:
     """Largest turn of an interval over what can be resolved; in the literal system the error of the tip's |Q|."""
     indices: list[Matrix] = [ca.MX(0.0)]
     for name, rod in written.discrete.rods.items():

@@ -11,11 +11,13 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.commands.solving import solve_with_progress
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.reports.format import print_plain
 from cosserat_casadi.cli.reports.model import print_export
+from cosserat_casadi.codegen.contact.checks import check_contact, check_load_cases
 from cosserat_casadi.codegen.export import check_export
 from cosserat_casadi.codegen.export import export as export_model
 from cosserat_casadi.codegen.fmu import check_fmu, write_fmu
@@ -26,6 +28,7 @@ from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
+from cosserat_casadi.model.load_cases import case_layout
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import read_scene
@@ -54,6 +57,13 @@ def export(
     stability: Annotated[
         bool, typer.Option("--stability", help="With a function that says whether an equilibrium is stable.")
     ] = False,
+    over: Annotated[
+        Path | None, typer.Option(help="Load cases whose exact contacts the sources know: CSV, such as push.force.x.")
+    ] = None,
+    ranges: Annotated[
+        list[str] | None, typer.Option("--range", metavar="COLUMN=LOW:HIGH", help="The same as a range of an input.")
+    ] = None,
+    samples: Annotated[int, typer.Option(min=1, max=10_000, help="Load cases spread over the ranges.")] = 32,
     settings: Settings = None,
 ) -> None:
     """Write a scene as C sources, a page for a browser, or an FMU. Exit codes: 0 written, 2 refused, 3 not solved.
@@ -70,7 +80,13 @@ def export(
         remedy = "name a folder for the sources, or a file with --page or --fmu"
         raise ExportError(Problem("--output", "missing", remedy))
     if output is None:
-        asked = {"--derivatives": derivatives, "--dynamics": dynamics, "--stability": stability}
+        asked = {
+            "--derivatives": derivatives,
+            "--dynamics": dynamics,
+            "--stability": stability,
+            "--over": over is not None,
+            "--range": bool(ranges),
+        }
         _refuse_without_sources(asked)
     else:
         check_export(output, name)
@@ -81,6 +97,12 @@ def export(
         check_fmu(fmu)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
+    cases = None
+    if output is not None:
+        check_contact(exported_scene, {"derivatives": derivatives, "dynamics": dynamics, "stability": stability})
+    if over is not None or ranges:
+        cases = load_cases(over, ranges or [], samples, case_layout(exported_scene))
+        check_load_cases(exported_scene, cases)
     if moves:
         exported_scene = exported_scene.with_motion_inputs()
         check_motion(build(exported_scene, discretise(exported_scene, 1, 2), moving=True))
@@ -108,6 +130,7 @@ def export(
             derivatives=derivatives,
             dynamics=dynamics,
             stability=stability,
+            load_cases=cases,
         )
         print_export(console, solution, output)
     if fmu is not None:

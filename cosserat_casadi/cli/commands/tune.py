@@ -10,14 +10,14 @@ from rich.console import Console
 
 from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.accuracy.tune import tune as tune_scene
+from cosserat_casadi.cli.commands.cases import load_cases
 from cosserat_casadi.cli.exit_codes import NOT_FOUND
 from cosserat_casadi.cli.options import SceneFile, Settings
 from cosserat_casadi.cli.progress import progress_bar
 from cosserat_casadi.cli.reports.model import print_tuning
-from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable, write_atomically
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.load_cases import CaseLayout, case_layout, read_load_cases, spread
+from cosserat_casadi.model.load_cases import CaseLayout, case_layout
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.writing import scene_text
 
@@ -37,7 +37,7 @@ def tune(
     tuned_scene = read_scene(scene, tuple(settings or ()))
     layout = case_layout(tuned_scene)
     check_writable(output, "--output")
-    cases = _load_cases(over, ranges or [], samples, layout)
+    cases = load_cases(over, ranges or [], samples, layout)
     tuning = _tune_with_progress(tuned_scene, cases, tolerance, layout)
     print_tuning(Console(), tuning, layout, cases)
     # A scene that misses the tolerance is not written: it would be taken for one that meets it.
@@ -45,19 +45,6 @@ def tune(
         raise typer.Exit(NOT_FOUND)
     write_atomically(output, scene_text(tuning.scene).encode())
     Console().print(f"wrote {output}", highlight=False)
-
-
-def _load_cases(over: Path | None, ranges: list[str], samples: int, layout: CaseLayout) -> FloatArray:
-    """Load cases of a file, or spread over ranges, shape (count, size of a case).
-
-    Raises:
-        SceneError: both or none are given, or one of them is refused.
-    """
-    if over is not None and not ranges:
-        return read_load_cases(over, layout)
-    if over is None and ranges:
-        return spread(ranges, samples, layout)
-    raise SceneError(Problem("--over", "stands beside --range, or both are missing", "give one of them"))
 
 
 def _tune_with_progress(scene: Scene, cases: FloatArray, tolerance: float | None, layout: CaseLayout) -> Tuning:

@@ -1,0 +1,186 @@
+/* Equilibrium of rods in exact contact for new inputs, from the last solution: the inputs move on in parts, each of which
+   ends in contacts that hold, near the shape before, and with no obstacle between the two. */
+
+static const contact_options DEFAULT_OPTIONS = {
+    .max_iterations = CONTACT_DEFAULT_ITERATIONS,
+    .max_parts = CONTACT_DEFAULT_PARTS,
+};
+
+static const contact_options LONG_WAY = {
+    .max_iterations = 20 * CONTACT_DEFAULT_ITERATIONS,
+    .max_parts = 20 * CONTACT_DEFAULT_PARTS,
+};
+
+static contact_info no_result(void) {
+  const contact_info none = {.status = CONTACT_NOT_FINITE,
+                             .iterations = 0,
+                             .jacobians = 0,
+                             .residual_norm = 0,
+                             .load_factor = 0,
+                             .arrangement = 0,
+                             .tries = 0,
+                             .parts = 0};
+  return none;
+}
+
+static int is_known(const contact_state *state) {
+  if (!state->is_known || state->arrangement < 0 || state->arrangement >= ARRANGEMENTS) return 0;
+  return all_finite(state->z, ARRANGEMENT[state->arrangement].size) && all_finite(state->inputs, INPUTS);
+}
+
+/* The straight way of the inputs from those of solved[0] towards others, in parts. Leaves the end in solved[0] and its
+   share of the way in info. */
+static void move_inputs(const real *from, const real *to, const contact_options *options, workspace *work,
+                        contact_info *info) {
+  real done = 0;
+  real step = 1;
+  real *inputs = work->path_inputs;
+  real index = 0;
+  {
+    const arrangement *at = ARRANGEMENT + work->solved[0].arrangement;
+    call(at->nodes, work->solved[0].z, from, work->nodes_before, &index, work);
+  }
+  while (info->parts < options->max_parts && info->iterations < options->max_iterations) {
+    const real end = done + step > 1 - MIN_STEP ? 1 : done + step;
+    for (int i = 0; i < INPUTS; i++) inputs[i] = end == 1 ? to[i] : (1 - end) * from[i] + end * to[i];
+    info->parts++;
+    const int found = settle(inputs, options->max_iterations, &index, work, info);
+    const arrangement *before = ARRANGEMENT + work->solved[0].arrangement;
+    if (found < 0 || !is_near(before, work->solved[0].z, ARRANGEMENT + work->solved[found].arrangement,
+                              work->solved[found].z, work)) {
+      if (found >= 0) info->status = CONTACT_LOST_TRACK;
+      step /= 2;
+      if (step < MIN_STEP) break;
+      continue;
+    }
+    work->solved[0] = work->solved[found];
+    memcpy(work->nodes_before, work->nodes, sizeof work->nodes);
+    done = end;
+    info->load_factor = done;
+    if (done == 1) {
+      /* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
+      info->status = index <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
+      return;
+    }
+    step *= 2;
+  }
+  /* Short of the inputs nothing is a solution for them. */
+  if (info->status == CONTACT_CONVERGED) info->status = CONTACT_LOST_TRACK;
+}
+
+/* From a known state; the state is left as it was unless the inputs are reached. */
+static contact_status follow(const real *inputs, contact_state *state, const contact_options *options, workspace *work,
+                             contact_info *info) {
+  work->solved[0].arrangement = state->arrangement;
+  memcpy(work->solved[0].z, state->z, sizeof state->z);
+  info->load_factor = 0;
+  info->arrangement = state->arrangement;
+  move_inputs(state->inputs, inputs, options, work, info);
+  if (info->load_factor < 1) return info->status;
+  state->is_known = 1;
+  state->arrangement = work->solved[0].arrangement;
+  memcpy(state->z, work->solved[0].z, sizeof state->z);
+  for (int i = 0; i < INPUTS; i++) state->inputs[i] = inputs[i];
+  info->arrangement = state->arrangement;
+  return info->status;
+}
+
+void contact_start(contact_state *state) {
+  memset(state, 0, sizeof *state);
+  state->is_known = 1;
+  state->arrangement = START_ARRANGEMENT;
+  memcpy(state->z, START_Z, sizeof START_Z);
+  memcpy(state->inputs, START_INPUTS, sizeof START_INPUTS);
+}
+
+contact_status contact_solve(const real *inputs, contact_state *state, workspace *work, contact_info *info) {
+  contact_info found = no_result();
+  contact_status status = CONTACT_NOT_FINITE;
+  if (all_finite(inputs, INPUTS)) {
+    if (is_known(state)) status = follow(inputs, state, &LONG_WAY, work, &found);
+    if (status != CONTACT_CONVERGED && status != CONTACT_UNRESOLVED) {
+      contact_state own;
+      contact_start(&own);
+      found = no_result();
+      status = follow(inputs, &own, &LONG_WAY, work, &found);
+      if (found.load_factor == 1) *state = own;
+    }
+  }
+  found.status = status;
+  if (info) *info = found;
+  return status;
+}
+
+/* Derivatives of the tips by the implicit function theorem, within the arrangement of contacts. */
+static contact_status derivatives(const real *inputs, const contact_state *state, real *d_poses_d_inputs,
+                                  workspace *work) {
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  const int n = at->size;
+  real *z_rate = work->step;
+  real *inputs_rate = work->path_inputs;
+  if (!linearise(at, state->z, inputs, work)) return CONTACT_SINGULAR;
+  for (int j = 0; j < INPUTS; j++) inputs_rate[j] = 0;
+  for (int j = 0; j < INPUTS; j++) {
+    inputs_rate[j] = 1;
+    for (int i = 0; i < n; i++) z_rate[i] = 0;
+    call_rate(at->rate, state->z, inputs, z_rate, inputs_rate, work->residual, work);
+    for (int i = 0; i < n; i++) z_rate[i] = -work->residual[i];
+    back_substitute(work->jacobian, work->pivots, z_rate, n);
+    call_rate(at->tip_rate, state->z, inputs, z_rate, inputs_rate, work->poses, work);
+    inputs_rate[j] = 0;
+    if (!all_finite(work->poses, RODS * POSE_SIZE)) return CONTACT_SINGULAR;
+    for (int r = 0; r < RODS; r++) {
+      memcpy(d_poses_d_inputs + (r * INPUTS + j) * POSE_SIZE, work->poses + r * POSE_SIZE, POSE_SIZE * sizeof *z_rate);
+    }
+  }
+  return CONTACT_CONVERGED;
+}
+
+contact_status contact_track(const real *inputs, contact_state *state, const contact_options *options,
+                             real *d_poses_d_inputs, workspace *work, contact_info *info) {
+  const contact_options chosen = options ? *options : DEFAULT_OPTIONS;
+  contact_info found = no_result();
+  contact_status status = CONTACT_NOT_FINITE;
+  if (all_finite(inputs, INPUTS)) {
+    status = is_known(state) ? follow(inputs, state, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
+  }
+  found.status = status;
+  if (info) *info = found;
+  if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, state, d_poses_d_inputs, work);
+  return status;
+}
+
+contact_status contact_solve_sensitivity(const contact_state *state, real *d_poses_d_inputs, workspace *work) {
+  if (!is_known(state)) return CONTACT_NOT_IN_EQUILIBRIUM;
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  const real norm = residual_at(at, state->z, state->inputs, work->residual, work);
+  if (!(norm <= 10 * TOLERANCE * (1 + norm_of(state->z, at->size)))) return CONTACT_NOT_IN_EQUILIBRIUM;
+  return derivatives(state->inputs, state, d_poses_d_inputs, work);
+}
+
+int contact_contacts(const contact_state *state, contact_contact *contacts, workspace *work) {
+  if (!is_known(state)) return 0;
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  call(at->contacts, state->z, state->inputs, work->contact_forces, work->point_forces, work);
+  for (int k = 0; k < at->touches; k++) {
+    const touch own = touch_at(at, state->z, k);
+    contact_contact *named = contacts + k;
+    named->rod = own.rod;
+    named->obstacle = own.obstacle;
+    named->is_line = own.is_line;
+    named->from = own.start;
+    named->to = own.end;
+    memcpy(named->force, work->contact_forces + 3 * k, sizeof named->force);
+    memcpy(named->point_forces, work->point_forces + 2 * k, sizeof named->point_forces);
+  }
+  return at->touches;
+}
+
+void contact_poses(const contact_state *state, contact_pose *poses, workspace *work) {
+  const arrangement *at = ARRANGEMENT + state->arrangement;
+  call(at->tips, state->z, state->inputs, work->poses, 0, work);
+  for (int r = 0; r < RODS; r++) {
+    memcpy(poses[r].position, work->poses + POSE_SIZE * r, sizeof poses[r].position);
+    memcpy(poses[r].quaternion, work->poses + POSE_SIZE * r + 3, sizeof poses[r].quaternion);
+  }
+}

@@ -1,0 +1,132 @@
+/* What the parts of the solver of rods in exact contact share: tables of the arrangements of contacts, and calls of their
+   equations.
+
+   The library's own source includes, in this order: its configuration, its kernels, this header, its tables, then
+   contact_newton.c, contact_shape.c, contact_settle.c and contact.c. All is one translation unit, so that nothing but the
+   functions of the library's header is visible to a linker.
+
+   An arrangement says who touches what, at points or along lines. Its unknowns are z = (x, f, p): the unknowns of the rods,
+   the forces of the contacts, and the abscissae of contact that are not at a tip. */
+#ifndef CONTACT_ARRANGEMENTS
+#error "This file is a part of the library's own source: compile that one."
+#endif
+
+#include <math.h>
+#include <string.h>
+
+typedef contact_real real;
+typedef contact_workspace workspace;
+typedef contact_candidate candidate;
+typedef contact_touch touch;
+
+enum {
+  ARRANGEMENTS = CONTACT_ARRANGEMENTS,
+  INPUTS = CONTACT_INPUTS,
+  RODS = CONTACT_RODS,
+  PAIRS = CONTACT_PAIRS,
+  LARGEST = CONTACT_LARGEST,      /* unknowns, forces and places of the largest arrangement */
+  MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
+  LOCAL = CONTACT_LOCAL,          /* sections of an element that are held against obstacles */
+  TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
+  CANDIDATES = CONTACT_CANDIDATES,
+  POSE_SIZE = 7 /* position and quaternion */
+};
+
+/* A generated function of z and of the inputs, or of a point. */
+typedef int (*kernel)(const real **, real **, int *, real *, int);
+
+/* A contact of an arrangement. */
+typedef struct {
+  int rod;
+  int obstacle;
+  int is_line;
+  int ends;        /* 1 of a point, 2 of a line */
+  int moving;      /* how many of its ends are sought: those that are not at the tip */
+  int first_force; /* among the forces: of its ends, then along it */
+  int along;       /* coefficients of the force along a line */
+  int first_place; /* among the places */
+} contact_entry;
+
+/* The elements of a rod in an arrangement. */
+typedef struct {
+  int elements;
+  int first_strain;        /* in x */
+  int first_node;          /* among the nodes of all rods */
+  const int *place_of_end; /* place of contact at which an element ends; -1 where it ends at the same abscissa for good */
+  const real *nominal;     /* that abscissa; else where strains are counted in the element's own width */
+} rod_elements;
+
+typedef struct {
+  int size; /* of z */
+  int unknowns;
+  int strains; /* of the unknowns, the first */
+  int forces;
+  int places;
+  int touches;
+  const contact_entry *touch;
+  const rod_elements *rods;
+  kernel residual;
+  kernel jacobian;
+  kernel rate;     /* of the residual, as z and the inputs change at some rates */
+  kernel nodes;    /* positions of the nodes; whether they resolve the rods */
+  kernel tips;     /* position and quaternion of every tip */
+  kernel tip_rate; /* its rate, likewise */
+  kernel contacts; /* forces of the contacts in world axes, and at their ends */
+} arrangement;
+
+/* What a rod is in every arrangement. */
+typedef struct {
+  int intervals; /* of each element, one less than its nodes */
+  int components;
+  const int *modes;         /* polynomials of each admitted strain in an element */
+  int points;               /* at which strains are fitted */
+  const real *local_points; /* these, in an element */
+  const real *const *fits;  /* for each strain the matrix from its values there to coefficients, row after row */
+  const real *local_nodes;
+  const real *barycentric;   /* weights of the interpolation between nodes */
+  const real *interpolation; /* from the nodes of an element to LOCAL sections of it, row after row */
+  int is_chebyshev;          /* polynomials of strains; else Legendre's */
+  real radius_at_base;
+  real radius_at_tip;
+  real length;
+} rod_entry;
+
+/* A rod and an obstacle that it must not enter. */
+typedef struct {
+  int rod;
+  int obstacle;
+  kernel distance;
+} pair_entry;
+
+static void call(kernel function, const real *z, const real *inputs, real *first, real *second, workspace *work) {
+  const real *arguments[CONTACT_KERNEL_ARGUMENTS] = {z, inputs};
+  real *results[CONTACT_KERNEL_RESULTS] = {first, second};
+  (void)function(arguments, results, work->kernel_integers, work->kernel_reals, 0);
+}
+
+/* A function of z, of the inputs and of their rates. */
+static void call_rate(kernel function, const real *z, const real *inputs, const real *z_rate, const real *inputs_rate,
+                      real *rate, workspace *work) {
+  const real *arguments[CONTACT_KERNEL_ARGUMENTS] = {z, inputs, z_rate, inputs_rate};
+  real *results[CONTACT_KERNEL_RESULTS] = {rate};
+  (void)function(arguments, results, work->kernel_integers, work->kernel_reals, 0);
+}
+
+static real dot(const real *a, const real *b, int count) {
+  real sum = 0;
+  for (int i = 0; i < count; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+static real norm_of(const real *a, int count) { return sqrt(dot(a, a, count)); }
+
+static int all_finite(const real *a, int count) {
+  for (int i = 0; i < count; i++) {
+    if (!isfinite(a[i])) return 0;
+  }
+  return 1;
+}
+
+static real larger(real a, real b) { return a > b ? a : b; }
+
+static real smaller(real a, real b) { return a < b ? a : b; }

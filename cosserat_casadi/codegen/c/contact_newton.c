@@ -1,0 +1,143 @@
+/* Newton's method for the equations of one arrangement of contacts, of which each has a size of its own. */
+
+typedef struct {
+  contact_status status;
+  real residual_norm; /* relative: over one plus the norm of z */
+} newton_result;
+
+/* Abscissa at which an element of a rod begins, or the one before it ends. */
+static real end_of_element(const arrangement *at, const real *z, int rod, int number) {
+  const rod_elements *elements = at->rods + rod;
+  const int place = elements->place_of_end[number];
+  return place < 0 ? elements->nominal[number] : z[at->unknowns + at->forces + place];
+}
+
+/* Whether the elements of every rod follow each other, none too short. */
+static int is_in_order(const arrangement *at, const real *z) {
+  for (int rod = 0; rod < RODS; rod++) {
+    for (int e = 0; e < at->rods[rod].elements; e++) {
+      const real width = end_of_element(at, z, rod, e + 1) - end_of_element(at, z, rod, e);
+      if (!(width >= SHORTEST_ELEMENT)) return 0;
+    }
+  }
+  return 1;
+}
+
+/* The residual at z; returns its norm, which is infinite where elements do not follow each other. */
+static real residual_at(const arrangement *at, const real *z, const real *inputs, real *residual, workspace *work) {
+  if (!is_in_order(at, z)) return HUGE_VAL;
+  call(at->residual, z, inputs, residual, 0, work);
+  return norm_of(residual, at->size);
+}
+
+static int pivot_row(const real *column, int k, int n) {
+  int best = k;
+  for (int i = k + 1; i < n; i++) {
+    if (fabs(column[i]) > fabs(column[best])) best = i;
+  }
+  return best;
+}
+
+/* Gaussian elimination with partial pivoting, in place, column after column: G. H. Golub, C. F. Van Loan, Matrix
+   Computations, 4th edition, algorithm 3.4.1. The diagonal holds inverse pivots. Returns zero where one is at rounding
+   beside the largest entry of its column. */
+static int factorise(real *a, int *pivots, real *largest, int n) {
+  for (int j = 0; j < n; j++) {
+    largest[j] = 0;
+    for (int i = 0; i < n; i++) largest[j] = larger(largest[j], fabs(a[j * n + i]));
+  }
+  for (int k = 0; k < n; k++) {
+    real *column = a + k * n;
+    const int p = pivot_row(column, k, n);
+    pivots[k] = p;
+    if (!(fabs(column[p]) > SINGULAR * largest[k])) return 0;
+    if (p != k) {
+      for (int j = 0; j < n; j++) {
+        const real kept = a[j * n + k];
+        a[j * n + k] = a[j * n + p];
+        a[j * n + p] = kept;
+      }
+    }
+    column[k] = 1 / column[k];
+    for (int i = k + 1; i < n; i++) column[i] *= column[k];
+    for (int j = k + 1; j < n; j++) {
+      real *target = a + j * n;
+      const real factor = target[k];
+      if (factor == 0) continue;
+      for (int i = k + 1; i < n; i++) target[i] -= column[i] * factor;
+    }
+  }
+  return 1;
+}
+
+/* Solves with the factors, in place. */
+static void back_substitute(const real *a, const int *pivots, real *b, int n) {
+  for (int k = 0; k < n; k++) {
+    const real kept = b[pivots[k]];
+    b[pivots[k]] = b[k];
+    b[k] = kept;
+  }
+  for (int k = 0; k < n; k++) {
+    for (int i = k + 1; i < n; i++) b[i] -= a[k * n + i] * b[k];
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    b[k] *= a[k * n + k];
+    for (int i = 0; i < k; i++) b[i] -= a[k * n + i] * b[k];
+  }
+}
+
+/* Factorises the Jacobian at z in the workspace; zero where it is singular or not finite. */
+static int linearise(const arrangement *at, const real *z, const real *inputs, workspace *work) {
+  call(at->jacobian, z, inputs, work->jacobian, 0, work);
+  if (!all_finite(work->jacobian, at->size * at->size)) return 0;
+  return factorise(work->jacobian, work->pivots, work->largest, at->size);
+}
+
+/* Halves the step until the residual falls well enough. Returns zero where it does not; moves z, residual and norm on. */
+static int take_step(const arrangement *at, const real *inputs, real *z, real *norm, workspace *work) {
+  real length = 1;
+  for (int k = 0; k <= MAX_HALVINGS; k++) {
+    for (int i = 0; i < at->size; i++) work->trial[i] = z[i] + length * work->step[i];
+    const real trial_norm = residual_at(at, work->trial, inputs, work->trial_residual, work);
+    if (isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * *norm) {
+      memcpy(z, work->trial, (size_t)at->size * sizeof *z);
+      memcpy(work->residual, work->trial_residual, (size_t)at->size * sizeof *z);
+      *norm = trial_norm;
+      return 1;
+    }
+    length /= 2;
+  }
+  return 0;
+}
+
+/* Newton from z, which it moves on; info counts the work, of which there is a budget. */
+static newton_result newton(const arrangement *at, const real *inputs, real *z, int max_iterations, workspace *work,
+                            contact_info *info) {
+  newton_result result = {.status = CONTACT_MAX_ITERATIONS, .residual_norm = HUGE_VAL};
+  real norm = residual_at(at, z, inputs, work->residual, work);
+  for (int iteration = 0;; iteration++) {
+    const real size = 1 + norm_of(z, at->size);
+    result.residual_norm = norm / size;
+    if (!isfinite(norm) || !isfinite(size)) {
+      result.status = CONTACT_NOT_FINITE;
+      return result;
+    }
+    if (norm <= TOLERANCE * size) {
+      result.status = CONTACT_CONVERGED;
+      return result;
+    }
+    if (iteration == MAX_ITERATIONS || info->iterations >= max_iterations) return result;
+    info->iterations++;
+    info->jacobians++;
+    if (!linearise(at, z, inputs, work)) {
+      result.status = CONTACT_SINGULAR;
+      return result;
+    }
+    for (int i = 0; i < at->size; i++) work->step[i] = -work->residual[i];
+    back_substitute(work->jacobian, work->pivots, work->step, at->size);
+    if (!take_step(at, inputs, z, &norm, work)) {
+      result.status = CONTACT_SINGULAR;
+      return result;
+    }
+  }
+}

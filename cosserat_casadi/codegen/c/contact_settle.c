@@ -1,0 +1,405 @@
+/* From one arrangement of contacts to one that holds: a force that pulls or a section inside an obstacle says which is
+   tried next. cosserat_casadi/equilibrium/contact/settle.py looks in the same way among all arrangements; here those of
+   the library are tried, and their number is bounded. */
+
+enum { MOST_FAULTS = 16, MOST_OPTIONS = 5 };
+
+/* A stretch of a rod that is inside an obstacle. */
+typedef struct {
+  int rod;
+  int obstacle;
+  real start;
+  real end;
+  real deepest;
+  real depth;
+  int touch; /* number of the contact that it is at; -1 of none */
+} penetration;
+
+/* What may be in place of a contact that is at fault: one or two contacts, or none. */
+typedef struct {
+  int count;
+  touch touches[2];
+} option;
+
+typedef struct {
+  int touch; /* number of the contact; -1 where a stretch is inside an obstacle that no contact is at */
+  int options;
+  option option[MOST_OPTIONS];
+} change;
+
+/* Room for the contacts of an arrangement and those that may come. */
+enum { TOUCH_ROOM = MOST_TOUCHES + 1 };
+
+static touch point(int rod, int obstacle, real X) {
+  const touch made = {.rod = rod, .obstacle = obstacle, .is_line = 0, .start = X, .end = X};
+  return made;
+}
+
+static touch line(int rod, int obstacle, real start, real end) {
+  const touch made = {.rod = rod, .obstacle = obstacle, .is_line = 1, .start = start, .end = end};
+  return made;
+}
+
+/* A contact of an arrangement at the places in z. */
+static touch touch_at(const arrangement *at, const real *z, int number) {
+  const contact_entry *entry = at->touch + number;
+  const real *places = z + at->unknowns + at->forces + entry->first_place;
+  touch made = {.rod = entry->rod, .obstacle = entry->obstacle, .is_line = entry->is_line, .start = 1, .end = 1};
+  if (entry->moving > 0) made.start = places[0];
+  if (entry->ends == 1) made.end = made.start;
+  else if (entry->moving > 1) made.end = places[1];
+  return made;
+}
+
+static int comes_before(const touch *a, const touch *b) {
+  if (a->rod != b->rod) return a->rod < b->rod;
+  if (a->start != b->start) return a->start < b->start;
+  return a->obstacle < b->obstacle;
+}
+
+/* Adds a contact in order; zero where there are more than any arrangement has. */
+static int add_touch(candidate *to, touch added) {
+  if (to->count == MOST_TOUCHES) return 0;
+  int k = to->count;
+  while (k > 0 && comes_before(&added, to->touches + k - 1)) {
+    to->touches[k] = to->touches[k - 1];
+    k--;
+  }
+  to->touches[k] = added;
+  to->count++;
+  return 1;
+}
+
+/* Puts the places of contacts into z; zero where the arrangement is of other contacts, or of another order along a rod. */
+static int set_places(const arrangement *at, const candidate *wanted, real *z) {
+  if (at->touches != wanted->count) return 0;
+  for (int k = 0; k < at->touches; k++) {
+    const contact_entry *entry = at->touch + k;
+    const touch *own = wanted->touches + k;
+    const int moving = entry->is_line ? 1 + (own->end < 1) : own->start < 1;
+    if (entry->rod != own->rod || entry->obstacle != own->obstacle) return 0;
+    if (entry->is_line != own->is_line || entry->moving != moving) return 0;
+    real *places = z + at->unknowns + at->forces + entry->first_place;
+    if (moving > 0) places[0] = own->start;
+    if (moving > 1) places[1] = own->end;
+  }
+  return is_in_order(at, z);
+}
+
+/* The largest force, or EI/l2: what forces are compared with. */
+static real largest_force(const arrangement *at, const real *z) {
+  real largest = 1;
+  for (int i = 0; i < at->forces; i++) largest = larger(largest, fabs(z[at->unknowns + i]));
+  return largest;
+}
+
+/* How much a contact would have to pull at most, relative to the largest force. */
+static real pull_of(const arrangement *at, const real *z, int number, real largest) {
+  const contact_entry *entry = at->touch + number;
+  const real *forces = z + at->unknowns + entry->first_force;
+  real least = forces[0];
+  if (entry->is_line) {
+    const touch own = touch_at(at, z, number);
+    least = smaller(least, forces[1]);
+    for (int k = 0; k <= SAMPLES; k++) {
+      const real along = polynomial(0, forces + entry->ends, entry->along, (real)k / SAMPLES);
+      least = smaller(least, along * (own.end - own.start));
+    }
+  }
+  return larger(-least, 0) / largest;
+}
+
+/* Finds the stretches that are inside obstacles; the nodes stand in the workspace. Returns their number. */
+static int find_penetrations(const arrangement *at, const real *z, penetration *found, workspace *work) {
+  int count = 0;
+  for (int p = 0; p < PAIRS; p++) {
+    const pair_entry *pair = PAIR + p;
+    const int nodes = ROD[pair->rod].intervals + 1;
+    int inside = 0;
+    for (int e = 0; e < at->rods[pair->rod].elements; e++) {
+      const real *positions = work->nodes + 3 * (at->rods[pair->rod].first_node + e * nodes);
+      for (int k = 0; k < LOCAL; k++) {
+        const real X = section_abscissa(at, z, pair->rod, e, k);
+        real position[3];
+        section_position(pair->rod, positions, k, position);
+        const real depth = -gap_at(pair, position, X, work);
+        if (!(depth > ACCEPTED)) {
+          inside = 0;
+          continue;
+        }
+        if (!inside && count == MOST_FAULTS) return count;
+        if (!inside) {
+          const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, -1};
+          found[count++] = begun;
+          inside = 1;
+        }
+        penetration *own = found + count - 1;
+        own->end = X;
+        if (depth > own->depth) {
+          own->depth = depth;
+          own->deepest = X;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+/* Tells each stretch inside an obstacle the contact that it is at, and joins those at one contact. Returns their number. */
+static int join_at_contacts(const arrangement *at, const real *z, penetration *found, int count) {
+  int kept = 0;
+  for (int i = 0; i < count; i++) {
+    penetration own = found[i];
+    for (int k = 0; k < at->touches && own.touch < 0; k++) {
+      const touch other = touch_at(at, z, k);
+      if (other.rod != own.rod || other.obstacle != own.obstacle) continue;
+      if (other.start - NEAR_CONTACT <= own.end && own.start <= other.end + NEAR_CONTACT) own.touch = k;
+    }
+    int joined = 0;
+    for (int j = 0; j < kept && own.touch >= 0; j++) {
+      if (found[j].touch != own.touch) continue;
+      found[j].start = smaller(found[j].start, own.start);
+      found[j].end = larger(found[j].end, own.end);
+      if (own.depth > found[j].depth) {
+        found[j].depth = own.depth;
+        found[j].deepest = own.deepest;
+      }
+      joined = 1;
+    }
+    if (!joined) found[kept++] = own;
+  }
+  return kept;
+}
+
+static void offer(change *to, int count, touch first, touch second) {
+  option *added = to->option + to->options++;
+  added->count = count;
+  added->touches[0] = first;
+  added->touches[1] = second;
+}
+
+/* What a contact that pulls may be instead. */
+static void instead_of_pulling(touch own, change *made) {
+  const touch first = point(own.rod, own.obstacle, own.start);
+  const touch last = point(own.rod, own.obstacle, own.end);
+  const touch between = point(own.rod, own.obstacle, (own.start + own.end) / 2);
+  if (!own.is_line) {
+    offer(made, 0, own, own);
+    return;
+  }
+  offer(made, 2, first, last);
+  offer(made, 1, between, between);
+  offer(made, 1, first, first);
+  offer(made, 1, last, last);
+  if (own.end == 1) {
+    /* A rod that curls up leaves before its tip. */
+    const touch shorter = line(own.rod, own.obstacle, own.start, own.start + SHORTER * (own.end - own.start));
+    offer(made, 1, shorter, shorter);
+  }
+}
+
+/* What holds a stretch off that is inside an obstacle, by itself or in place of the contact beside it. */
+static void instead_of_entering(const penetration *inside, const touch *beside, change *made) {
+  const real here = inside->deepest < 1 - AT_TIP ? inside->deepest : 1;
+  const touch deepest = point(inside->rod, inside->obstacle, here);
+  if (!beside) {
+    offer(made, 1, deepest, deepest);
+    return;
+  }
+  const real start = smaller(inside->start, beside->start);
+  const real end = larger(inside->end, beside->end);
+  const touch lying = line(inside->rod, inside->obstacle, start, end);
+  if (beside->is_line) {
+    offer(made, 1, lying, lying);
+    offer(made, 2, *beside, deepest);
+  } else if (beside->end == 1) {
+    /* A tip that lifts off leaves a section inwards to carry the rod, or the rod lies down. */
+    const touch inwards = point(inside->rod, inside->obstacle, smaller(here, 1 - 2 * NEAR_CONTACT));
+    offer(made, 1, inwards, inwards);
+    offer(made, 1, lying, lying);
+    offer(made, 2, inwards, *beside);
+  } else {
+    offer(made, 1, lying, lying);
+    offer(made, 2, *beside, deepest);
+    offer(made, 1, deepest, deepest);
+  }
+}
+
+/* Puts a candidate to be tried next, or last; what there is no room for is left out. */
+static void push(workspace *work, int next, const candidate *added) {
+  if (work->waiting == CANDIDATES) return;
+  if (next) {
+    work->queue[work->waiting++] = *added;
+    return;
+  }
+  memmove(work->queue + 1, work->queue, (size_t)work->waiting * sizeof *work->queue);
+  work->queue[0] = *added;
+  work->waiting++;
+}
+
+/* The contacts of an arrangement with some replaced; zero where they are more than any arrangement has. */
+static int changed(const arrangement *at, const real *z, const change *changes, const int *chosen, int count, int from,
+                   candidate *made) {
+  made->count = 0;
+  made->from = from;
+  for (int k = 0; k < at->touches; k++) {
+    int replaced = 0;
+    for (int i = 0; i < count; i++) replaced |= changes[i].touch == k;
+    if (!replaced && !add_touch(made, touch_at(at, z, k))) return 0;
+  }
+  for (int i = 0; i < count; i++) {
+    const option *taken = changes[i].option + chosen[i];
+    for (int k = 0; k < taken->count; k++) {
+      if (!add_touch(made, taken->touches[k])) return 0;
+    }
+  }
+  return 1;
+}
+
+/* What is at fault in an arrangement that is solved; returns the number of changes, zero where it holds. */
+static int find_faults(const arrangement *at, const real *z, change *changes, workspace *work) {
+  penetration found[MOST_FAULTS];
+  int is_pulling[TOUCH_ROOM] = {0};
+  const real largest = largest_force(at, z);
+  int count = 0;
+  for (int k = 0; k < at->touches; k++) {
+    if (pull_of(at, z, k, largest) <= ACCEPTED) continue;
+    is_pulling[k] = 1;
+    changes[count].touch = k;
+    changes[count].options = 0;
+    instead_of_pulling(touch_at(at, z, k), changes + count++);
+  }
+  const int inside = join_at_contacts(at, z, found, find_penetrations(at, z, found, work));
+  for (int i = 0; i < inside && count < MOST_FAULTS; i++) {
+    const int number = found[i].touch;
+    touch beside;
+    if (number >= 0) {
+      beside = touch_at(at, z, number);
+      /* What is inside a stretch of contact is its polynomials' error, and no change of contacts mends it. */
+      if (beside.is_line && beside.start < found[i].deepest && found[i].deepest < beside.end) continue;
+      if (is_pulling[number]) continue;
+    }
+    changes[count].touch = number;
+    changes[count].options = 0;
+    instead_of_entering(found + i, number < 0 ? 0 : &beside, changes + count++);
+  }
+  return count;
+}
+
+/* Puts what may be instead of an arrangement that is at fault, the likeliest to be tried first. */
+static void push_instead(const arrangement *at, const real *z, const change *changes, int count, int from,
+                         workspace *work) {
+  int chosen[MOST_FAULTS] = {0};
+  candidate made;
+  /* The last one that is put is tried first: each fault changed in another way, then all in the likeliest. */
+  for (int i = count - 1; i >= 0; i--) {
+    for (int k = changes[i].options - 1; k > 0; k--) {
+      chosen[i] = k;
+      if (changed(at, z, changes, chosen, count, from, &made)) push(work, 1, &made);
+    }
+    chosen[i] = 0;
+  }
+  if (changed(at, z, changes, chosen, count, from, &made)) push(work, 1, &made);
+}
+
+/* Puts what is beside contacts whose equations have no solution near by, to be tried last. */
+static void push_beside(const candidate *failed, workspace *work) {
+  for (int k = 0; k < failed->count; k++) {
+    const touch own = failed->touches[k];
+    change options = {.touch = k, .options = 0};
+    if (own.is_line) {
+      instead_of_pulling(own, &options);
+    } else if (own.end == 1) {
+      const touch inwards = point(own.rod, own.obstacle, 1 - 2 * NEAR_CONTACT);
+      const touch lying = line(own.rod, own.obstacle, LIES_FROM, 1);
+      offer(&options, 1, inwards, inwards);
+      offer(&options, 1, lying, lying);
+    } else {
+      const touch tip = point(own.rod, own.obstacle, 1);
+      offer(&options, 1, tip, tip);
+    }
+    offer(&options, 0, own, own);
+    for (int i = 0; i < options.options; i++) {
+      candidate made = {.count = 0, .from = failed->from};
+      int fits = 1;
+      for (int j = 0; j < failed->count; j++) {
+        if (j != k) fits = fits && add_touch(&made, failed->touches[j]);
+      }
+      for (int j = 0; j < options.option[i].count; j++) fits = fits && add_touch(&made, options.option[i].touches[j]);
+      if (fits) push(work, 0, &made);
+    }
+  }
+}
+
+/* Whether an arrangement was tried already from places that are much the same. */
+static int was_tried(int number, const real *z, int tries, const workspace *work) {
+  const arrangement *at = ARRANGEMENT + number;
+  const int first = at->unknowns + at->forces;
+  for (int k = 0; k < tries; k++) {
+    if (work->tried[k].arrangement != number) continue;
+    int alike = 1;
+    for (int i = 0; i < at->places; i++) alike = alike && fabs(z[first + i] - work->tried[k].places[i]) < ALIKE;
+    if (alike) return 1;
+  }
+  return 0;
+}
+
+/* Guess of an arrangement for contacts that are wanted; -1 where the library has none such. */
+static int guess(const candidate *wanted, const real *inputs, real *z, workspace *work) {
+  const arrangement *from = ARRANGEMENT + work->solved[wanted->from].arrangement;
+  const real *old = work->solved[wanted->from].z;
+  for (int number = 0; number < ARRANGEMENTS; number++) {
+    const arrangement *to = ARRANGEMENT + number;
+    if (!set_places(to, wanted, z)) continue;
+    if (to == from) {
+      memcpy(z, old, (size_t)to->size * sizeof *z);
+      (void)set_places(to, wanted, z);
+      return number;
+    }
+    project(from, old, to, z);
+    fit_forces(to, inputs, z, work);
+    return number;
+  }
+  return -1;
+}
+
+/* Finds contacts that hold for these inputs from those of solved[0], the last solution. Leaves the arrangement and z in
+   solved[result] and the positions of the nodes in the workspace; -1 where none holds. */
+static int settle(const real *inputs, int max_iterations, real *index, workspace *work, contact_info *info) {
+  candidate first = {.count = 0, .from = 0};
+  const arrangement *start = ARRANGEMENT + work->solved[0].arrangement;
+  for (int k = 0; k < start->touches; k++) (void)add_touch(&first, touch_at(start, work->solved[0].z, k));
+  work->waiting = 0;
+  push(work, 1, &first);
+  int tries = 0;
+  int solved = 1;
+  info->status = CONTACT_CONTACT_UNSETTLED;
+  while (work->waiting > 0 && tries < TRIES && info->iterations < max_iterations) {
+    const candidate next = work->queue[--work->waiting];
+    real *z = work->solved[solved].z;
+    const int number = guess(&next, inputs, z, work);
+    if (number < 0 || was_tried(number, z, tries, work)) continue;
+    const arrangement *at = ARRANGEMENT + number;
+    work->tried[tries].arrangement = number;
+    memcpy(work->tried[tries].places, z + at->unknowns + at->forces, (size_t)at->places * sizeof *z);
+    tries++;
+    info->tries++;
+    const newton_result result = newton(at, inputs, z, max_iterations, work, info);
+    info->residual_norm = result.residual_norm;
+    if (result.status != CONTACT_CONVERGED) {
+      push_beside(&next, work);
+      continue;
+    }
+    work->solved[solved].arrangement = number;
+    call(at->nodes, z, inputs, work->nodes, index, work);
+    change changes[MOST_FAULTS + TOUCH_ROOM];
+    const int faults = find_faults(at, z, changes, work);
+    if (faults == 0) {
+      info->status = CONTACT_CONVERGED;
+      return solved;
+    }
+    push_instead(at, z, changes, faults < MOST_FAULTS ? faults : MOST_FAULTS, solved, work);
+    solved++;
+  }
+  return -1;
+}

@@ -1,0 +1,66 @@
+"""What of exact contact cannot be exported: refused with a sentence before any work is done."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.state import without_contacts
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.inputs import input_layout
+
+SENTENCES = {
+    "derivatives": "equations of rods in exact contact change with the contacts: there is no one function for CasADi",
+    "dynamics": "motions in C know no exact contact",
+    "stability": "the stability of rods in exact contact is not written in C",
+}
+"""What a folder may hold of other scenes, and why not of these."""
+
+REMEDY = "leave it out, or give each obstacle a width, m, for a contact that is smooth"
+
+
+def check_contact(scene: scenes.Scene, asked: Mapping[str, bool]) -> None:
+    """Refuse what C does not have of a scene in exact contact.
+
+    Args:
+        scene: the scene.
+        asked: whether ``derivatives``, ``dynamics`` and ``stability`` are asked for.
+
+    Raises:
+        ExportError: with every fault.
+    """
+    if not scene.touches_exactly:
+        return
+    problems = [Problem(f"--{word}", SENTENCES[word], REMEDY) for word, wanted in asked.items() if wanted]
+    if scene.parameters:
+        problem = "rods in exact contact have no parameters in C"
+        problems.append(Problem("parameters", problem, "leave them out"))
+    if scene.bodies:
+        problem = "rods in exact contact are exported without rigid bodies"
+        problems.append(Problem("bodies", problem, "give each obstacle a width, m, or leave one of the two out"))
+    if problems:
+        raise ExportError(*problems)
+
+
+def check_load_cases(scene: scenes.Scene, load_cases: FloatArray | None) -> None:
+    """Refuse load cases of a scene without exact contact, and rows of the wrong length.
+
+    Args:
+        scene: the scene.
+        load_cases: stacked inputs, a row for each case.
+
+    Raises:
+        ExportError: they are refused.
+    """
+    if load_cases is None:
+        return
+    if not scene.touches_exactly:
+        problem = "load cases say which contacts are exported; no rod of this scene touches an obstacle exactly"
+        raise ExportError(Problem("--over", problem, "leave them out"))
+    columns = input_layout(without_contacts(scene)).size
+    if load_cases.ndim != 2 or load_cases.shape[1] != columns or not np.isfinite(load_cases).all():
+        problem = f"load cases are finite numbers of shape (k, {columns}), got shape {load_cases.shape}"
+        raise ExportError(Problem("--over", problem))

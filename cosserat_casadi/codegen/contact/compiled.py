@@ -1,0 +1,317 @@
+"""An exported folder of a scene in exact contact, compiled: the solver in C, from Python."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
+from cosserat_casadi.codegen.contact.sources import VERBATIM
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_in_contact, read_manifest
+from cosserat_casadi.codegen.names import library_names
+from cosserat_casadi.codegen.plain import pointer, vector
+from cosserat_casadi.codegen.status import CONTACT_OUTCOMES
+from cosserat_casadi.equilibrium.solution import Contact
+from cosserat_casadi.errors import ExportError, Problem
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.numerics.outcome import Outcome
+
+POSE_SIZE = 7
+
+
+class ContactInfo(ctypes.Structure):
+    """The struct in C that says how a call ended."""
+
+    _fields_ = (
+        ("status", ctypes.c_int),
+        ("iterations", ctypes.c_int),
+        ("jacobians", ctypes.c_int),
+        ("residual_norm", ctypes.c_double),
+        ("load_factor", ctypes.c_double),
+        ("arrangement", ctypes.c_int),
+        ("tries", ctypes.c_int),
+        ("parts", ctypes.c_int),
+    )
+
+
+class ContactOptions(ctypes.Structure):
+    """The struct in C with the budget of a call."""
+
+    _fields_ = (("max_iterations", ctypes.c_int), ("max_parts", ctypes.c_int))
+
+
+class ContactInC(ctypes.Structure):
+    """The struct in C of a contact."""
+
+    _fields_ = (
+        ("rod", ctypes.c_int),
+        ("obstacle", ctypes.c_int),
+        ("is_line", ctypes.c_int),
+        ("start", ctypes.c_double),
+        ("end", ctypes.c_double),
+        ("force", ctypes.c_double * 3),
+        ("point_forces", ctypes.c_double * 2),
+    )
+
+
+@dataclass(frozen=True)
+class CompiledContactSolution:
+    """What the solver in C found.
+
+    Attributes:
+        outcome: how it ended.
+        arrangement: number of the arrangement of contacts, in the order of the manifest.
+        tips: position and quaternion of the tip of each rod, shape (7,); none without a solution.
+        contacts: who touches what, as in :class:`cosserat_casadi.Solution`.
+        iterations: Newton steps.
+        jacobians: Jacobians factorised.
+        residual_norm: relative norm of the residual.
+        load_factor: share of the way of the inputs that was done.
+        tries: arrangements that were solved.
+        parts: parts of the way of the inputs.
+        derivatives: of the tip of each rod with the inputs, shape (7, m), where they were asked for.
+        state: what the next call begins with.
+    """
+
+    outcome: Outcome
+    arrangement: int
+    tips: Mapping[str, FloatArray]
+    contacts: tuple[Contact, ...]
+    iterations: int
+    jacobians: int
+    residual_norm: float
+    load_factor: float
+    tries: int
+    parts: int
+    derivatives: Mapping[str, FloatArray] | None
+    state: bytes = field(repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is an equilibrium for the inputs, in contacts that hold."""
+        return self.outcome is Outcome.CONVERGED
+
+    @property
+    def message(self) -> str:
+        """A sentence that says how it ended."""
+        return self.outcome.value
+
+
+@dataclass(frozen=True)
+class CompiledContact:
+    """An exported folder of a scene in exact contact.
+
+    Attributes:
+        library: the shared object.
+        manifest: what the folder says of itself.
+    """
+
+    library: Path
+    manifest: dict[str, Any]
+
+    @cached_property
+    def defaults(self) -> FloatArray:
+        """The scene's own inputs, stacked."""
+        return np.concatenate([np.zeros(0), *[entry["value"] for entry in self.manifest["inputs"]]])
+
+    @property
+    def rods(self) -> list[str]:
+        """Names of the rods, in order."""
+        return list(self.manifest["rods"])
+
+    @property
+    def arrangements(self) -> list[list[dict[str, Any]]]:
+        """The contacts of each arrangement that the library knows."""
+        return [entry["contacts"] for entry in self.manifest[ARRANGEMENTS]]
+
+    def start(self) -> CompiledContactSolution:
+        """The solution of the scene's own inputs."""
+        state = self._room()
+        self._function("start")(state)
+        info = ContactInfo(load_factor=1.0)
+        return self._answer(Outcome.CONVERGED, state, info, None)
+
+    def solve(
+        self, inputs: npt.ArrayLike | None = None, start: CompiledContactSolution | None = None
+    ) -> CompiledContactSolution:
+        """Equilibrium by the solver in C.
+
+        Args:
+            inputs: stacked inputs; the scene's own by default.
+            start: a solution from which the inputs move on; that of the scene's own inputs by default, and where the
+                way from it does not lead to the inputs.
+
+        Raises:
+            ValueError: the inputs are of the wrong size.
+        """
+        given = vector(self.defaults if inputs is None else inputs, len(self.defaults), "inputs")
+        state = self._room() if start is None else self._state(start)
+        info = ContactInfo()
+        status = self._function("solve")(pointer(given), state, self._workspace(), ctypes.byref(info))
+        return self._answer(CONTACT_OUTCOMES[status], state, info, None)
+
+    def track(
+        self,
+        inputs: npt.ArrayLike,
+        start: CompiledContactSolution,
+        *,
+        max_iterations: int | None = None,
+        max_parts: int | None = None,
+    ) -> CompiledContactSolution:
+        """One turn of a control loop: the solution and its derivatives, in bounded work.
+
+        Args:
+            inputs: stacked inputs.
+            start: the solution of the turn before.
+            max_iterations: most Newton steps; by default what the header says.
+            max_parts: most parts of the way of the inputs; likewise.
+
+        Raises:
+            ValueError: the inputs are of the wrong size, or one budget is given without the other.
+        """
+        given = vector(inputs, len(self.defaults), "inputs")
+        if (max_iterations is None) != (max_parts is None):
+            raise ValueError("give both max_iterations and max_parts, or none")
+        options = None
+        if max_iterations is not None:
+            options = ctypes.byref(ContactOptions(max_iterations, max_parts))
+        state = self._state(start)
+        info = ContactInfo()
+        columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
+        track = self._function("track")
+        status = track(pointer(given), state, options, pointer(columns), self._workspace(), ctypes.byref(info))
+        outcome = CONTACT_OUTCOMES[status]
+        derivatives = columns if outcome is Outcome.CONVERGED else None
+        # At a limit point there is a solution without derivatives.
+        if outcome is Outcome.SINGULAR:
+            outcome = CONTACT_OUTCOMES[info.status]
+        return self._answer(outcome, state, info, derivatives)
+
+    def sensitivity(self, solution: CompiledContactSolution) -> dict[str, FloatArray] | None:
+        """The d(position, quaternion)/dinputs of each tip, shape (7, m); None where there are none."""
+        columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
+        status = self._function("solve_sensitivity")(self._state(solution), pointer(columns), self._workspace())
+        return None if status != 0 else self._by_rod(columns)
+
+    def _by_rod(self, columns: FloatArray) -> dict[str, FloatArray]:
+        return {rod: own.T for rod, own in zip(self.rods, columns, strict=True)}
+
+    def _answer(
+        self, outcome: Outcome, state: Any, info: ContactInfo, derivatives: FloatArray | None
+    ) -> CompiledContactSolution:
+        found = outcome in (Outcome.CONVERGED, Outcome.UNRESOLVED)
+        return CompiledContactSolution(
+            outcome=outcome,
+            arrangement=self._arrangement_of(state),
+            tips=self._tips(state) if found else {},
+            contacts=self._contacts(state) if found else (),
+            iterations=info.iterations,
+            jacobians=info.jacobians,
+            residual_norm=info.residual_norm,
+            load_factor=info.load_factor,
+            tries=info.tries,
+            parts=info.parts,
+            derivatives=None if derivatives is None else self._by_rod(derivatives),
+            state=bytes(state),
+        )
+
+    def _arrangement_of(self, state: Any) -> int:
+        """Second member of the state."""
+        return int(ctypes.cast(state, ctypes.POINTER(ctypes.c_int))[1])
+
+    def _tips(self, state: Any) -> dict[str, FloatArray]:
+        poses = np.zeros((len(self.rods), POSE_SIZE))
+        self._function("poses")(state, pointer(poses), self._workspace())
+        return dict(zip(self.rods, poses, strict=True))
+
+    def _contacts(self, state: Any) -> tuple[Contact, ...]:
+        most = max([1, *map(len, self.arrangements)])
+        found = (ContactInC * most)()
+        count = self._function("contacts")(state, found, self._workspace())
+        contacts = []
+        for own in itertools.islice(found, count):
+            ends = 2 if own.is_line else 1
+            contact = Contact(
+                obstacle=self.manifest["obstacles"][own.obstacle],
+                rod=self.rods[own.rod],
+                start=own.start,
+                end=own.end,
+                force=np.array(own.force),
+                ends=tuple(own.point_forces[:ends]),
+                kind="line" if own.is_line else "point",
+            )
+            contacts.append(contact)
+        return tuple(contacts)
+
+    @cached_property
+    def _handle(self) -> ctypes.CDLL:
+        return ctypes.CDLL(str(self.library))
+
+    def _function(self, word: str) -> Any:
+        return getattr(self._handle, f"{self.manifest['name']}_{word}")
+
+    def _room(self) -> Any:
+        """A state without a solution."""
+        doubles = -(-self._function("state_size")() // ctypes.sizeof(ctypes.c_double))
+        return (ctypes.c_double * doubles)()
+
+    def _state(self, solution: CompiledContactSolution) -> Any:
+        room = self._room()
+        if len(solution.state) != ctypes.sizeof(room):
+            raise ValueError("the start is a solution of another library")
+        ctypes.memmove(room, solution.state, len(solution.state))
+        return room
+
+    def _workspace(self) -> Any:
+        """Memory for one call, so that several threads may call at once."""
+        doubles = -(-self._function("workspace_size")() // ctypes.sizeof(ctypes.c_double))
+        return (ctypes.c_double * doubles)()
+
+
+def load_in_contact(
+    directory: str | os.PathLike[str], compiler: str | None = None, *, progress: Progress | None = None
+) -> CompiledContact:
+    """Compile an exported folder of a scene in exact contact, once, and load it.
+
+    Args:
+        directory: a folder written by :func:`cosserat_casadi.export`.
+        compiler: C compiler, as for :func:`cosserat_casadi.load`.
+        progress: told what is compiled, likewise.
+
+    Raises:
+        ExportError: the folder is not one of a scene in exact contact, there is no compiler, or it fails.
+    """
+    folder = Path(directory)
+    described = read_manifest(folder)
+    if not _is_manifest(described):
+        problem = "is not the manifest of a scene in exact contact"
+        raise ExportError(Problem(str(folder / MANIFEST), problem, "load any other with load"))
+    name = described["name"]
+    sources = [folder / f"{name}{part}.c" for part in ("", "_kernels")]
+    headers = [folder / f"{name}{part}.h" for part in ("", "_config", "_kernels")]
+    headers += [folder / file for file in VERBATIM]
+    return CompiledContact(shared_object(name, sources, headers, find_compiler(compiler), progress), described)
+
+
+def _is_manifest(described: Any) -> bool:
+    """Whether what is read of a manifest is there."""
+    if not is_in_contact(described):
+        return False
+    try:
+        library_names(described["name"])
+        numbers = [np.asarray(entry["value"], dtype=np.float64) for entry in described["inputs"]]
+        names = [*described["rods"], *described["obstacles"]]
+        contacts = all(isinstance(entry["contacts"], list) for entry in described[ARRANGEMENTS])
+    except (ExportError, KeyError, TypeError, ValueError):
+        return False
+    sound = all(isinstance(name, str) for name in names)
+    return sound and contacts and all(value.ndim == 1 for value in numbers)

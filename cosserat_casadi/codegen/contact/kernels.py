@@ -1,0 +1,182 @@
+"""The equations of arrangements of contacts as functions for C: of z = (x, f, p) and of the inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.accuracy.cost import STRAIGHT
+from cosserat_casadi.codegen.contact.arrangements import Chosen
+from cosserat_casadi.codegen.kernels import kernel
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Written, obstacle_of
+from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.equilibrium.contact.state import Touch
+from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.loads.load import polynomials_at
+from cosserat_casadi.maths.numbers import as_matrix
+from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.function_table import Expressions
+from cosserat_casadi.model.functions import resolution_index
+
+WORDS = ("residual", "jacobian", "rate", "nodes", "tips", "tip_rate", "contacts")
+"""What there is a kernel of for every arrangement, in the order of the table in C."""
+
+
+RATES = ("rate", "tip_rate")
+"""Those that are derivatives along a direction of z and of the inputs."""
+
+STRAIGHT_WITHIN: dict[str, int] = {}
+"""Instructions within which kernels that are called once are straight-line code."""
+
+
+@dataclass(frozen=True)
+class ArrangementKernels:
+    """The kernels of one arrangement.
+
+    Attributes:
+        equations: of the arrangement.
+        name: what their names begin with.
+    """
+
+    equations: ContactEquations
+    name: str
+
+    @cached_property
+    def _written(self) -> Written:
+        return self.equations.written
+
+    def all(self) -> list[ca.Function]:
+        """In the order of WORDS."""
+        written = self._written
+        tips = self._tips()
+        results: dict[str, list[Matrix]] = {
+            "residual": [written.residual],
+            "jacobian": [written.jacobian],
+            "rate": [written.residual],
+            "nodes": [self._nodes(), self._resolution_index()],
+            "tips": [tips],
+            "tip_rate": [tips],
+            "contacts": [self._resultants(), self._point_forces()],
+        }
+        return [self._kernel(word, results[word]) for word in WORDS]
+
+    @property
+    def _inputs(self) -> int:
+        count: int = self._written.given.shape[0]
+        return count
+
+    def _kernel(self, word: str, results: Sequence[Matrix]) -> ca.Function:
+        """A function of z and of the inputs, with dense results."""
+        written = self._written
+        sizes = [part.shape[0] for part in written.unknowns]
+        z = ca.MX.sym("z", sum(sizes))
+        inputs = ca.MX.sym("inputs", self._inputs)
+        parts = ca.vertsplit(z, np.cumsum([0, *sizes]).tolist())
+        of_parts = ca.Function("of_parts", written.arguments, list(results))
+        expressions = of_parts.call([*parts, inputs], True, False)
+        arguments = {"z": z, "inputs": inputs}
+        if word in RATES:
+            moved = {f"{name}_rate": ca.MX.sym(f"{name}_rate", symbol.shape[0]) for name, symbol in arguments.items()}
+            everything = ca.vertcat(*arguments.values())
+            expressions = [ca.jtimes(expressions[0], everything, ca.vertcat(*moved.values()))]
+            arguments |= moved
+        names = [f"result_{number}" for number in range(len(results))]
+        whole = ca.Function("of_z", list(arguments.values()), expressions, list(arguments), names)
+        return kernel(self.equations.nominal.model, whole, f"{self.name}_{word}", STRAIGHT_WITHIN.get(word, STRAIGHT))
+
+    def _nodes(self) -> Matrix:
+        """Positions of the nodes of all rods, one after the other, 3×M, m."""
+        positions = []
+        for name, shape in self._written.system.shapes.items():
+            base = self._written.system.base(name)
+            rotation = quaternion_to_matrix(base.quaternion)
+            positions.append(ca.repmat(base.position, 1, shape.rod.grid.size) + rotation @ shape.position)
+        return ca.horzcat(*positions)
+
+    def _resolution_index(self) -> Matrix:
+        system = self._written.system
+        symbols = {"x": ca.MX(system.arguments.x), "inputs": ca.MX(system.arguments.inputs)}
+        return resolution_index(Expressions(system.discrete, "", symbols))
+
+    def _tips(self) -> Matrix:
+        """Position and quaternion of the tip of every rod, stacked."""
+        poses = []
+        for name, shape in self._written.system.shapes.items():
+            base = self._written.system.base(name)
+            poses.append(base.position + quaternion_to_matrix(base.quaternion) @ shape.position_at(-1))
+            poses.append(quaternion_product(base.quaternion, ca.densify(shape.quaternion)[:, -1]))
+        return ca.vertcat(*poses)
+
+    def _point_forces(self) -> Matrix:
+        """Force at the end, or at both ends, of every contact, N, two numbers for each."""
+        forces: list[Matrix] = [ca.MX(0, 1)]
+        for touch, ends, _ in self._forces():
+            own = self._unit(touch) * ends
+            forces.append(own if touch.is_line else ca.vertcat(own, 0))
+        return ca.vertcat(*forces)
+
+    def _resultants(self) -> Matrix:
+        """Force of every contact on its rod, world axes, N, three numbers for each."""
+        forces: list[Matrix] = [ca.MX(0, 1)]
+        for touch, ends, line in self._forces():
+            grid = self._written.system.discrete.rods[touch.rod].grid
+            force: Matrix = ca.MX.zeros(3)
+            for number, end in enumerate(touch.ends):
+                force = force + ends[number] * self._normal(touch, grid.node_at(end))
+            if touch.is_line:
+                force = force + self._resultant_along(touch, line)
+            forces.append(self._unit(touch) * force)
+        return ca.vertcat(*forces)
+
+    def _resultant_along(self, touch: Touch, line: Matrix) -> Matrix:
+        """∫ λ n over a stretch of contact."""
+        grid = self._written.system.discrete.rods[touch.rod].grid
+        nodes = grid.nodes_in(touch.start, touch.end)
+        local = (grid.nodes_at(nodes) - touch.start) / (touch.end - touch.start)
+        along = as_matrix(polynomials_at(line.shape[0], local)).T @ line
+        lengths = ca.MX(ca.DM(grid.weights[nodes]))
+        rates = grid.rates_in(grid.element_of_node[nodes])
+        if rates is not None:
+            lengths = lengths * as_matrix(rates)
+        normals = ca.horzcat(*[self._normal(touch, int(node)) for node in nodes])
+        return normals @ (lengths * along)
+
+    def _normal(self, touch: Touch, node: int) -> Matrix:
+        """Normal of the obstacle at a node of the rod that touches it."""
+        base = self._written.system.base(touch.rod)
+        rotation = quaternion_to_matrix(base.quaternion)
+        position = base.position + rotation @ self._written.system.shapes[touch.rod].position_at(node)
+        obstacle = obstacle_of(self._written.system.discrete.scene, touch.obstacle)
+        normal: Matrix = surface(obstacle)(position)[1]
+        return normal
+
+    def _forces(self) -> list[tuple[Touch, Matrix, Matrix]]:
+        """Each contact, the forces at its ends and the coefficients of that along it, without unit."""
+        _, f, _ = self._written.unknowns
+        split: list[tuple[Touch, Matrix, Matrix]] = []
+        first = 0
+        for touch in self._written.state.touches:
+            ends = len(touch.ends)
+            count = touch.moment_count(self._written.modes[touch.rod]) if touch.is_line else 0
+            split.append((touch, f[first : first + ends], f[first + ends : first + ends + count]))
+            first += ends + count
+        return split
+
+    def _unit(self, touch: Touch) -> float:
+        return self._written.system.discrete.tension_unit(touch.rod)
+
+
+def distance_kernels(chosen: Chosen, name: str) -> list[ca.Function]:
+    """Point ↦ distance from an obstacle, for each pair of a rod and an obstacle; rods share those of an obstacle."""
+    kernels = {}
+    for _, obstacle in pairs(chosen.scene):
+        number = [other.name for other in chosen.scene.obstacles].index(obstacle.name)
+        point = ca.SX.sym("point", 3)
+        distance = distance_from(obstacle)(point)
+        kernels[obstacle.name] = ca.Function(f"{name}_{number}", [point], [ca.densify(distance)])
+    return list(kernels.values())

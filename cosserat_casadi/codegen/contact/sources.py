@@ -1,0 +1,204 @@
+"""A folder of C sources of a scene in exact contact: header, tables, solver, build file, README, manifest."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.contact.arrangements import Chosen
+from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
+from cosserat_casadi.codegen.contact.tables import Tables, described, local_abscissae
+from cosserat_casadi.codegen.kernels import kernel_sources
+from cosserat_casadi.codegen.library import comment, input_words, version_words
+from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, input_entries
+from cosserat_casadi.codegen.memory import largest_room, stack_bytes
+from cosserat_casadi.codegen.names import Names, identifier
+from cosserat_casadi.codegen.status import contact_status_words
+from cosserat_casadi.codegen.texts import render, resource
+from cosserat_casadi.equilibrium.contact import equations, passage, settle, state
+from cosserat_casadi.model.build import Model, build
+from cosserat_casadi.numerics import newton
+from cosserat_casadi.scene.writing import scene_text
+
+VERBATIM = ("contact.h", "contact_newton.c", "contact_shape.c", "contact_settle.c", "contact.c")
+"""Files of the folder ``c`` that the library's own source includes, as they are."""
+
+MOST_TRIES = 24
+"""Most arrangements that are solved for one change of the inputs."""
+
+TRIES_EACH = 3
+"""Times that each of few arrangements may be tried then, from other places."""
+
+CANDIDATES = 24
+"""Most contacts that wait to be tried."""
+
+TRACK_ITERATIONS, TRACK_PARTS = 60, 20
+"""Budget of a turn of a control loop where the caller names none."""
+
+LONGEST_WAY = 0.1
+"""Farthest that a section may move in one part of the way of the inputs, relative to the length of its rod."""
+
+SINGULAR = 1e-14
+"""Pivot, relative to the largest entry of its column, that is zero: a short line of contact has small ones."""
+
+MIN_STEP = 1e-4
+"""Shortest part of the way of the inputs."""
+
+SHORTER = 0.7
+"""Share of a line of contact that stays where a rod curls up, as in settle.py."""
+
+
+def contact_files(model: Model, chosen: Chosen, names: Names, error_estimate: float | None) -> dict[str, str]:
+    """Text of every file of a folder by name; the manifest, which lists the others, is last.
+
+    Args:
+        model: what is exported.
+        chosen: its arrangements of contacts.
+        names: what things are called.
+        error_estimate: error of the tip pose at the scene's inputs relative to the length, for the manifest.
+    """
+    kernels = distance_kernels(chosen, names.kernel("distance"))
+    for number, own in enumerate(chosen.equations):
+        kernels += ArrangementKernels(own, names.kernel(str(number))).all()
+    generated = kernel_sources(kernels, names)
+    tables = Tables(chosen, names.name)
+    words = _words(chosen, names, tables, generated)
+    name = names.name
+    files = {
+        f"{name}.h": render("contact.h.in", words),
+        f"{name}.c": render("contact_library.c.in", words),
+        f"{name}_config.h": render("contact_config.h.in", words),
+        f"{name}_demo.c": render("contact_demo.c.in", words),
+        "CMakeLists.txt": render("contact_cmake.in", words),
+        "README.md": render("contact_readme.md.in", words),
+        **{file: resource("c", file) for file in VERBATIM},
+        **generated,
+        "scene.toml": scene_text(chosen.scene),
+    }
+    files[MANIFEST] = json.dumps(_manifest(model, chosen, names, files, error_estimate), indent=1, ensure_ascii=False)
+    files[MANIFEST] += "\n"
+    return files
+
+
+def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, str]) -> dict[str, Any]:
+    free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
+    arrangements = len(chosen.equations)
+    tries = min(TRIES_EACH * arrangements, MOST_TRIES)
+    touches = max(len(own.state.touches) for own in chosen.equations)
+    forces = max(len(own.nominal.force_units) for own in chosen.equations)
+    inputs = chosen.layout.size
+    return {
+        "name": names.name,
+        "MACRO": names.macro,
+        "title": comment(chosen.scene.title or names.name),
+        "version": version("cosserat-casadi"),
+        **version_words(),
+        "casadi_version": ca.CasadiMeta.version(),
+        "stack_kb": f"{np.ceil(stack_bytes(generated) / 500) / 2:g}",
+        **input_words(free, names),
+        "inputs": inputs,
+        "input_room": max(inputs, 1),
+        "rods": len(tables.rods),
+        "obstacles": len(tables.obstacles),
+        "pairs": tables.pair_count,
+        "arrangements": arrangements,
+        "arrangement_lines": "\n".join(
+            f"   {number}: {comment(described(own))}" for number, own in enumerate(chosen.equations)
+        ),
+        "arrangement_rows": "\n".join(
+            f"| {number} | {described(own)} |" for number, own in enumerate(chosen.equations)
+        ),
+        "number_macros": _number_macros(names, tables),
+        "most_contacts": max(touches, 1),
+        "touch_room": max(touches, 1),
+        "place_room": max([len(own.state.places) for own in chosen.equations] + [1]),
+        "most_forces": forces,
+        "columns": max(forces, 1),
+        "largest": tables.largest,
+        "nodes_of_all": tables.nodes_of_all,
+        "local": len(local_abscissae()),
+        "tries": tries,
+        "candidates": CANDIDATES,
+        "tables": tables.text(),
+        "kernel_reals": largest_room(generated, "W") + 1,
+        "kernel_integers": largest_room(generated, "IW") + 1,
+        "kernel_arguments": largest_room(generated, "ARG") + 2,
+        "kernel_results": largest_room(generated, "RES") + 2,
+        "default_iterations": TRACK_ITERATIONS,
+        "default_parts": TRACK_PARTS,
+        **_limits(chosen),
+        **contact_status_words(names),
+    }
+
+
+def _limits(chosen: Chosen) -> dict[str, Any]:
+    settings = newton.NewtonSettings()
+    halvings = int(-np.log2(newton.SHORTEST_STEP))
+    return {
+        "tolerance": settings.tolerance,
+        "iterations": settings.iterations,
+        "halvings": halvings,
+        "most_residuals": halvings + 1,
+        "singular": SINGULAR,
+        "sufficient_decrease": newton.SUFFICIENT_DECREASE,
+        "accepted": chosen.tolerance,
+        "shortest_element": state.SHORTEST,
+        "longest_way": LONGEST_WAY,
+        "min_step": MIN_STEP,
+        "stride": passage.STRIDE,
+        "most_looks": passage.MOST_LOOKS,
+        "deep": passage.DEEP,
+        "near": settle.NEAR,
+        "at_tip": settle.AT_TIP,
+        "lies_from": settle.LIES_FROM,
+        "shorter": SHORTER,
+        "alike": settle.ALIKE,
+        "fit": equations.FIT,
+        "samples": len(settle.SAMPLES) - 1,
+    }
+
+
+def _number_macros(names: Names, tables: Tables) -> str:
+    lines = [f"#define {names.macro}_ROD_{identifier(rod).upper()} {i}" for i, rod in enumerate(tables.rods)]
+    for number, obstacle in enumerate(tables.obstacles):
+        lines.append(f"#define {names.macro}_OBSTACLE_{identifier(obstacle).upper()} {number}")
+    return "\n".join(lines)
+
+
+def _manifest(
+    model: Model, chosen: Chosen, names: Names, files: dict[str, str], error_estimate: float | None
+) -> dict[str, Any]:
+    """What the folder holds, as data."""
+    free = build(chosen.scene, chosen.equations[0].grids.discretisation(chosen.scene))
+    arrangements = []
+    for own in chosen.equations:
+        touches = [
+            {"rod": touch.rod, "obstacle": touch.obstacle, "kind": touch.kind, "at_tip": touch.reaches_tip}
+            for touch in own.state.touches
+        ]
+        nominal = own.nominal
+        sizes = {
+            "unknowns": nominal.model.size,
+            "forces": len(nominal.force_units),
+            "places": len(own.state.places),
+        }
+        arrangements.append({"contacts": touches, **sizes})
+    return {
+        "schema": 1,
+        "name": names.name,
+        "title": chosen.scene.title,
+        "versions": {"cosserat_casadi": version("cosserat-casadi"), "casadi": ca.CasadiMeta.version()},
+        "inputs": input_entries(free),
+        "rods": [rod.name for rod in chosen.scene.rods],
+        "obstacles": [obstacle.name for obstacle in chosen.scene.obstacles],
+        ARRANGEMENTS: arrangements,
+        "discretisation": {name: asdict(own) for name, own in model.discretisation.items()},
+        "tolerance": chosen.scene.accuracy.tolerance,
+        "error_estimate": None if error_estimate is None else float(f"{error_estimate:.2g}"),
+        "files": sorted([*files, MANIFEST]),
+    }

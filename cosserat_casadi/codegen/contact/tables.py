@@ -1,0 +1,270 @@
+"""Tables of rods, obstacles and arrangements of contacts in C."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cosserat_casadi.codegen.block_sources import numbers
+from cosserat_casadi.codegen.contact.arrangements import Chosen
+from cosserat_casadi.codegen.contact.kernels import WORDS
+from cosserat_casadi.equilibrium.contact.equations import ContactEquations
+from cosserat_casadi.equilibrium.contact.gaps import pairs
+from cosserat_casadi.loads.penetration import section_radius
+from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.unknowns import BlockKind
+from cosserat_casadi.rod.strain import DiscreteRod
+
+PER_ELEMENT = 32
+"""Intervals between the sections of an element that are held against obstacles."""
+
+CLOSE = np.geomspace(1e-4, 2e-2, 8)
+"""Distances of further sections from either end of an element, where a rod that lies on starts to enter."""
+
+POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
+
+
+def local_abscissae() -> FloatArray:
+    """Sections of an element that are held against obstacles, from 0 to 1."""
+    even = np.linspace(0.0, 1.0, PER_ELEMENT + 1)
+    return np.unique(np.concatenate([even, CLOSE, 1.0 - CLOSE]))
+
+
+@dataclass(frozen=True)
+class Tables:
+    """What the solver in C reads of a scene and its arrangements.
+
+    Attributes:
+        chosen: the arrangements.
+        name: what symbols begin with.
+    """
+
+    chosen: Chosen
+    name: str
+
+    @property
+    def rods(self) -> list[str]:
+        """Names of the rods, in order."""
+        return [rod.name for rod in self.chosen.scene.rods]
+
+    @property
+    def obstacles(self) -> list[str]:
+        """Names of the obstacles, in order."""
+        return [obstacle.name for obstacle in self.chosen.scene.obstacles]
+
+    @property
+    def pair_count(self) -> int:
+        """Number of pairs of a rod and an obstacle that it must not enter."""
+        return len(list(pairs(self.chosen.scene)))
+
+    def sizes(self, equations: ContactEquations) -> tuple[int, int, int]:
+        """Numbers of unknowns, of forces and of places of an arrangement."""
+        nominal = equations.nominal
+        return nominal.model.size, len(nominal.force_units), len(equations.state.places)
+
+    @property
+    def largest(self) -> int:
+        """Number of entries of the longest z."""
+        return max(sum(self.sizes(equations)) for equations in self.chosen.equations)
+
+    @cached_property
+    def nodes_of_all(self) -> int:
+        """Most nodes of all rods together."""
+        counts = []
+        for equations in self.chosen.equations:
+            rods = equations.nominal.model.discrete.rods.values()
+            counts.append(sum(rod.grid.size for rod in rods))
+        return max(counts)
+
+    def text(self) -> str:
+        """All tables."""
+        parts = [
+            f"static const real LOCAL_ABSCISSAE[LOCAL] = {{{numbers(local_abscissae().tolist())}}};",
+            *(self._rod(number, name) for number, name in enumerate(self.rods)),
+            self._rod_table(),
+            self._pair_table(),
+            *(self._arrangement(number, own) for number, own in enumerate(self.chosen.equations)),
+            self._arrangement_table(),
+            self._start(),
+        ]
+        return "\n".join(parts)
+
+    def _discrete(self, name: str) -> DiscreteRod:
+        """A rod where it touches nothing."""
+        return self.chosen.equations[0].nominal.model.discrete.rods[name]
+
+    def _rod(self, number: int, name: str) -> str:
+        rod = self._discrete(name)
+        intervals = rod.grid.intervals
+        modes = rod.discretisation.modes
+        points = max(modes) + 2
+        # Chebyshev points inside an element: a break belongs to neither side.
+        local = (1 - np.cos(np.pi * (np.arange(points) + 0.5) / points)) / 2
+        polynomials = POLYNOMIALS[rod.properties.basis]
+        lines = [
+            f"\n/* {name} */",
+            f"static const int MODES_{number}[] = {{{numbers(list(modes))}}};",
+            _reals(f"LOCAL_POINTS_{number}", local),
+        ]
+        inverses = {count: np.linalg.pinv(polynomials(count, local)) for count in sorted(set(modes))}
+        lines += [_reals(f"FIT_{number}_{count}", inverse.ravel()) for count, inverse in inverses.items()]
+        fits = ", ".join(f"FIT_{number}_{count}" for count in modes)
+        lines += [
+            f"static const real *const FITS_{number}[] = {{{fits}}};",
+            _reals(f"LOCAL_NODES_{number}", chebyshev.nodes(intervals)),
+            _reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(intervals)),
+            _reals(f"INTERPOLATION_{number}", chebyshev.interpolation_matrix(intervals, local_abscissae()).ravel()),
+        ]
+        return "\n".join(lines)
+
+    def _rod_table(self) -> str:
+        entries = []
+        for number, name in enumerate(self.rods):
+            rod = self._discrete(name)
+            radii = section_radius(rod.properties, np.array([0.0, 1.0])).tolist()
+            modes = rod.discretisation.modes
+            fields = {
+                "intervals": rod.grid.intervals,
+                "components": len(modes),
+                "modes": f"MODES_{number}",
+                "points": max(modes) + 2,
+                "local_points": f"LOCAL_POINTS_{number}",
+                "fits": f"FITS_{number}",
+                "local_nodes": f"LOCAL_NODES_{number}",
+                "barycentric": f"BARYCENTRIC_{number}",
+                "interpolation": f"INTERPOLATION_{number}",
+                "is_chebyshev": int(rod.properties.basis == "chebyshev"),
+                "radius_at_base": repr(radii[0]),
+                "radius_at_tip": repr(radii[1]),
+                "length": repr(float(rod.properties.length)),
+            }
+            entries.append(_initialiser(fields))
+        return _table("rod_entry", "ROD", "RODS", entries)
+
+    def _pair_table(self) -> str:
+        entries = []
+        for rod, obstacle in pairs(self.chosen.scene):
+            number = self.obstacles.index(obstacle.name)
+            fields = {
+                "rod": self.rods.index(rod),
+                "obstacle": number,
+                "distance": f"{self.name}_k_distance_{number}",
+            }
+            entries.append(_initialiser(fields))
+        return _table("pair_entry", "PAIR", "PAIRS", entries)
+
+    def _arrangement(self, number: int, equations: ContactEquations) -> str:
+        lines = [f"\n/* {described(equations)} */"]
+        model = equations.nominal.model
+        elements = []
+        first_node = 0
+        for rod_number, name in enumerate(self.rods):
+            discretisation = model.discretisation[name]
+            rod = model.discrete.rods[name]
+            suffix = f"{number}_{rod_number}"
+            places = self._places_of_ends(equations, name)
+            lines.append(f"static const int PLACES_{suffix}[] = {{{numbers(places)}}};")
+            lines.append(_reals(f"NOMINAL_{suffix}", np.array(discretisation.breaks)))
+            fields = {
+                "elements": rod.grid.elements,
+                "first_strain": model.discrete.unknowns.strain(name).start,
+                "first_node": first_node,
+                "place_of_end": f"PLACES_{suffix}",
+                "nominal": f"NOMINAL_{suffix}",
+            }
+            elements.append(_initialiser(fields))
+            first_node += rod.grid.size
+        lines.append(_table("rod_elements", f"ELEMENTS_{number}", "RODS", elements))
+        if equations.state.touches:
+            lines.append(_table("contact_entry", f"TOUCHES_{number}", "", self._touches(equations)))
+        return "\n".join(lines)
+
+    def _places_of_ends(self, equations: ContactEquations, rod: str) -> list[int]:
+        """For each end of an element of a rod the number of the place that it is; −1 where it stays."""
+        places: dict[float, int] = {}
+        number = 0
+        for touch in equations.state.touches:
+            for place in touch.moving:
+                if touch.rod == rod:
+                    places[float(place)] = number
+                number += 1
+        return [places.get(end, -1) for end in equations.nominal.model.discretisation[rod].breaks]
+
+    def _touches(self, equations: ContactEquations) -> list[str]:
+        entries = []
+        first_force = 0
+        first_place = 0
+        for touch in equations.state.touches:
+            along = touch.moment_count(equations.nominal.modes[touch.rod]) if touch.is_line else 0
+            fields = {
+                "rod": self.rods.index(touch.rod),
+                "obstacle": self.obstacles.index(touch.obstacle),
+                "is_line": int(touch.is_line),
+                "ends": len(touch.ends),
+                "moving": len(touch.moving),
+                "first_force": first_force,
+                "along": along,
+                "first_place": first_place,
+            }
+            entries.append(_initialiser(fields))
+            first_force += len(touch.ends) + along
+            first_place += len(touch.moving)
+        return entries
+
+    def _arrangement_table(self) -> str:
+        entries = []
+        for number, equations in enumerate(self.chosen.equations):
+            unknowns, forces, places = self.sizes(equations)
+            touches = len(equations.state.touches)
+            fields: dict[str, object] = {
+                "size": unknowns + forces + places,
+                "unknowns": unknowns,
+                "strains": equations.nominal.model.discrete.unknowns.count(BlockKind.STRAIN),
+                "forces": forces,
+                "places": places,
+                "touches": touches,
+                "touch": f"TOUCHES_{number}" if touches else "0",
+                "rods": f"ELEMENTS_{number}",
+            }
+            for word in WORDS:
+                fields[word] = f"{self.name}_k_{number}_{word}"
+            entries.append(_initialiser(fields))
+        return "\n" + _table("arrangement", "ARRANGEMENT", "ARRANGEMENTS", entries)
+
+    def _start(self) -> str:
+        given = self.chosen.given.tolist() or [0.0]
+        lines = [
+            "\n/* The solution of the scene's own inputs. */",
+            f"enum {{ START_ARRANGEMENT = {self.chosen.start} }};",
+            _reals("START_Z", self.chosen.z),
+            _reals("START_INPUTS", np.array(given)),
+        ]
+        return "\n".join(lines)
+
+
+def described(equations: ContactEquations) -> str:
+    """Who touches what in an arrangement, in words."""
+    words = []
+    for touch in equations.state.touches:
+        where = "at its tip" if touch.reaches_tip else "at a point"
+        if touch.is_line:
+            where = "along a line to its tip" if touch.reaches_tip else "along a line"
+        words.append(f"{touch.rod} touches {touch.obstacle} {where}")
+    return ", ".join(words) or "no contact"
+
+
+def _reals(name: str, values: FloatArray) -> str:
+    return f"static const real {name}[] = {{{numbers([float(value) for value in values])}}};"
+
+
+def _initialiser(fields: Mapping[str, object]) -> str:
+    return "{" + ", ".join(f".{name} = {value}" for name, value in fields.items()) + "}"
+
+
+def _table(kind: str, name: str, size: str, entries: list[str]) -> str:
+    lines = ",\n".join(f"    {entry}" for entry in entries)
+    return f"static const {kind} {name}[{size}] = {{\n{lines},\n}};"
