@@ -7,7 +7,7 @@ import casadi as ca
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.inputs import load_values
-from cosserat_casadi.model.load_assembly import input_value, input_values
+from cosserat_casadi.model.load_inputs import input_value, input_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.rod.actuation import Actuation
 from cosserat_casadi.rod.kinematics import shape

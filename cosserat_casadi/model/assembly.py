@@ -34,12 +34,12 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.constraints.section_constraint import Variations
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
+from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
 from cosserat_casadi.model.constraints import ASSEMBLED, PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
 from cosserat_casadi.model.frame_pose import FramePose, turn_matrix
 from cosserat_casadi.model.homotopy import Compliance, LoadFactor, column_at, row_at, spring
-from cosserat_casadi.model.load_assembly import BodyLoad, BodyLoads
 from cosserat_casadi.model.system import System
 from cosserat_casadi.model.unknowns import Unknowns
 from cosserat_casadi.rod.reaction import Reaction

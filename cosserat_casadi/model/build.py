@@ -19,8 +19,8 @@ from cosserat_casadi.model.discrete_scene import DiscreteScene, discrete_scene, 
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.functions import ModelFunctions
 from cosserat_casadi.model.inputs import InputLayout, input_layout
-from cosserat_casadi.model.load_assembly import loads_have_potential
 from cosserat_casadi.model.load_checks import check_loads
+from cosserat_casadi.model.load_potential import loads_have_potential
 from cosserat_casadi.model.motion_functions import MotionFunctions
 from cosserat_casadi.model.obstacle_checks import check_obstacles
 from cosserat_casadi.model.parameters import ParameterLayout, parameter_layout

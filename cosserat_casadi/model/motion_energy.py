@@ -20,7 +20,8 @@ from cosserat_casadi.maths.numbers import as_matrix
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.load_assembly import BodyLoad, BodyLoads, is_dead_force
+from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
+from cosserat_casadi.model.load_potential import is_dead_force
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import MotionArguments, System
 from cosserat_casadi.rod.motion import AT_REST, FrameMotion, RodMotion, StrainRates

@@ -16,8 +16,8 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem
 from cosserat_casadi.maths.numbers import as_vector, known
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.body_loads import BodyLoads
 from cosserat_casadi.model.floating_frames import FLAT, FrameName
-from cosserat_casadi.model.load_assembly import BodyLoads
 from cosserat_casadi.model.system import System
 
 

@@ -27,7 +27,8 @@ from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.model.frame_motion import BodyInertia, FloatingFrameMotion, QuaternionMotion, body_inertia
 from cosserat_casadi.model.frame_pose import FramePose
 from cosserat_casadi.model.homotopy import LoadFactor, scaled, scaled_effort, smoothing_at
-from cosserat_casadi.model.load_assembly import RodBase, RodLoads, input_value, input_values
+from cosserat_casadi.model.load_assembly import RodBase, RodLoads
+from cosserat_casadi.model.load_inputs import input_value, input_values
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.rods import written_base_pose
 from cosserat_casadi.rod.actuation import Actuation, Conjugate, Quantity
