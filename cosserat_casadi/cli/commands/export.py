@@ -29,6 +29,7 @@ from cosserat_casadi.files import check_writable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import discretise
 from cosserat_casadi.model.load_cases import case_layout
+from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.page.page import export_page
 from cosserat_casadi.page.webassembly import find_wasm_compiler
 from cosserat_casadi.scene import read_scene
@@ -92,11 +93,11 @@ def export(
         check_export(output, name)
     if page is not None:
         check_writable(page, "--page")
-        find_wasm_compiler()
     if fmu is not None:
         check_fmu(fmu)
     moves = dynamics or fmu is not None
     exported_scene = read_scene(scene, tuple(settings or ()))
+    refuse_tubes(exported_scene)
     cases = None
     if output is not None:
         check_contact(exported_scene, {"derivatives": derivatives, "dynamics": dynamics, "stability": stability})
@@ -109,6 +110,9 @@ def export(
     scene_names(name, exported_scene)
     if stability:
         check_stability(build(exported_scene, discretise(exported_scene, 1, 2)))
+    if page is not None:
+        # Last: a scene that has no page has none with a compiler either.
+        find_wasm_compiler()
 
     # Bases that are free in a motion are held where the scene puts them: without that there is no equilibrium.
     solution = solve_with_progress(exported_scene.held() if moves else exported_scene)
