@@ -40,6 +40,7 @@ SCENES = (
     "wire_in_vessel",
     "felt_loads",
     "concentric_tubes",
+    "loaded_tubes",
     "reach_past_bar",
     "felt_contact",
 )

@@ -92,7 +92,7 @@ inputs = ["push.force", "cable.tension"]
     joints: tuple[Joint, ...] = Field((), description="joints between tips of rods and bodies")
     obstacles: tuple[Obstacle, ...] = Field((), description="what rods may not enter, or leave; without friction")
     tubes: Annotated[tuple[Tube, ...], NotEmpty()] = Field(
-        (), description="concentric tubes, instead of rods and of all that acts on them"
+        (), description="concentric tubes, instead of rods; of what acts on these, loads alone"
     )
     targets: tuple[Target, ...] = Field((), description="where sections and bodies are to be, for the inverse problem")
     bounds: tuple[Bound, ...] = Field((), description="ranges of inputs that the inverse problem looks for")

@@ -128,6 +128,15 @@ class TubeFunctions(ABC):
         return self._function("input_jacobian", {"input_jacobian": ca.jacobian(self._residual, inputs)})
 
     @cached_property
+    def input_rate(self) -> ca.Function:
+        """(x, inputs, load_factor, change) ↦ change of the residual with a change of the inputs, a column."""
+        _, inputs, _ = self._arguments
+        change = ca.MX.sym("change", inputs.size1())
+        rate = ca.jtimes(self._residual, inputs, change)
+        names = ["x", "inputs", "load_factor", "change"]
+        return ca.Function("input_rate", [*self._arguments, change], [rate], names, ["input_rate"])
+
+    @cached_property
     def load_rate(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ derivative of the residual with the load factor, a column."""
         _, _, load_factor = self._arguments

@@ -140,18 +140,18 @@ class LoadedSection:
         quaternion = quaternion_product(state.pose.quaternion, arc.quaternion)
         return replace(state, torques=torques, pose=Pose(state.pose.position, quaternion), energy=energy)
 
-    def step(self, state: LoadedState, length: Matrix) -> LoadedState:
-        """A step of order eight along a length, which is negative towards the base."""
-        before: Matrix = ca.DM(0.0)
-        for share in SHARES:
-            stage = share * length
-            # Halves of neighbouring stages are one.
-            state = self.loaded(state, (before + stage) / 2)
-            state = self.moved(state, stage / 2)
-            state = self.bent(state, stage)
-            state = self.moved(state, stage / 2)
-            before = stage
-        return self.loaded(state, before / 2)
+    def stage(self, state: LoadedState, before: Matrix, length: Matrix) -> LoadedState:
+        """A stage of a step along a length, without the last half of what the moment does: the next stage takes it.
+
+        Args:
+            state: where it begins.
+            before: length of the stage before.
+            length: of this one.
+        """
+        state = self.loaded(state, (before + length) / 2)
+        state = self.moved(state, length / 2)
+        state = self.bent(state, length)
+        return self.moved(state, length / 2)
 
 
 @cache
@@ -167,6 +167,7 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
         potential: whether the work of the loads counts in the energy.
     """
     state = ca.SX.sym("state", 2 * size + 12)
+    before = ca.SX.sym("before")
     length = ca.SX.sym("length")
     cuts = [0, size, 2 * size, 2 * size + 1, 2 * size + 2, 2 * size + 5]
     if spread:
@@ -174,5 +175,17 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
     stacked = ca.SX.sym("section", cuts[-1])
     torsion, moments, bending, own, force, *weight = ca.vertsplit(stacked, cuts)
     section = LoadedSection(torsion, moments, bending, own, force, weight[0] if spread else None, potential)
-    after = section.step(LoadedState.of(state), length)
-    return ca.Function("loaded_step", [state, length, stacked], [after.stacked])
+    begun = LoadedState.of(state)
+    stage = ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked])
+    last = ca.Function("last", [state, length, stacked], [section.loaded(begun, length / 2).stacked])
+
+    # One stage is written once, and serves all of a step.
+    whole = ca.MX.sym("length")
+    start = ca.MX.sym("state", 2 * size + 12)
+    here = ca.MX.sym("section", cuts[-1])
+    shares = ca.DM(SHARES).T
+    shares_before = ca.horzcat(0, shares[:-1])
+    stages = stage.mapaccum("stages", len(SHARES))
+    passed = stages(start, whole * shares_before, whole * shares, ca.repmat(here, 1, len(SHARES)))
+    after = last(passed[:, -1], whole * shares[-1], here)
+    return ca.Function("loaded_step", [start, whole, here], [after])

@@ -220,7 +220,7 @@ class _Way:
         path = Path(
             residual=lambda x, t: np.ravel(model.residual(x, self.inputs(t), 1.0).full()),
             jacobian=lambda x, t: model.jacobian(x, self.inputs(t), 1.0)[0].full(),
-            rate=lambda x, t: model.input_jacobian(x, self.inputs(t), 1.0).full() @ change,
+            rate=lambda x, t: np.ravel(model.input_rate(x, self.inputs(t), 1.0, change).full()),
             start=first.x,
         )
         settings = TURNING

@@ -104,7 +104,7 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
     path = Path(
         residual=lambda x, t: np.ravel(model.residual(x, model.robot.with_loads(inputs, t), 1.0).full()),
         jacobian=lambda x, t: model.jacobian(x, model.robot.with_loads(inputs, t), 1.0)[0].full(),
-        rate=lambda x, t: model.input_jacobian(x, model.robot.with_loads(inputs, t), 1.0).full() @ change,
+        rate=lambda x, t: np.ravel(model.input_rate(x, model.robot.with_loads(inputs, t), 1.0, change).full()),
         start=start,
     )
     end = follow(path)
