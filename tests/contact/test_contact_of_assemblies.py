@@ -455,6 +455,40 @@ def test_a_ball_lifts_off_where_it_came_down(lowered: ContactPath) -> None:
     assert_allclose(1.0 - 0.95 * event.factor, lowered.events[0].factor, rtol=0, atol=1e-8)
 
 
+@pytest.mark.parametrize("share", [0.46, pytest.param(0.4786, marks=pytest.mark.slow)])
+def test_along_a_path_a_point_slides_from_one_rod_to_the_next(share: float) -> None:
+    """As along one rod: at the same loads it touches, and ends with the same place, force and stability."""
+    growing = ("push.force", [0.0, 0.0, -2.0])
+    whole = follow_path(build(parse_scene(HEAD + ROD + PUSH + BAR)), *growing)
+    cut = follow_path(build(parse_scene(HEAD + chain(share))), *growing)
+    assert [event.kind for event in cut.events] == ["touch", "slide_over_joint"]
+    assert_allclose(cut.events[0].factor, whole.events[0].factor, rtol=0, atol=1e-9)
+    (expected,) = whole.contacts(-1)
+    (contact,) = cut.contacts(-1)
+    assert contact.rod == "rod"
+    assert_allclose(share + (1 - share) * contact.start, expected.start, rtol=0, atol=1e-9)
+    assert_allclose(contact.ends, expected.ends, rtol=1e-8, atol=0)
+    # At the event its place on the first rod is a little before the joint, as it is along the whole one.
+    at_event = np.interp(cut.events[1].factor, whole.factor, [_place(whole, i) for i in range(len(whole.factor))])
+    assert_allclose(at_event, share, rtol=0, atol=2e-3)
+
+
+def _place(path: ContactPath, index: int) -> float:
+    """Where the one contact of a point of a path begins, NaN without any."""
+    contacts = path.contacts(index)
+    return contacts[0].start if contacts else np.nan
+
+
+def test_a_point_slides_back_over_the_joint() -> None:
+    """Against the force that has drawn it on to the second rod another draws it back."""
+    lift = PUSH.replace('"push"', '"lift"').replace("-1.0", "0.0")
+    model = build(parse_scene(HEAD + chain(0.46) + lift))
+    path = follow_path(model, "lift.force", [0.0, 0.0, 0.95])
+    assert [event.kind for event in path.events] == ["slide_over_joint", "lift_off"]
+    back = path.events[0].contact
+    assert back is not None and back.rod == "rod"
+
+
 # Results
 
 
