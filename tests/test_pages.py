@@ -41,6 +41,7 @@ LONG = (
     "cosserat identify examples/wire_from_shapes.toml --hold-out",
     "cosserat export examples/tendon_robot_move.toml",
     "cosserat inverse examples/reach_past_bar.toml",
+    "cosserat solve examples/robot_leans_on_wall.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 

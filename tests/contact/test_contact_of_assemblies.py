@@ -19,6 +19,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_gap, body_pairs, gap_a
 from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.results.path_file import path_result
@@ -286,6 +287,52 @@ def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
     wrench = tree.base_wrench("rod")
     assert_allclose(wrench.force, -np.sum(forces, axis=0), rtol=0, atol=1e-9)
     assert_allclose(wrench.moment, -np.sum(moments, axis=0), rtol=0, atol=1e-8)
+
+
+HEAVY = """
+[[rods]]
+name = "first"
+length = 0.9
+strain = "planar"
+stiffness = { bending_y = 0.03 }
+linear_density = 0.1
+base = { tangent = [1, 0, 0] }
+[[rods]]
+name = "rod"
+length = 0.3
+strain = "planar"
+stiffness = { bending_y = 0.03 }
+linear_density = 0.1
+base = { rod = "first" }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 1]
+"""
+
+
+def test_a_line_over_a_joint_is_not_settled_and_named() -> None:
+    lying = solve(build(parse_scene(HEAD + HEAVY)))
+    assert lying.outcome is Outcome.CONTACT_UNSETTLED
+    assert "'first' and 'rod' lie on 'table' on both sides of their joint" in lying.message
+    assert not lying.stable
+
+
+def test_a_line_on_the_last_rod_of_a_chain_is_that_of_one_rod() -> None:
+    """Where the first rod ends in the air, the second lies on the table as the end of one rod does."""
+    cut = solved(HEAVY.replace("length = 0.9", "length = 0.4").replace("length = 0.3", "length = 0.8"))
+    whole = HEAVY[: HEAVY.index('[[rods]]\nname = "rod"')] + HEAVY[HEAVY.index("[[loads]]") :]
+    one = solved(whole.replace("length = 0.9", "length = 1.2"))
+    (contact,) = cut.contacts
+    (expected,) = one.contacts
+    assert contact.kind == expected.kind == "line"
+    assert_allclose(0.4 + 0.8 * contact.start, 1.2 * expected.start, rtol=0, atol=1e-6)
+    assert_allclose(contact.force, expected.force, rtol=0, atol=1e-6)
 
 
 # Bodies
