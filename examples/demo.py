@@ -38,6 +38,7 @@ SCENES = (
     "rod_on_table",
     "rod_over_bar",
     "wire_in_vessel",
+    "robot_leans_on_wall",
     "felt_loads",
     "concentric_tubes",
     "loaded_tubes",

@@ -42,6 +42,7 @@ LONG = (
     "cosserat export examples/tendon_robot_move.toml",
     "cosserat inverse examples/reach_past_bar.toml",
     "cosserat path examples/loaded_tubes.toml",
+    "cosserat solve examples/robot_leans_on_wall.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
 

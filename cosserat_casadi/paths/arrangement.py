@@ -19,7 +19,7 @@ from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, bod
 from cosserat_casadi.equilibrium.contact.passage import SECTIONS, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
-from cosserat_casadi.equilibrium.contact.state import ContactState, Touch
+from cosserat_casadi.equilibrium.contact.state import ContactState, Touch, continuations
 from cosserat_casadi.equilibrium.contact.verdict import FLAT
 from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.equilibrium.stability import Variations, admissible_eigenvalues, restricted, variations
@@ -97,6 +97,11 @@ class Arrangement:
     def tolerance(self) -> float:
         """Depth, pull and the like, relative, up to which it is valid."""
         return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
+
+    @cached_property
+    def following(self) -> dict[str, str]:
+        """Rods that go on where others end, by the names of these."""
+        return continuations(self.scene)
 
     def inputs(self, load_factor: float) -> FloatArray:
         """Stacked inputs of the scene at a load factor."""

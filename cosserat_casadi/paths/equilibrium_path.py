@@ -71,6 +71,7 @@ CONTACT_WORDS = {
     "line_to_point": "line to point",
     "slide_to_tip": "slide to the tip",
     "slide_from_tip": "slide from the tip",
+    "slide_over_joint": "slide over a joint",
 }
 """Kinds of events that are changes of contact, in words."""
 

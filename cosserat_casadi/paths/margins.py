@@ -22,6 +22,9 @@ from cosserat_casadi.paths.gaps_along import GapsAlong
 OPEN = 0.005
 """Least width of a line of contact, and least distance of a moving place from the tip, along a path."""
 
+OVER_JOINT = 2e-4
+"""Least distance of the place of a point from the joint of two rods, one of which goes on where the other ends."""
+
 NEAR = 0.01
 """Distance along the rod from a contact within which its own margins watch the gap."""
 
@@ -48,6 +51,7 @@ class Watch(Enum):
     CURVATURE = "second derivative of the gap at a point: below zero the rod lies down"
     SLOPE = "fall of the gap towards a tip that touches: below zero a section inwards is nearer"
     TO_TIP = "distance of the last moving place of a contact from the tip"
+    TO_BASE = "distance of a point from the base of a rod that goes on where another ends"
     WIDTH = "length of a line of contact"
 
 
@@ -97,7 +101,11 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
             found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
         if touch.moving:
             last = float(touch.moving[-1])
-            found[Key(Watch.TO_TIP, number, pair)] = Margin(TIP - last - OPEN, last)
+            passes = touch.rod in arrangement.following and not touch.is_line
+            least = OVER_JOINT if passes else OPEN
+            found[Key(Watch.TO_TIP, number, pair)] = Margin(TIP - last - least, last)
+            if touch.rod in arrangement.following.values() and not touch.is_line:
+                found[Key(Watch.TO_BASE, number, pair)] = Margin(last - OVER_JOINT, last)
         if touch.is_line:
             width = touch.end - touch.start
             pressure = chebyshev.legendre_polynomials(len(line), SAMPLES) @ line

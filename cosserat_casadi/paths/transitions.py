@@ -21,7 +21,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Plane, plane_through
 from cosserat_casadi.numerics.events import Arc
 from cosserat_casadi.paths.arrangement import Arrangement
-from cosserat_casadi.paths.margins import OPEN, Key, Watch, margins, violated
+from cosserat_casadi.paths.margins import OPEN, OVER_JOINT, Key, Watch, margins, violated
 
 WIDER = 4.0
 """Width, in units of the least one, with which a line or a distance from the tip begins."""
@@ -103,6 +103,13 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         yield _replaced("line_to_point", touch, others, Touch.point(touch.obstacle, touch.rod, X), Watch.CURVATURE)
     elif key.watch is Watch.TO_TIP and touch.is_line:
         yield _replaced("slide_to_tip", touch, others, replace(touch, end=TIP), Watch.FORCE)
+    elif key.watch is Watch.TO_TIP and touch.rod in arrangement.following:
+        beyond = Touch.point(touch.obstacle, arrangement.following[touch.rod], WIDER * OVER_JOINT)
+        yield _passed_on(touch, others, beyond, Watch.TO_BASE)
+    elif key.watch is Watch.TO_BASE:
+        before = next(first for first, second in arrangement.following.items() if second == touch.rod)
+        beyond = Touch.point(touch.obstacle, before, TIP - WIDER * OVER_JOINT)
+        yield _passed_on(touch, others, beyond, Watch.TO_TIP)
     elif key.watch is Watch.TO_TIP:
         yield _replaced("slide_to_tip", touch, others, Touch.point(touch.obstacle, touch.rod, TIP), Watch.SLOPE)
     elif key.watch is Watch.SLOPE:
@@ -135,6 +142,13 @@ def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Wat
     last = len(new.ends) - 1 if watch is Watch.FORCE else 0
     grows = Key(watch, _number(following, new), (new.rod, new.obstacle), last)
     return Change(kind, old, following, grows, located=True)
+
+
+def _passed_on(old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Change:
+    """A point on the next rod of a chain, met a little beyond the joint."""
+    following = ContactState.of([*others, new])
+    grows = Key(watch, _number(following, new), (new.rod, new.obstacle))
+    return Change("slide_over_joint", old, following, grows, ((new, 0, 1.0),), float(new.start))
 
 
 def _opened(kind: str, old: Touch, others: list[Touch], new: Touch) -> Change:

@@ -27,6 +27,7 @@ MARKERS = {
     "line_to_point": "P",
     "slide_to_tip": ">",
     "slide_from_tip": "<",
+    "slide_over_joint": "X",
 }
 """Marker of each kind of event."""
 

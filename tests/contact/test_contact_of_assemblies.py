@@ -19,6 +19,7 @@ from cosserat_casadi.equilibrium.contact.gaps import body_gap, body_pairs, gap_a
 from cosserat_casadi.equilibrium.contact.state import state_in, without_contacts
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.paths.contact_path import ContactPath
 from cosserat_casadi.plots.scene_plot import save_plot
 from cosserat_casadi.results.path_file import path_result
@@ -288,6 +289,52 @@ def test_a_tree_whose_fruit_and_branch_touch_is_in_balance() -> None:
     assert_allclose(wrench.moment, -np.sum(moments, axis=0), rtol=0, atol=1e-8)
 
 
+HEAVY = """
+[[rods]]
+name = "first"
+length = 0.9
+strain = "planar"
+stiffness = { bending_y = 0.03 }
+linear_density = 0.1
+base = { tangent = [1, 0, 0] }
+[[rods]]
+name = "rod"
+length = 0.3
+strain = "planar"
+stiffness = { bending_y = 0.03 }
+linear_density = 0.1
+base = { rod = "first" }
+[[loads]]
+name = "weight"
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+[[obstacles]]
+name = "table"
+kind = "plane"
+point = [0, 0, -0.08]
+normal = [0, 0, 1]
+"""
+
+
+def test_a_line_over_a_joint_is_not_settled_and_named() -> None:
+    lying = solve(build(parse_scene(HEAD + HEAVY)))
+    assert lying.outcome is Outcome.CONTACT_UNSETTLED
+    assert "'first' and 'rod' lie on 'table' on both sides of their joint" in lying.message
+    assert not lying.stable
+
+
+def test_a_line_on_the_last_rod_of_a_chain_is_that_of_one_rod() -> None:
+    """Where the first rod ends in the air, the second lies on the table as the end of one rod does."""
+    cut = solved(HEAVY.replace("length = 0.9", "length = 0.4").replace("length = 0.3", "length = 0.8"))
+    whole = HEAVY[: HEAVY.index('[[rods]]\nname = "rod"')] + HEAVY[HEAVY.index("[[loads]]") :]
+    one = solved(whole.replace("length = 0.9", "length = 1.2"))
+    (contact,) = cut.contacts
+    (expected,) = one.contacts
+    assert contact.kind == expected.kind == "line"
+    assert_allclose(0.4 + 0.8 * contact.start, 1.2 * expected.start, rtol=0, atol=1e-6)
+    assert_allclose(contact.force, expected.force, rtol=0, atol=1e-6)
+
+
 # Bodies
 
 
@@ -453,6 +500,40 @@ def test_a_ball_lifts_off_where_it_came_down(lowered: ContactPath) -> None:
     (event,) = lifted.events
     assert event.kind == "lift_off"
     assert_allclose(1.0 - 0.95 * event.factor, lowered.events[0].factor, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("share", [0.46, pytest.param(0.4786, marks=pytest.mark.slow)])
+def test_along_a_path_a_point_slides_from_one_rod_to_the_next(share: float) -> None:
+    """As along one rod: at the same loads it touches, and ends with the same place, force and stability."""
+    growing = ("push.force", [0.0, 0.0, -2.0])
+    whole = follow_path(build(parse_scene(HEAD + ROD + PUSH + BAR)), *growing)
+    cut = follow_path(build(parse_scene(HEAD + chain(share))), *growing)
+    assert [event.kind for event in cut.events] == ["touch", "slide_over_joint"]
+    assert_allclose(cut.events[0].factor, whole.events[0].factor, rtol=0, atol=1e-9)
+    (expected,) = whole.contacts(-1)
+    (contact,) = cut.contacts(-1)
+    assert contact.rod == "rod"
+    assert_allclose(share + (1 - share) * contact.start, expected.start, rtol=0, atol=1e-9)
+    assert_allclose(contact.ends, expected.ends, rtol=1e-8, atol=0)
+    # At the event its place on the first rod is a little before the joint, as it is along the whole one.
+    at_event = np.interp(cut.events[1].factor, whole.factor, [_place(whole, i) for i in range(len(whole.factor))])
+    assert_allclose(at_event, share, rtol=0, atol=2e-3)
+
+
+def _place(path: ContactPath, index: int) -> float:
+    """Where the one contact of a point of a path begins, NaN without any."""
+    contacts = path.contacts(index)
+    return contacts[0].start if contacts else np.nan
+
+
+def test_a_point_slides_back_over_the_joint() -> None:
+    """Against the force that has drawn it on to the second rod another draws it back."""
+    lift = PUSH.replace('"push"', '"lift"').replace("-1.0", "0.0")
+    model = build(parse_scene(HEAD + chain(0.46) + lift))
+    path = follow_path(model, "lift.force", [0.0, 0.0, 0.95])
+    assert [event.kind for event in path.events] == ["slide_over_joint", "lift_off"]
+    back = path.events[0].contact
+    assert back is not None and back.rod == "rod"
 
 
 # Results

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import product
 
 import numpy.typing as npt
 
@@ -12,7 +13,7 @@ from cosserat_casadi.equilibrium.contact.approach import approach, first_state
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.passage import passes_through
 from cosserat_casadi.equilibrium.contact.settle import Settling
-from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, continuations, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
 from cosserat_casadi.equilibrium.solution import Solution
@@ -23,6 +24,9 @@ from cosserat_casadi.numerics.progress import Progress
 
 LEAST_TOLERANCE = 1e-9
 """Depth and pull, relative, below which rounding decides."""
+
+BESIDE_JOINT = 0.15
+"""Distance from the joint of two rods, of a stretch that soft cushions hold off, within which it lies on both."""
 
 
 def solve_contact(
@@ -59,13 +63,30 @@ def solve_contact(
     if not cushioned.converged:
         # Short of the full load there is nothing whose contacts could be found.
         return replace(cushioned, iterations=settling.iterations)
-    found, holds = settling.run(first_state(cushioned), cushioned)
+    first = first_state(cushioned)
+    found, holds = settling.run(first, cushioned)
     if found is None:
         found = settling.solve(ContactState(()), cushioned)
     if found is None:
         unsettled = Outcome.CONTACT_UNSETTLED
-        return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=unsettled.value)
+        message = unsettled.value + _over_joints(bare, first)
+        return replace(cushioned, iterations=settling.iterations, outcome=unsettled, message=message)
     solution = judged(found, holds=holds, iterations=settling.iterations, tolerance=settings.tolerance)
     if solution.converged and PATH_OF_ENERGY in cushioned.message:
         return replace(solution, message=solution.message + PATH_OF_ENERGY)
+    if not holds:
+        return replace(solution, message=solution.message + _over_joints(bare, first))
     return solution
+
+
+def _over_joints(scene: scenes.Scene, state: ContactState) -> str:
+    """A sentence on a stretch that lies on an obstacle on both sides of a joint; nothing where there is none."""
+    for first, second in continuations(scene).items():
+        for before, after in product(state.along(first), state.along(second)):
+            meets = before.end > TIP - BESIDE_JOINT and after.start < BESIDE_JOINT
+            if meets and before.obstacle == after.obstacle and (before.is_line or after.is_line):
+                return (
+                    f" {first!r} and {second!r} lie on {before.obstacle!r} on both sides of their joint: a line of "
+                    "contact is not found over a joint. Give the obstacles a width, m, or make one rod of the two."
+                )
+    return ""

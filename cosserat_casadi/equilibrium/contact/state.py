@@ -206,6 +206,20 @@ class ContactState:
         return loads
 
 
+def continuations(scene: scenes.Scene) -> dict[str, str]:
+    """Rods by the name of the rod whose tip they start from and whose line they go on without a corner."""
+    following = {}
+    for rod in scene.rods:
+        base = rod.base
+        if base.rod is None or base.at != TIP or any(base.position):
+            continue
+        # About its own axis it may be turned as it likes.
+        _, x, y, _ = base.quaternion
+        if x == 0.0 and y == 0.0:
+            following[base.rod] = rod.name
+    return following
+
+
 def with_contacts(scene: scenes.Scene, state: ContactState, modes: Mapping[str, int]) -> scenes.Scene:
     """The scene with the forces of its contacts as loads, whose magnitudes are inputs."""
     loads = state.loads(scene, modes)
