@@ -11,10 +11,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeAlias
 
 import casadi as ca
 
-from cosserat_casadi.codegen.columns import COLUMNS, LANES, TURNS, ColumnForm
+from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
 from cosserat_casadi.codegen.listing import (
     Called,
     Computed,
@@ -33,7 +34,7 @@ FEWEST = 3
 HEADER = "fours.h"
 
 PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define {name}_SZ_ARG 3
+#define {name}_SZ_ARG {arguments}
 #define {name}_SZ_RES 1
 #define {name}_SZ_IW 0
 #define {name}_SZ_W {reals}
@@ -67,6 +68,14 @@ class InFours:
         """How many statements there are."""
         return self.statements
 
+    def prototype(self) -> str:
+        """Its declaration, and what it asks for."""
+        return PROTOTYPE.format(name=self.name(), arguments=self.signature.n_in(), reals=self.reals)
+
+
+Kernel: TypeAlias = ca.Function | InFours
+"""A kernel that CasADi writes, or one that is written here."""
+
 
 @dataclass(frozen=True)
 class SourcesInFours:
@@ -97,7 +106,7 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
     }
     bodies = "\n".join(kernel.body for kernel in kernels)
     head = "/* Included once for each width of vectors. */\n"
-    prototypes = "".join(PROTOTYPE.format(name=kernel.name(), reals=kernel.reals) for kernel in kernels)
+    prototypes = "".join(kernel.prototype() for kernel in kernels)
     included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
 
@@ -113,6 +122,16 @@ def in_fours(function: ca.Function, signature: ca.Function) -> InFours:
         UnknownOperationError: there is an operation that has no form here.
     """
     return _Writing(Listing(function), signature, None).result()
+
+
+def with_calls_in_fours(kernel: ca.Function) -> Kernel:
+    """A kernel of which calls of one function are made together; itself where it has none, or no form here."""
+    if not kernel.is_a("SXFunction") or not kernel.find_functions(0):
+        return kernel
+    try:
+        return in_fours(kernel, kernel)
+    except UnknownOperationError:
+        return kernel
 
 
 def columns_in_fours(form: ColumnForm, signature: ca.Function) -> InFours:
@@ -177,7 +196,8 @@ class _Writing:
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
-            tables = _table(f"{self.name}_turns", self.form.turns)
+            if self.form.turns_behind is None:
+                tables = _table(f"{self.name}_turns", self.form.turns)
             self._write_columns(self.form)
         self._write_results()
         head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
@@ -198,7 +218,7 @@ class _Writing:
         """For each value whether it is one of each column."""
         found: list[bool] = []
         for number, value in enumerate(self.listing.values):
-            of_turns = self.form is not None and isinstance(value, Read) and value.argument == TURNS
+            of_turns = self.form is not None and isinstance(value, Read) and value.argument == self.form.turns_argument
             found.append(of_turns or any(found[operand] for operand in self.listing.operands(number)))
         return found
 
@@ -317,7 +337,7 @@ class _Writing:
 
     def _is_of_all_columns(self, number: int) -> bool:
         value = self.listing.values[number]
-        return self.form is not None and isinstance(value, Read) and value.argument == COLUMNS
+        return self.form is not None and isinstance(value, Read) and value.argument == self.form.columns_argument
 
     def _text(self, number: int) -> str | None:
         """What a value without columns is called outside of variables."""
@@ -390,9 +410,14 @@ class _Writing:
             self._write(f"{names[-1]})({given}", lines)
             self.statements += len(block.statements)
         size = len(form.turns)
+        turns = f"{self.name}_turns"
+        start = 0
+        if form.turns_behind is not None:
+            turns = f"arg[{form.columns_argument - 1}]"
+            start = form.turns_behind
         for first in range(0, form.stride, LANES):
             for name in names:
-                given = f"w, {self.name}_turns + {size * first}, w + {self.columns + first}, w + {room}"
+                given = f"w, {turns} + {start + size * first}, w + {self.columns + first}, w + {room}"
                 self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
@@ -442,9 +467,7 @@ def _starts(sizes: Iterable[int]) -> list[int]:
 
 
 def _table(name: str, turns: FloatArray) -> str:
-    """The turns of four columns after those of the four before, one entry of the four after the other."""
-    entries, stride = turns.shape
-    ordered = turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2)
-    numbers = [f"{value:.17g}" for value in ordered.ravel()]
+    """The turns as a constant array."""
+    numbers = [f"{value:.17g}" for value in in_groups(turns)]
     lines = [", ".join(numbers[first : first + 8]) for first in range(0, len(numbers), 8)]
     return f"static const casadi_real {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n"

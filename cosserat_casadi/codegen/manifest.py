@@ -9,9 +9,8 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.fours import InFours
+from cosserat_casadi.codegen.fours import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
-from cosserat_casadi.codegen.kernels import Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import ARGUMENT_UNITS
