@@ -9,7 +9,8 @@ import casadi as ca
 
 from cosserat_casadi.codegen.blocks import Blocks, blocks
 from cosserat_casadi.codegen.column_parts import parted_by_columns
-from cosserat_casadi.codegen.fours import InFours, Kernel, with_calls_in_fours
+from cosserat_casadi.codegen.fours import with_calls_in_fours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.codegen.parameters import input_jacobian, with_parameters_behind_inputs
 from cosserat_casadi.codegen.parts import Parted, parted

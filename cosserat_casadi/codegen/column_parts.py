@@ -21,16 +21,17 @@ from cosserat_casadi.codegen.columns import (
     columned_jacobian,
     in_groups,
 )
-from cosserat_casadi.codegen.fours import InFours, columns_in_fours
+from cosserat_casadi.codegen.fours import columns_in_fours
+from cosserat_casadi.codegen.fours_sources import InFours
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
-from cosserat_casadi.codegen.streams import Line, Stream, names_of_part, shared
+from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, shared
 from cosserat_casadi.model.build import Model
 
 COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2
 """Numbers of the arguments of a function that parts share."""
 
-Alike = tuple[tuple[Line, ...], tuple[int, ...], tuple[int, ...]]
+Alike = tuple[Key, tuple[int, ...], tuple[int, ...]]
 """What parts share that compute alike: instructions, and entries that are read of columns and turns."""
 
 

@@ -15,7 +15,8 @@ import casadi as ca
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import in_columns
-from cosserat_casadi.codegen.fours import InFours, Kernel, columns_in_fours, in_fours, sources_in_fours
+from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.loops import in_loops

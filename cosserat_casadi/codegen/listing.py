@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from cosserat_casadi.maths.calls import called_functions
+
 BINARY = {ca.OP_ADD: "+", ca.OP_SUB: "-", ca.OP_MUL: "*", ca.OP_DIV: "/"}
 """Operations that four lanes have, as C writes them."""
 
@@ -93,11 +95,7 @@ class Listing:
         self.calls: list[Call] = []
         self.outputs: list[dict[int, int]] = [{} for _ in range(function.n_out())]
         self._known: dict[Value, int] = {}
-        # A call is known by the number of its arguments and results alone: that must tell functions apart.
-        callees = function.find_functions(0)
-        self._called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in callees}
-        if len(self._called) < len(callees):
-            raise UnknownOperationError("calls of functions that look alike")
+        self._called = called_functions(function)
         variables: dict[int, int] = {}
         for k in range(function.n_instructions()):
             self._add(k, variables)
@@ -116,6 +114,15 @@ class Listing:
         for output in self.outputs:
             yield from output.values()
 
+    def names_of_callees(self, prefix: str) -> dict[int, str]:
+        """A name for each function that is called, by its hash: its own, with a number where that is taken."""
+        functions = {hash(call.function): call.function for call in self.calls}
+        names: dict[int, str] = {}
+        for function_hash, function in functions.items():
+            name = prefix + function.name()
+            names[function_hash] = f"{name}_{len(names)}" if name in names.values() else name
+        return names
+
     def _add(self, k: int, variables: dict[int, int]) -> None:
         """Append the value, or the values, of the k-th instruction; variables are used again and again."""
         code = self.function.instruction_id(k)
@@ -128,7 +135,7 @@ class Listing:
         elif code == ca.OP_INPUT:
             variables[outputs[0]] = self._number(Read(*inputs))
         elif code == ca.OP_CALL:
-            self._call([variables[i] for i in inputs], outputs, variables)
+            self._call(self._called[k], [variables[i] for i in inputs], outputs, variables)
         else:
             variables[outputs[0]] = self._number(self._computed(code, [variables[i] for i in inputs]))
 
@@ -142,8 +149,7 @@ class Listing:
             raise UnknownOperationError(f"operation {code}")
         return Computed(code, tuple(operands))
 
-    def _call(self, operands: list[int], outputs: list[int], variables: dict[int, int]) -> None:
-        function = self._called[len(operands), len(outputs)]
+    def _call(self, function: ca.Function, operands: list[int], outputs: list[int], variables: dict[int, int]) -> None:
         results = [self._number(Called(len(self.calls), i)) for i in range(len(outputs))]
         self.calls.append(Call(function, operands, results))
         variables.update(zip(outputs, results, strict=True))

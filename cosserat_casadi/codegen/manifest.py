@@ -9,7 +9,7 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.fours import InFours, Kernel
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.model.build import Model

@@ -17,7 +17,7 @@ from cosserat_casadi.codegen.loops import in_loops, written
 from cosserat_casadi.codegen.numbered import Program
 from cosserat_casadi.codegen.programs import PartialProgram, alike, partial_program, shared_program
 from cosserat_casadi.codegen.steps import UnknownInstructionError, program_of
-from cosserat_casadi.codegen.streams import Line, Stream, names_of_part, scalars, shared, stacked
+from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, scalars, shared, stacked
 
 ARGUMENTS = ["x", "inputs", "factor", "constants"]
 
@@ -102,7 +102,7 @@ def _straight(function: ca.Function, places: Sequence[list[int]], name: str) -> 
     symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(3)]
     entries = function.call(symbols)[0].nonzeros()
     named = names_of_part(ARGUMENTS[:3])
-    groups: dict[tuple[Line, ...], list[tuple[Stream, list[int]]]] = {}
+    groups: dict[Key, list[tuple[Stream, list[int]]]] = {}
     for own in places:
         stream = Stream(ca.Function("part", symbols, [ca.vertcat(*[entries[i] for i in own])], *named))
         groups.setdefault(stream.key, []).append((stream, own))
@@ -151,7 +151,7 @@ def sharing(functions: Sequence[ca.Function], kernels: Sequence[ca.Function], na
     """
     # Common terms are shared afterwards: those of one rod may be equal by chance.
     streams = [Stream(stacked(function)) for function in functions]
-    groups: dict[tuple[Line, ...], list[int]] = {}
+    groups: dict[Key, list[int]] = {}
     for i, stream in enumerate(streams):
         groups.setdefault(stream.key, []).append(i)
     result = list(kernels)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 import casadi as ca
+
+from cosserat_casadi.maths.calls import called_functions
 
 FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
 """Operations that CasADi writes for a product with a constant; 1/x stands for such a quotient."""
@@ -12,6 +14,9 @@ FACTORS = {ca.OP_NEG: -1.0, ca.OP_TWICE: 2.0}
 Line = tuple[int, tuple[int, ...], int]
 """Operation, operands, number of results. Operands are numbers of earlier values, CONSTANT for the next constant, or
 what is read or written."""
+
+Key = tuple[tuple[Line, ...], tuple[Hashable, ...]]
+"""Lines, and the content of each function that is called."""
 
 CONSTANT = -1
 """Operand that is the next constant."""
@@ -59,10 +64,12 @@ class Stream:
         reads: for each argument the entries that are read; an argument of one entry is read whole.
         lines: the instructions.
         constants: value of every use of a constant, in order.
+        called: the function of every call, in order.
     """
 
     def __init__(self, function: ca.Function) -> None:
         self.function = function
+        self.called = list(called_functions(function).values())
         self.lines: list[Line] = []
         self.constants: list[float] = []
         codes = [function.instruction_id(k) for k in range(function.n_instructions())]
@@ -89,9 +96,15 @@ class Stream:
         return self.reads[1]
 
     @property
-    def key(self) -> tuple[Line, ...]:
-        """What streams share that compute alike."""
-        return tuple(self.lines)
+    def key(self) -> Key:
+        """What streams share that compute alike: their lines, and what they call."""
+        contents = {hash(callee): Stream(callee).content for callee in self.called}
+        return tuple(self.lines), tuple(contents[hash(callee)] for callee in self.called)
+
+    @property
+    def content(self) -> Hashable:
+        """What functions share that compute the same: the rods of a scene have functions of their own that do."""
+        return self.key, tuple(self.constants)
 
     def _add(self, k: int, code: int) -> None:
         """Append the line of the k-th instruction."""
@@ -148,12 +161,11 @@ def shared(streams: Sequence[Stream], name: str) -> tuple[ca.Function, list[list
 def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]) -> ca.SX:
     """The result of a stream in new symbols and constants."""
     next_constant = iter(constants)
-    # A call is known by the number of its arguments and results alone.
-    called = {(callee.nnz_in(), callee.nnz_out()): callee for callee in stream.function.find_functions(0)}
+    next_called = iter(stream.called)
     arguments = [_entries(symbol) for symbol in symbols]
     values = list[ca.SX]()
     results = [ca.SX(0.0)] * stream.function.nnz_out(0)
-    for code, operands, count in stream.lines:
+    for code, operands, _ in stream.lines:
         if code == ca.OP_INPUT:
             argument, entry = operands
             values.append(arguments[argument][entry])
@@ -163,7 +175,7 @@ def _replay(stream: Stream, symbols: Sequence[ca.SX], constants: Sequence[ca.SX]
         else:
             given = [next(next_constant) if value == CONSTANT else values[value] for value in operands]
             if code == ca.OP_CALL:
-                values += _call(called[len(given), count], given)
+                values += _call(next(next_called), given)
             else:
                 values.append(_apply(code, given))
     return ca.vertcat(*results)

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths import chebyshev
+from cosserat_casadi.maths.calls import called_functions
 from cosserat_casadi.maths.numbers import Scalar
 from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
@@ -455,15 +456,16 @@ def operations(function: ca.Function) -> int:
 
 
 def _operations(scalar: ca.Function) -> int:
-    # An instruction shows the sizes of the function that it calls, not its name: kernels differ in them.
-    called = {(f.nnz_in(), f.nnz_out()): _operations(f) for f in scalar.find_functions(0)}
+    called = called_functions(scalar)
+    inside: dict[int, int] = {}
     total = 0
     for i in range(scalar.n_instructions()):
         kind = scalar.instruction_id(i)
         if kind == ca.OP_CALL:
-            entries_in = len(scalar.instruction_input(i))
-            entries_out = len(scalar.instruction_output(i))
-            total += called[entries_in, entries_out]
+            callee = hash(called[i])
+            if callee not in inside:
+                inside[callee] = _operations(called[i])
+            total += inside[callee]
         elif kind not in (ca.OP_INPUT, ca.OP_OUTPUT, ca.OP_CONST):
             total += 1
     return total

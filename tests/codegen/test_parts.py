@@ -55,6 +55,21 @@ def test_parts_that_differ_in_constants_share_a_kernel_and_compute_the_whole() -
     assert_allclose(entries, whole(x, inputs, 0.4).full()[:, 0], rtol=1e-15, atol=0)
 
 
+def test_parts_that_call_functions_of_equal_counts_are_told_apart() -> None:
+    """Three parts that differ in what they call alone; two of their callees compute the same."""
+    a = ca.SX.sym("a")
+    callees = [ca.Function("callee", [a], [scale * ca.sin(a)], {"never_inline": True}) for scale in (2, 3, 2)]
+    x, inputs, factor = ca.SX.sym("x", 3), ca.SX.sym("inputs", 2), ca.SX.sym("factor")
+    entries = ca.vertcat(*[callee(x[i]) for i, callee in enumerate(callees)])
+    whole = ca.Function("f", [x, inputs, factor], [entries], ["x", "inputs", "factor"], ["entries"])
+    split = parted(whole, [0, 1, 2], "k")
+    assert [(part.kernel, part.entries) for part in split.parts] == [(0, [0]), (0, [2]), (1, [1])]
+    for part in split.parts:
+        found = split.kernels[part.kernel](np.array([0.3, 0.4, 0.5])[part.x], [], 1.0, part.constants)
+        expected = whole([0.3, 0.4, 0.5], [0.0, 0.0], 1.0)[part.entries]
+        assert_allclose(found.full(), expected.full(), rtol=1e-15, atol=0)
+
+
 def straight(name: str, *expressions: str) -> ca.Function:
     """A function of two arguments, with zeros in its results."""
     x, scale = ca.SX.sym("x", 5), ca.SX.sym("scale")
