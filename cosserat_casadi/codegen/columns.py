@@ -1,4 +1,4 @@
-"""The Jacobian of a rod's scene by columns: what computes one column computes four in the lanes of a vector.
+"""Jacobians by columns: what computes one column of a rod's variations computes four in the lanes of a vector.
 
 Column j of the variation of a field follows from the turns of the intervals with the j-th angular coordinate, and from
 nothing else that has a number j (rod/tangent.py). So the Jacobian falls into three parts:
@@ -6,105 +6,232 @@ nothing else that has a number j (rod/tangent.py). So the Jacobian falls into th
     what has no columns   functions of x, inputs and load factor
     columns               functions of those and of a column of turns, which is constant
     what remains          the Jacobian from its columns
+
+Parameters stand behind the inputs, as in all that the solver in C is given.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
+from cosserat_casadi.codegen.parameters import with_parameters_behind_inputs
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.equations import Equations
+from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.system import Arguments, System
 from cosserat_casadi.rod.tangent import Columns, Tangent
 
 LANES = 4
 """Columns that are computed together."""
 
-COLUMNS, TURNS = 3, 4
-"""Numbers of two arguments of :attr:`ColumnForm.function`."""
+GIVEN = ["x", "inputs", "load_factor"]
+"""Arguments of the equations."""
 
 
 @dataclass(frozen=True)
 class ColumnForm:
-    """A Jacobian by columns.
+    """A Jacobian, or some entries of one, by the columns of one rod.
 
     Attributes:
-        function: (x, inputs, load_factor, columns, turns) ↦ (jacobian, column). The column follows from the turns, and
-            the Jacobian from the matrix of all columns, one row of it after the other.
+        function: (x, inputs, load_factor, …, columns, turns) ↦ (jacobian, column). The column follows from the turns,
+            and the Jacobian from the matrix of all columns, one row of it after the other.
         turns: constant turns of all columns, shape (entries, stride), with zeros behind the last one.
         rows: rows of the matrix of columns.
+        turns_behind: None, or number of constants behind which the turns stand in the argument before the columns,
+            as :func:`in_groups` orders them; they may then differ from call to call.
     """
 
     function: ca.Function
     turns: FloatArray
     rows: int
+    turns_behind: int | None = None
 
     @property
     def stride(self) -> int:
         """Columns of that matrix, a multiple of LANES."""
         return int(self.turns.shape[1])
 
+    @property
+    def columns_argument(self) -> int:
+        """Number of the argument with the matrix of columns."""
+        number: int = self.function.n_in() - 2
+        return number
+
+    @property
+    def turns_argument(self) -> int:
+        """Number of the argument with the turns of one column."""
+        number: int = self.function.n_in() - 1
+        return number
+
+
+def in_groups(turns: FloatArray) -> FloatArray:
+    """The turns of LANES columns after those of the LANES before, one entry of the group after the other."""
+    entries, stride = turns.shape
+    ordered: FloatArray = turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2).ravel()
+    return ordered
+
+
+@dataclass(frozen=True)
+class RodColumns:
+    """The columns of one rod, each as a function of its turns.
+
+    Attributes:
+        of_one: (x, inputs, load_factor, turns) ↦ all rows of one column, as scalars.
+        pattern: sparsity of the matrix of all columns.
+        turns: constant turns of all columns, shape (entries, count).
+    """
+
+    of_one: ca.Function
+    pattern: ca.Sparsity
+    turns: FloatArray
+
+    @property
+    def stride(self) -> int:
+        """Columns with those that fill the last group of LANES."""
+        return -(-self.pattern.size2() // LANES) * LANES
+
+    @property
+    def padded_turns(self) -> FloatArray:
+        """The turns with zeros behind the last column."""
+        padded = np.zeros((self.turns.shape[0], self.stride))
+        padded[:, : self.turns.shape[1]] = self.turns
+        return padded
+
+
+class ColumnedJacobian:
+    """The Jacobian on the path of loads as a function of the columns of its rods.
+
+    Attributes:
+        model: whose Jacobian it is.
+        rods: columns by the name of their rod, of those rods whose moments pass.
+        of_columns: (x, inputs, load_factor, matrix of columns of each rod …) ↦ Jacobian, as scalars.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        discrete = model.discrete
+        self._arguments = Arguments(
+            ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size), ca.MX.sym("load_factor")
+        )
+        tangents = System(discrete, self._arguments).tangents
+        passing = {name: tangent for name, tangent in tangents.items() if tangent.moments_pass}
+        self.rods = {name: self._rod_columns(tangent) for name, tangent in passing.items()}
+        symbols = {name: ca.MX.sym("columns", rod.pattern) for name, rod in self.rods.items()}
+        known = {name: _unstacked(passing[name], columns) for name, columns in symbols.items()}
+        jacobian = Equations(System(discrete, self._arguments, known)).jacobian
+        self.of_columns = self._scalar("of_columns", list(symbols.values()), jacobian)
+
+    def _rod_columns(self, tangent: Tangent) -> RodColumns:
+        turns = tangent.turn_matrix.unfolded.full()
+        turn = ca.MX.sym("turns", turns.shape[0])
+        one = _stacked(Tangent(tangent.igm, turns=turn).columns)
+        pattern = _stacked(tangent.columns).sparsity()
+        return RodColumns(self._scalar("of_one", [turn], ca.densify(one)), pattern, turns)
+
+    def _scalar(self, name: str, further: Sequence[ca.MX], result: Matrix) -> ca.Function:
+        """The map (x, inputs, load_factor, further …) ↦ result as scalars."""
+        arguments = self._arguments
+        symbols = [arguments.x, arguments.inputs, arguments.load_factor, *further]
+        words = [*GIVEN, *(f"further_{i}" for i in range(len(further)))]
+        if self.model.parameters.size:
+            symbols.insert(2, self.model.parameters.symbol)
+            words.insert(2, PARAMETERS)
+        function = ca.Function(name, symbols, [result], words, ["result"])
+        return with_parameters_behind_inputs(function).expand()
+
+    @cached_property
+    def scalars(self) -> tuple[list[ca.SX], dict[str, ca.SX], ca.SX]:
+        """Symbols of x, inputs and load factor, symbols of the columns by rod, and the Jacobian in them."""
+        function = self.of_columns
+        symbols = [ca.SX.sym(function.name_in(i), function.sparsity_in(i)) for i in range(function.n_in())]
+        columns = dict(zip(self.rods, symbols[len(GIVEN) :], strict=True))
+        return symbols[: len(GIVEN)], columns, function.call(symbols)[0]
+
+    def rods_of(self, entries: ca.SX) -> list[str]:
+        """Names of the rods whose columns some expressions of :attr:`scalars` depend on."""
+        _, columns, _ = self.scalars
+        return [rod for rod, symbols in columns.items() if ca.depends_on(entries, ca.vertcat(*symbols.nonzeros()))]
+
+    def part(self, entries: ca.SX, rod: str) -> ColumnPart:
+        """Some entries of the Jacobian, which depend on the columns of this rod alone.
+
+        Args:
+            entries: expressions of :attr:`scalars`.
+            rod: name of the rod.
+        """
+        given, columns, _ = self.scalars
+        own = self.rods[rod]
+        symbols = columns[rod]
+        places = list(zip(*own.pattern.get_triplet(), symbols.nonzeros(), strict=True))
+        needed = ca.which_depends(entries, ca.vertcat(*symbols.nonzeros()), 1, False)
+        rows = sorted({row for (row, _, _), is_read in zip(places, needed, strict=True) if is_read})
+        number_of = {row: number for number, row in enumerate(rows)}
+        matrix = ca.SX.sym("columns", len(rows) * own.stride)
+        replaced = []
+        replacing = []
+        for row, j, symbol in places:
+            if row in number_of:
+                replaced.append(symbol)
+                replacing.append(matrix[number_of[row] * own.stride + j])
+        in_matrix = ca.substitute(entries, ca.vertcat(*replaced), ca.vertcat(*replacing))
+        turns = ca.SX.sym("turns", own.turns.shape[0])
+        column = own.of_one.call([*given, turns])[0][rows]
+        return ColumnPart([*given, matrix, turns], in_matrix, column, own.padded_turns)
+
+
+@dataclass(frozen=True)
+class ColumnPart:
+    """Entries of a Jacobian, and one column of those that they follow from, as scalar expressions.
+
+    Attributes:
+        symbols: x, inputs, load factor, matrix of columns, turns of one column.
+        entries: the entries.
+        column: rows of one column.
+        turns: as of :class:`ColumnForm`.
+    """
+
+    symbols: list[ca.SX]
+    entries: ca.SX
+    column: ca.SX
+    turns: FloatArray
+
+    def form(self, name: str) -> ColumnForm:
+        """Both as one scalar function, with common terms shared."""
+        shared = ca.cse([self.entries, self.column])
+        words = [*GIVEN, "columns", "turns"]
+        function = ca.Function(name, self.symbols, shared, words, ["jacobian", "column"])
+        return ColumnForm(function, self.turns, self.column.numel())
+
+
+def columned_jacobian(model: Model) -> ColumnedJacobian | None:
+    """The Jacobian on the path of loads by columns; None for a model in which no rod has any."""
+    if any(chosen.transport == "permuted" for chosen in model.discretisation.values()):
+        return None
+    jacobian = ColumnedJacobian(model)
+    return jacobian if jacobian.rods else None
+
 
 def in_columns(model: Model, name: str) -> ColumnForm | None:
-    """The Jacobian on the path of loads by columns; None for a model that has no such form.
+    """The Jacobian of a model of one rod by columns; None for a model that has no such form.
 
     Args:
         model: whose Jacobian it is.
         name: what the function is called.
     """
-    discrete = model.discrete
-    literal = any(chosen.transport == "permuted" for chosen in model.discretisation.values())
-    if literal or len(discrete.rods) != 1 or model.parameters.size:
+    if len(model.discrete.rods) != 1:
         return None
-    (rod,) = discrete.rods
-    arguments = Arguments(ca.MX.sym("x", model.size), ca.MX.sym("inputs", model.inputs.size), ca.MX.sym("load_factor"))
-    given = [arguments.x, arguments.inputs, arguments.load_factor]
-    tangent = System(discrete, arguments).tangents[rod]
-    if not tangent.moments_pass:
+    jacobian = columned_jacobian(model)
+    if jacobian is None:
         return None
-    turns = tangent.turn_matrix.unfolded.full()
-    every = ca.MX.sym("columns", sum(_heights(tangent)), turns.shape[1])
-    equations = Equations(System(discrete, arguments, {rod: _unstacked(tangent, every)}))
-    of_every = ca.Function("of_every", [*given, every], [ca.densify(equations.jacobian)]).expand()
-    read = _rows_read(of_every)
-    turn = ca.MX.sym("turns", turns.shape[0])
-    one = _stacked(Tangent(tangent.igm, turns=turn).columns)
-    of_one = ca.Function("of_one", [*given, turn], [ca.densify(one)[read]])
-    padded = np.zeros((turns.shape[0], -(-turns.shape[1] // LANES) * LANES))
-    padded[:, : turns.shape[1]] = turns
-    return ColumnForm(_joined(of_every, of_one, read, padded.shape[1], name), padded, len(read))
-
-
-def _joined(of_every: ca.Function, of_one: ca.Function, read: list[int], stride: int, name: str) -> ca.Function:
-    """Both as one scalar function, with common terms shared."""
-    given = [ca.SX.sym(of_every.name_in(i), of_every.sparsity_in(i)) for i in range(COLUMNS)]
-    columns = ca.SX.sym("columns", len(read) * stride)
-    turns = ca.SX.sym("turns", of_one.size1_in(COLUMNS))
-    height, count = of_every.size_in(COLUMNS)
-    every = ca.SX(height, count)
-    for place, row in enumerate(read):
-        every[row, :] = columns[place * stride : place * stride + count].T
-    jacobian = of_every.call([*given, every])[0]
-    column = of_one.call([*given, turns])[0]
-    names = ["x", "inputs", "load_factor", "columns", "turns"]
-    shared = ca.cse([jacobian, column])
-    return ca.Function(name, [*given, columns, turns], shared, names, ["jacobian", "column"])
-
-
-def _rows_read(of_every: ca.Function) -> list[int]:
-    """Rows of the columns that the Jacobian reads."""
-    height = of_every.size1_in(COLUMNS)
-    read = set()
-    for k in range(of_every.n_instructions()):
-        if of_every.instruction_id(k) == ca.OP_INPUT:
-            argument, entry = of_every.instruction_input(k)
-            if argument == COLUMNS:
-                read.add(entry % height)
-    return sorted(read)
+    (rod,) = jacobian.rods
+    _, _, entries = jacobian.scalars
+    return jacobian.part(ca.densify(entries), rod).form(name)
 
 
 def _heights(tangent: Tangent) -> list[int]:

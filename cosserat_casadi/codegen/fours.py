@@ -8,13 +8,14 @@ the same operations in the same order as there, and is the same to the last digi
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 
 import casadi as ca
 
-from cosserat_casadi.codegen.columns import COLUMNS, LANES, TURNS, ColumnForm
+from cosserat_casadi.codegen.columns import LANES, ColumnForm, in_groups
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.listing import (
     Called,
     Computed,
@@ -24,82 +25,10 @@ from cosserat_casadi.codegen.listing import (
     UnknownOperationError,
 )
 from cosserat_casadi.codegen.statements import Block, Statement, in_parts, number_in_c, on_fours, on_numbers
-from cosserat_casadi.codegen.texts import fill, resource
 from cosserat_casadi.maths.typing import FloatArray
 
 FEWEST = 3
 """Calls of one function from which on they are made together."""
-
-HEADER = "fours.h"
-
-PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define {name}_SZ_ARG 3
-#define {name}_SZ_RES 1
-#define {name}_SZ_IW 0
-#define {name}_SZ_W {reals}
-"""
-
-
-@dataclass(frozen=True)
-class InFours:
-    """A kernel that is written here.
-
-    Attributes:
-        signature: a function with its name, arguments and results.
-        tables: constant arrays in C.
-        body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
-        reals: numbers that it works in.
-        statements: how many there are.
-    """
-
-    signature: ca.Function
-    tables: str
-    body: str
-    reals: int
-    statements: int
-
-    def name(self) -> str:
-        """Its name in C."""
-        name: str = self.signature.name()
-        return name
-
-    def n_instructions(self) -> int:
-        """How many statements there are."""
-        return self.statements
-
-
-@dataclass(frozen=True)
-class SourcesInFours:
-    """What kernels in fours add to a source and its header.
-
-    Attributes:
-        source: what follows in the source.
-        prototypes: what follows in the header.
-        included: files by name that the source includes.
-    """
-
-    source: str
-    prototypes: str
-    included: dict[str, str]
-
-
-def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
-    """Kernels in C, for any processor and for the wider vectors of newer ones.
-
-    Args:
-        kernels: the kernels.
-        stem: of the file names.
-    """
-    words = {
-        "stem": stem,
-        "tables": "".join(kernel.tables for kernel in kernels),
-        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
-    }
-    bodies = "\n".join(kernel.body for kernel in kernels)
-    head = "/* Included once for each width of vectors. */\n"
-    prototypes = "".join(PROTOTYPE.format(name=kernel.name(), reals=kernel.reals) for kernel in kernels)
-    included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
-    return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
 
 
 def in_fours(function: ca.Function, signature: ca.Function) -> InFours:
@@ -113,6 +42,16 @@ def in_fours(function: ca.Function, signature: ca.Function) -> InFours:
         UnknownOperationError: there is an operation that has no form here.
     """
     return _Writing(Listing(function), signature, None).result()
+
+
+def with_calls_in_fours(kernel: ca.Function) -> Kernel:
+    """A kernel of which calls of one function are made together; itself where it has none, or no form here."""
+    if not kernel.is_a("SXFunction") or not kernel.find_functions(0):
+        return kernel
+    try:
+        return in_fours(kernel, kernel)
+    except UnknownOperationError:
+        return kernel
 
 
 def columns_in_fours(form: ColumnForm, signature: ca.Function) -> InFours:
@@ -178,7 +117,8 @@ class _Writing:
         for value in self.given_to_columns:
             self._compute(value)
         if self.form is not None:
-            tables = _table(f"{self.name}_turns", self.form.turns)
+            if self.form.turns_behind is None:
+                tables = _table(f"{self.name}_turns", self.form.turns)
             self._write_columns(self.form)
         self._write_results()
         head = f"static int MADE({self.name})(const casadi_real **arg, casadi_real **res, casadi_real *w) {{"
@@ -199,7 +139,7 @@ class _Writing:
         """For each value whether it is one of each column."""
         found: list[bool] = []
         for number, value in enumerate(self.listing.values):
-            of_turns = self.form is not None and isinstance(value, Read) and value.argument == TURNS
+            of_turns = self.form is not None and isinstance(value, Read) and value.argument == self.form.turns_argument
             found.append(of_turns or any(found[operand] for operand in self.listing.operands(number)))
         return found
 
@@ -318,7 +258,7 @@ class _Writing:
 
     def _is_of_all_columns(self, number: int) -> bool:
         value = self.listing.values[number]
-        return self.form is not None and isinstance(value, Read) and value.argument == COLUMNS
+        return self.form is not None and isinstance(value, Read) and value.argument == self.form.columns_argument
 
     def _text(self, number: int) -> str | None:
         """What a value without columns is called outside of variables."""
@@ -390,9 +330,15 @@ class _Writing:
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
             self._write(f"{names[-1]})({given}", lines)
             self.statements += len(block.statements)
+        size = len(form.turns)
+        turns = f"{self.name}_turns"
+        start = 0
+        if form.turns_behind is not None:
+            turns = f"arg[{form.columns_argument - 1}]"
+            start = form.turns_behind
         for first in range(0, form.stride, LANES):
             for name in names:
-                given = f"w, {self.name}_turns + {len(form.turns) * first}, w + {self.columns + first}, w + {room}"
+                given = f"w, {turns} + {start + size * first}, w + {self.columns + first}, w + {room}"
                 self.main.statements.append(Statement(f"MADE({name})({given});", []))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
@@ -442,9 +388,7 @@ def _starts(sizes: Iterable[int]) -> list[int]:
 
 
 def _table(name: str, turns: FloatArray) -> str:
-    """The turns of four columns after those of the four before, one entry of the four after the other."""
-    entries, stride = turns.shape
-    ordered = turns.reshape(entries, stride // LANES, LANES).transpose(1, 0, 2)
-    numbers = [f"{value:.17g}" for value in ordered.ravel()]
+    """The turns as a constant array."""
+    numbers = [f"{value:.17g}" for value in in_groups(turns)]
     lines = [", ".join(numbers[first : first + 8]) for first in range(0, len(numbers), 8)]
     return f"static const casadi_real {name}[{len(numbers)}] = {{\n  " + ",\n  ".join(lines) + "};\n"

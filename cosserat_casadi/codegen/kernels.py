@@ -9,14 +9,14 @@ import tempfile
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeAlias
 
 import casadi as ca
 
 from cosserat_casadi.accuracy.cost import STRAIGHT
 from cosserat_casadi.codegen.assembled import Assembled
 from cosserat_casadi.codegen.columns import in_columns
-from cosserat_casadi.codegen.fours import InFours, columns_in_fours, in_fours, sources_in_fours
+from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel, sources_in_fours
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
 from cosserat_casadi.codegen.listing import UnknownOperationError
 from cosserat_casadi.codegen.loops import in_loops
@@ -35,10 +35,6 @@ RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
 GENERATOR = {"with_header": True, "static_aux": True}
-
-
-Kernel: TypeAlias = ca.Function | InFours
-"""A kernel that CasADi writes, or one that is written here."""
 
 
 def kernels(model: Model, names: Names, parts: Assembled | None, motion: MotionInC | None = None) -> list[Kernel]:

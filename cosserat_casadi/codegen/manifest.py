@@ -11,9 +11,8 @@ from typing import Any
 
 import casadi as ca
 
-from cosserat_casadi.codegen.fours import InFours
+from cosserat_casadi.codegen.fours_sources import InFours, Kernel
 from cosserat_casadi.codegen.functions_in_c import FunctionInC, functions_in_c
-from cosserat_casadi.codegen.kernels import Kernel
 from cosserat_casadi.codegen.names import Names
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.model.build import Model

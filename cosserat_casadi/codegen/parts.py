@@ -77,7 +77,7 @@ def parted(function: ca.Function, owners: Sequence[int], name: str) -> Parted:
         the parts as straight-line code; where one is too long for that, long ones in loops. A function that is not
         known as a program is a single part then.
     """
-    places = _by_owner(owners)
+    places = places_by_owner(owners)
     programs = _programs(function, places)
     # A scene without inputs has no derivative by them, and no part.
     longest = 0.0 if programs is None else max((program.foreseen for program in programs), default=0.0)
@@ -136,7 +136,7 @@ def _short_or_in_loops(program: Program) -> ca.Function:
     return straight if straight.n_instructions() <= STRAIGHT else in_loops
 
 
-def _by_owner(owners: Sequence[int]) -> list[list[int]]:
+def places_by_owner(owners: Sequence[int]) -> list[list[int]]:
     """For each owner in turn the places where it stands."""
     return [[i for i, entry_owner in enumerate(owners) if entry_owner == owner] for owner in sorted(set(owners))]
 
@@ -173,7 +173,7 @@ def in_one(function: ca.Function, owners: Sequence[int], name: str) -> ca.Functi
     """
     symbols, (result,) = scalars(function)
     entries = ca.vertsplit(ca.densify(result))
-    places = _by_owner(owners)
+    places = places_by_owner(owners)
     pieces = []
     kernels = []
     for own in places:

@@ -1,0 +1,170 @@
+"""The Jacobian of an assembly in parts, one for each rod, each by the columns of its rod (columns.py).
+
+As in parts.py rods that compute alike share one function, with constants that differ as an argument.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from cosserat_casadi.codegen.blocks import Blocks
+from cosserat_casadi.codegen.columns import (
+    GIVEN,
+    LANES,
+    ColumnedJacobian,
+    ColumnForm,
+    ColumnPart,
+    columned_jacobian,
+    in_groups,
+)
+from cosserat_casadi.codegen.fours import columns_in_fours
+from cosserat_casadi.codegen.fours_sources import InFours
+from cosserat_casadi.codegen.listing import UnknownOperationError
+from cosserat_casadi.codegen.parts import ARGUMENTS, Part, Parted, places_by_owner
+from cosserat_casadi.codegen.streams import Key, Stream, names_of_part, shared
+from cosserat_casadi.model.build import Model
+
+COLUMNS, TURNS, CONSTANTS = len(GIVEN), len(GIVEN) + 1, len(GIVEN) + 2
+"""Numbers of the arguments of a function that parts share."""
+
+Alike = tuple[Key, tuple[int, ...], tuple[int, ...]]
+"""What parts share that compute alike: instructions, and entries that are read of columns and turns."""
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """Entries of one owner.
+
+    Attributes:
+        stream: their instructions, with those of a column of the rod behind them.
+        column: the rod's columns; None for entries that depend on none.
+        entries: numbers of the entries of the whole.
+    """
+
+    stream: Stream
+    column: ColumnPart | None
+    entries: list[int]
+
+    @property
+    def alike(self) -> Alike:
+        """What pieces share that compute alike."""
+        if self.column is None:
+            return self.stream.key, (), ()
+        return self.stream.key, tuple(self.stream.reads[COLUMNS]), tuple(self.stream.reads[TURNS])
+
+
+def parted_by_columns(model: Model, blocks: Blocks, name: str) -> tuple[Parted, list[InFours]] | None:
+    """The Jacobian of an assembly in parts by columns.
+
+    Args:
+        model: whose Jacobian it is.
+        blocks: of the Jacobian.
+        name: what the kernels are called, before their numbers.
+
+    Returns:
+        the parts, and those of their kernels that are by columns; None where entries of one owner depend on the columns
+        of several rods, or where an operation has no form in fours.
+    """
+    jacobian = columned_jacobian(model)
+    if jacobian is None:
+        return None
+    _, _, result = jacobian.scalars
+    if not result.sparsity().is_subset(blocks.pattern):
+        return None
+    entries = ca.project(result, blocks.pattern).nonzeros()
+    groups: dict[Alike, list[_Piece]] = {}
+    for own in places_by_owner(blocks.entry_owners):
+        piece = _piece(jacobian, ca.vertcat(*[entries[i] for i in own]), own)
+        if piece is None:
+            return None
+        groups.setdefault(piece.alike, []).append(piece)
+    try:
+        return _shared_kernels(list(groups.values()), name)
+    except UnknownOperationError:
+        return None
+
+
+def _piece(jacobian: ColumnedJacobian, entries: ca.SX, own: list[int]) -> _Piece | None:
+    """Entries of one owner; None where they depend on the columns of several rods."""
+    given, _, _ = jacobian.scalars
+    rods = jacobian.rods_of(entries)
+    if len(rods) > 1:
+        return None
+    if not rods:
+        return _Piece(Stream(ca.Function("part", given, [entries], *names_of_part(ARGUMENTS[:3]))), None, own)
+    part = jacobian.part(entries, rods[0])
+    both = ca.vertcat(part.entries, part.column)
+    words = names_of_part([*ARGUMENTS[:3], "columns", "turns"])
+    return _Piece(Stream(ca.Function("part", part.symbols, [both], *words)), part, own)
+
+
+def _shared_kernels(groups: Sequence[Sequence[_Piece]], name: str) -> tuple[Parted, list[InFours]]:
+    """A kernel for each group of pieces that compute alike."""
+    kernels = list[ca.Function]()
+    in_fours = list[InFours]()
+    parts = list[Part]()
+    for number, group in enumerate(groups):
+        kernel, constants = shared([piece.stream for piece in group], f"{name}_{number}")
+        columns = [piece.column for piece in group if piece.column is not None]
+        if not columns:
+            kernels.append(kernel)
+        else:
+            turns = [column.turns for column in columns]
+            alike = all(np.array_equal(own, turns[0]) for own in turns)
+            form = _form(kernel, group[0].stream, columns[0], turns_are_constant=alike)
+            kernels.append(_by_columns(form, f"{name}_{number}"))
+            in_fours.append(columns_in_fours(form, kernels[-1]))
+            if not alike:
+                # Rods of different length, be it by rounding, turn by different constants.
+                constants = [[*values, *in_groups(own).tolist()] for values, own in zip(constants, turns, strict=True)]
+        for piece, values in zip(group, constants, strict=True):
+            parts.append(Part(number, piece.stream.reads[:COLUMNS], values, piece.entries))
+    return Parted(kernels, parts), in_fours
+
+
+def _form(kernel: ca.Function, stream: Stream, part: ColumnPart, *, turns_are_constant: bool) -> ColumnForm:
+    """A shared function, which takes only what it reads of columns and turns, as a form with all of both."""
+    symbols = [ca.SX.sym(kernel.name_in(i), kernel.sparsity_in(i)) for i in range(kernel.n_in())]
+    own_constants = symbols[CONSTANTS]
+    constants = own_constants
+    turns_behind = None
+    if not turns_are_constant:
+        turns_behind = own_constants.numel()
+        constants = ca.vertcat(own_constants, ca.SX.sym("all_turns", part.turns.size))
+    columns = ca.SX.sym("columns", part.symbols[COLUMNS].numel())
+    turns = ca.SX.sym("turns", part.symbols[TURNS].numel())
+    read = [*symbols[:COLUMNS], columns[stream.reads[COLUMNS]], turns[stream.reads[TURNS]], own_constants]
+    result = kernel.call(read)[0]
+    count = part.entries.numel()
+    function = ca.Function(
+        kernel.name(),
+        [*symbols[:COLUMNS], constants, columns, turns],
+        [result[:count], result[count:]],
+        [*ARGUMENTS, "columns", "turns"],
+        ["entries", "column"],
+    )
+    return ColumnForm(function, part.turns, part.column.numel(), turns_behind)
+
+
+def _by_columns(form: ColumnForm, name: str) -> ca.Function:
+    """The map (x, inputs, factor, constants) ↦ entries that a form with constants is."""
+    given = form.function.mx_in()[: form.columns_argument]
+    turns = ca.MX(ca.DM(in_groups(form.turns)))
+    if form.turns_behind is not None:
+        turns = given[-1][form.turns_behind :]
+    # One column of the reshaped turns for each entry and group, with the columns of the group in its rows.
+    grouped = ca.reshape(turns, LANES, -1)
+    no_columns = ca.MX(form.rows * form.stride, 1)
+    columns = []
+    for j in range(form.stride):
+        first = (j // LANES) * len(form.turns)
+        own_turns = grouped[j % LANES, first : first + len(form.turns)].T
+        columns.append(form.function.call([*given, no_columns, own_turns])[1])
+    one_row_after_the_other = ca.vec(ca.horzcat(*columns).T)
+    no_turns = ca.MX(len(form.turns), 1)
+    entries = form.function.call([*given, one_row_after_the_other, no_turns])[0]
+    return ca.Function(name, given, [ca.densify(entries)], *names_of_part(ARGUMENTS))

@@ -1,0 +1,90 @@
+"""Kernels in fours (fours.py) as parts of a source and its header."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import casadi as ca
+
+from cosserat_casadi.codegen.texts import fill, resource
+
+HEADER = "fours.h"
+
+PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define {name}_SZ_ARG {arguments}
+#define {name}_SZ_RES 1
+#define {name}_SZ_IW 0
+#define {name}_SZ_W {reals}
+"""
+
+
+@dataclass(frozen=True)
+class InFours:
+    """A kernel that is written here.
+
+    Attributes:
+        signature: a function with its name, arguments and results.
+        tables: constant arrays in C.
+        body: functions in C that are compiled for each width of vectors; their names stand in ``MADE()``.
+        reals: numbers that it works in.
+        statements: how many there are.
+    """
+
+    signature: ca.Function
+    tables: str
+    body: str
+    reals: int
+    statements: int
+
+    def name(self) -> str:
+        """Its name in C."""
+        name: str = self.signature.name()
+        return name
+
+    def n_instructions(self) -> int:
+        """How many statements there are."""
+        return self.statements
+
+    def prototype(self) -> str:
+        """Its declaration, and what it asks for."""
+        return PROTOTYPE.format(name=self.name(), arguments=self.signature.n_in(), reals=self.reals)
+
+
+Kernel: TypeAlias = ca.Function | InFours
+"""A kernel that CasADi writes, or one that is written here."""
+
+
+@dataclass(frozen=True)
+class SourcesInFours:
+    """What kernels in fours add to a source and its header.
+
+    Attributes:
+        source: what follows in the source.
+        prototypes: what follows in the header.
+        included: files by name that the source includes.
+    """
+
+    source: str
+    prototypes: str
+    included: dict[str, str]
+
+
+def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
+    """Kernels in C, for any processor and for the wider vectors of newer ones.
+
+    Args:
+        kernels: the kernels.
+        stem: of the file names.
+    """
+    words = {
+        "stem": stem,
+        "tables": "".join(kernel.tables for kernel in kernels),
+        "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
+    }
+    bodies = "\n".join(kernel.body for kernel in kernels)
+    head = "/* Included once for each width of vectors. */\n"
+    prototypes = "".join(kernel.prototype() for kernel in kernels)
+    included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
+    return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
