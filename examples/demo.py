@@ -60,6 +60,7 @@ MOTIONS = (
     "snapping_arch",
     "seaweed",
     "dropped_rod",
+    "bouncing_rod",
 )
 
 SPEEDS = {"fishing_rod_cast": "0.25", "thrown_rod": "0.25"}

@@ -158,7 +158,7 @@ class ExactContacts:
             facing = self.facings[touch.facing]
             impulse = impulses[touch] * self.model.discrete.tension_unit(facing.rod)
             # Half the impulse times the speed that it takes: of sections that touched before that is none.
-            energy = max(0.0, -0.5 * impulse * speed * facing.length)
+            energy = max(0.0, float(-0.5 * impulse * speed * facing.length))
             lost += energy
             if touch in new and impulse > 0.0:
                 events.append(self._event("impact", at.time, touch, energy, impulse))

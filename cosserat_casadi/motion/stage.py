@@ -22,6 +22,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
+from cosserat_casadi.model.obstacle_checks import refuse_obstacles
 from cosserat_casadi.motion.simulate import immovable
 from cosserat_casadi.numerics.collocation import Collocation, radau
 
@@ -229,6 +230,7 @@ def motion_stage(
     Raises:
         SceneError: a rod has no mass, the duration is not positive, or the method does not suit the constraints.
     """
+    refuse_obstacles(model.scene, "an optimal-control problem")
     chosen = method or radau(STAGES)
     problems = immovable(model)
     if not 0.0 < duration < np.inf:

@@ -17,6 +17,10 @@ UNLOADED = "At rest in the unloaded shape."
 EQUILIBRIUM = "At rest in the static equilibrium of the inputs at t = 0."
 HELD = "At rest in the static equilibrium of the inputs at t = 0 with free bases held, which are let go then."
 GIVEN = "At rest in the equilibrium that was given."
+TOUCHES = (
+    "The rods touch obstacles in the equilibrium of the inputs at t = 0; where obstacles have no width a motion starts "
+    'apart from them: start = "unloaded", or other inputs at t = 0.'
+)
 
 
 @dataclass(frozen=True)
@@ -76,6 +80,8 @@ def _started(model: Model, solution: Solution, sentence: str) -> Start:
     x = model.unloaded()
     if not solution.converged:
         return Start(x, solution.message, found=False)
+    if model.scene.touches_exactly and solution.contacts:
+        return Start(x, TOUCHES, found=False)
     # Bases that are free begin where the scene puts them, where their unknowns are zero.
     unknowns = solution.model.discrete.unknowns
     for key, entries in unknowns.slices.items():

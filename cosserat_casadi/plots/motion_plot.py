@@ -19,6 +19,7 @@ from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
 from cosserat_casadi.plots.figure import add_title, figure_class, save_figure
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
+from cosserat_casadi.plots.obstacles import draw_surfaces
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 SHAPES = 12
@@ -140,6 +141,19 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
         if motion.model.discrete.unloaded.floating_base(name) is None:
             canvas.markers(lines[-1, :1], **CLAMP)
     draw_supports(canvas, motion.model.scene)
+    draw_surfaces(canvas, motion.model.scene.obstacles, shapes.points)
+    _mark_contacts(canvas, motion, rows)
+
+
+def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
+    """Mark the sections that touch obstacles without a width in the shapes that are drawn."""
+    label: str | None = "contact"
+    for row in rows:
+        for contact in motion.contacts[row] if motion.contacts else ():
+            point = motion.section(contact.rod, [contact.at]).position[row]
+            canvas.markers(point, marker="o", markersize=5, color="black", zorder=9, label=label)
+            # The legend names contacts once.
+            label = None
 
 
 def shown_rows(times: FloatArray) -> list[int]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
@@ -23,14 +25,18 @@ MARGIN = 0.12
 
 def draw_obstacles(canvas: Canvas, solution: Solution, shapes: RodShapes) -> None:
     """Draw all obstacles and mark the contacts."""
-    for obstacle in solution.model.scene.obstacles:
-        if canvas.plane is None:
-            near = shapes.points.mean(axis=0)
-            _draw_net(canvas, SURFACES[obstacle.kind].mesh(obstacle, near, canvas.size))
-        else:
-            _draw_cut(canvas, obstacle, shapes)
-        canvas.legend_entry(obstacle.name, color=OBSTACLES, linewidth=6, alpha=0.5)
+    draw_surfaces(canvas, solution.model.scene.obstacles, shapes.points)
     _mark_contacts(canvas, solution)
+
+
+def draw_surfaces(canvas: Canvas, obstacles: Sequence[ObstacleRecord], points: FloatArray) -> None:
+    """Draw obstacles about points that are shown, shape (k, 3)."""
+    for obstacle in obstacles:
+        if canvas.plane is None:
+            _draw_net(canvas, SURFACES[obstacle.kind].mesh(obstacle, points.mean(axis=0), canvas.size))
+        else:
+            _draw_cut(canvas, obstacle, points)
+        canvas.legend_entry(obstacle.name, color=OBSTACLES, linewidth=6, alpha=0.5)
 
 
 def _draw_net(canvas: Canvas, mesh: FloatArray) -> None:
@@ -40,10 +46,10 @@ def _draw_net(canvas: Canvas, mesh: FloatArray) -> None:
         canvas.line(row, **style)
 
 
-def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shapes: RodShapes) -> None:
+def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray) -> None:
     """Fill what of the plane that is shown is inside an obstacle, about the rods."""
     assert canvas.plane is not None, "asked for in a plane"
-    coordinates = shapes.points @ canvas.view_axes.T
+    coordinates = shown @ canvas.view_axes.T
     spare = MARGIN * canvas.size
     lowest = coordinates.min(axis=0) - spare
     highest = coordinates.max(axis=0) + spare

@@ -20,6 +20,7 @@ from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.load_cases import column_indices
 from cosserat_casadi.motion.poses import Poses
+from cosserat_casadi.motion.restart import ContactEvent
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.results.contact_entry import contact_entry
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
@@ -107,9 +108,28 @@ def _motion_data(motion: Motion) -> dict[str, Any]:
     if scene.actuators:
         data["actuators"] = {actuator.name: _actuator_entry(motion, actuator.name) for actuator in scene.actuators}
     if scene.obstacles:
-        data["contact"] = contact_entry(model, motion.x, motion.inputs)
+        data["contact"] = _contact_entry(motion)
     data["energy"] = asdict(motion.energy)
     return data
+
+
+def _contact_entry(motion: Motion) -> dict[str, Any]:
+    """What obstacles do: how deep rods are in those with a width; what touches the others, and impacts."""
+    if not motion.model.scene.touches_exactly:
+        return contact_entry(motion.model, motion.x, motion.inputs)
+    numbered = [(row, contact) for row, contacts in enumerate(motion.contacts) for contact in contacts]
+    contacts = [contact for _, contact in numbered]
+    return {
+        "kind": "exact",
+        "row": np.array([row for row, _ in numbered], dtype=int),
+        "obstacle": [contact.obstacle for contact in contacts],
+        "rod": [contact.rod for contact in contacts],
+        "at": np.array([contact.at for contact in contacts]),
+        "force": np.array([contact.force for contact in contacts]).reshape(-1, 3),
+        "events": {
+            name: [getattr(event, name) for event in motion.events] for name in ContactEvent.__dataclass_fields__
+        },
+    }
 
 
 def _head(motion: Motion) -> dict[str, Any]:

@@ -28,7 +28,6 @@ from cosserat_casadi import (
     modes_of_scene,
     parse_scene,
     read_scene,
-    simulate_scene,
     solve,
     solve_scene,
 )
@@ -37,6 +36,7 @@ from cosserat_casadi.cli.reports.solution import print_solution
 from cosserat_casadi.control import embedded, stability_margin
 from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
 from cosserat_casadi.errors import SceneError
+from cosserat_casadi.motion.stage import motion_stage
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.plots.scene_plot import plot_solution, save_plot
 from cosserat_casadi.results.solution_file import result
@@ -255,8 +255,7 @@ def test_what_knows_of_no_contact_refuses_obstacles(table: Solution, tmp_path: P
     uses: list[Callable[[], object]] = [
         lambda: inverse(model),
         lambda: inverse_scene(scene),
-        lambda: simulate_scene(scene),
-        lambda: build(scene, moving=True),
+        lambda: motion_stage(model, 0.1),
         lambda: modes_of(table),
         lambda: modes_of_scene(scene),
         lambda: linearise(table),

@@ -77,7 +77,17 @@ def _merit_sentences(motion: Motion) -> Iterator[str]:
     imbalance = np.abs(motion.energy.imbalance)
     if np.isfinite(imbalance).any():
         yield f"energies balance to {np.nanmax(imbalance):.1e} of the largest"
+    if motion.events:
+        yield f"contact: {_contact_words(motion)}"
     yield "; ".join(discretisation_sentences(motion.model))
+
+
+def _contact_words(motion: Motion) -> str:
+    """How often contact changed, and what the impacts took."""
+    impacts = sum(event.kind == "impact" for event in motion.events)
+    lift_offs = sum(event.kind == "lift_off" for event in motion.events)
+    taken = sum(event.energy for event in motion.events)
+    return f"{counted(impacts, 'impact')}, which took {taken:.3g} J, {lift_offs} lift-offs"
 
 
 def _step_words(motion: Motion) -> str:

@@ -1,0 +1,247 @@
+"""Exact contact in motion: impacts, contacts that last and slide, lift-off, rest; against references of other kinds."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+
+from cosserat_casadi import build, parse_scene, simulate, simulate_scene, solve, write_motion
+from cosserat_casadi.errors import SceneError
+from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.contact_sections import facings
+from cosserat_casadi.motion.touching import Follower, Touch
+from cosserat_casadi.motion.trajectory import Motion, MotionOutcome
+from cosserat_casadi.numerics.complementarity import active_constraints
+
+ROD = """
+schema = 1
+accuracy = {{ modes = {modes}, nodes = 12, tolerance = 1e-4 }}
+loads = [{{ name = "weight", kind = "gravity", acceleration = [0, 0, -9.81] }}]
+obstacles = [{{ name = "bar", {obstacle} }}]
+simulation = {{ duration = {duration}, start = "unloaded", frames = 41 }}
+[[rods]]
+name = "rod"
+length = 0.4
+strain = "planar"
+stiffness = {{ bending_y = {stiffness} }}
+linear_density = 0.2
+rotary_inertia = [1e-7, 1e-7, 2e-7]
+base = {{ position = [0, 0, 0], tangent = [1, 0, 0] }}
+damping = {{ retardation_time = {damping} }}
+"""
+
+BALL = 'kind = "sphere", centre = [0.25, 0, -0.09], radius = 0.03'
+FLOOR = 'kind = "plane", point = [0, 0, {height}], normal = [0, 0, 1]'
+
+
+def rod(obstacle: str, modes: int = 3, duration: float = 0.5, stiffness: float = 0.016, damping: float = 0.005) -> str:
+    return ROD.format(obstacle=obstacle, modes=modes, duration=duration, stiffness=stiffness, damping=damping)
+
+
+def moving(text: str) -> Model:
+    return build(parse_scene(text).with_motion_inputs(), moving=True)
+
+
+@pytest.fixture(scope="module")
+def on_ball() -> Motion:
+    return simulate(moving(rod(BALL, duration=1.0, damping=0.03)))
+
+
+@pytest.mark.parametrize("slides", [True, False])
+def test_derivatives_of_the_least_gap_are_those_of_differences(slides: bool) -> None:
+    model = moving(rod(BALL))
+    (facing,) = facings(model)
+    rng = np.random.default_rng(3)
+    x = np.array([0.6, 0.3, -0.1])
+    v = rng.normal(size=3)
+    still = [np.zeros(model.inputs.size)] * 2
+    inputs = model.pack()
+    follower = Follower([facing], (Touch(0, 0.6 if slides else 1.0, slides),))
+
+    def gap(at: FloatArray) -> float:
+        return follower.gaps(at, inputs)[1][0].value
+
+    (here,) = follower.gaps(x, inputs)[1]
+    gradient = facing.gradient(x, inputs, here)
+    hessian = facing.hessian(x, inputs, here, slides=slides)
+    step = 1e-4
+    for direction in (v, *np.eye(3)):
+        ahead, behind = gap(x + step * direction), gap(x - step * direction)
+        assert_allclose(gradient @ direction, (ahead - behind) / (2 * step), rtol=1e-6, atol=1e-7)
+        bend = (ahead - 2 * here.value + behind) / step**2
+        assert_allclose(direction @ hessian @ direction, bend, rtol=1e-4, atol=1e-6)
+    (rate,), (turning,) = follower.rates(x, v, [inputs, *still])
+    assert_allclose(rate, gradient @ v, rtol=1e-12, atol=1e-14)
+    assert_allclose(turning, v @ hessian @ v, rtol=1e-10, atol=1e-12)
+
+
+def beam_on_a_stop(depth: float, stiffness: float, times: FloatArray) -> tuple[FloatArray, list[float], float]:
+    """Linear beam of three Legendre modes of its curvature that falls on a stop under its tip: solve_ivp with events.
+
+    Returns:
+        deflections of the tip, times of the impacts, and the energy that they take.
+    """
+    length, density, damping, modes = 0.4, 0.2, 1e-4, 3
+    nodes, weights = legendre.leggauss(20)
+    mass = np.zeros((modes, modes))
+    load = np.zeros(modes)
+    elastic = np.diag([stiffness * length / (2 * k + 1) for k in range(modes)])
+    deflections = []
+    for k in range(modes):
+        # κ = P_k(2X − 1), the slope and the deflection are its integrals from the clamp.
+        twice = legendre.legint(np.eye(modes)[k], 2, lbnd=-1) * (length / 2) ** 2
+        deflections.append(twice)
+    values = np.array([legendre.legval(nodes, one) for one in deflections])
+    slopes = np.array(
+        [legendre.legval(nodes, legendre.legint(np.eye(modes)[k], 1, lbnd=-1)) * length / 2 for k in range(modes)]
+    )
+    mass = length / 2 * (density * (values * weights) @ values.T + 1e-7 * (slopes * weights) @ slopes.T)
+    load = length / 2 * density * -9.81 * values @ weights
+    tip = np.array([legendre.legval(1.0, one) for one in deflections])
+    inverse = np.linalg.inv(mass)
+    compliance = tip @ inverse @ tip
+
+    def free(y: FloatArray) -> FloatArray:
+        return inverse @ (load - elastic @ (y[:modes] + damping * y[modes:]))
+
+    def push(y: FloatArray) -> float:
+        return float(-(tip @ free(y)) / compliance)
+
+    y = np.zeros(2 * modes)
+    time, pressed, lost = 0.0, False, 0.0
+    impacts: list[float] = []
+    found = np.zeros(len(times))
+    while time < times[-1]:
+
+        def rates(_: float, y: FloatArray, pressed: bool = pressed) -> FloatArray:
+            acceleration = free(y) + (inverse @ tip * push(y) if pressed else 0.0)
+            return np.concatenate([y[modes:], acceleration])
+
+        def event(t: float, y: FloatArray, pressed: bool = pressed, began: float = time) -> float:
+            if t < began + 1e-9:
+                return 1.0
+            return push(y) if pressed else float(tip @ y[:modes]) + depth
+
+        event.terminal = True  # type: ignore[attr-defined]
+        event.direction = -1  # type: ignore[attr-defined]
+        run = solve_ivp(rates, (time, times[-1]), y, "DOP853", events=event, dense_output=True, rtol=1e-10, atol=1e-13)
+        asked = (times >= time) & (times <= run.t[-1])
+        if asked.any():
+            found[asked] = tip @ run.sol(times[asked])[:modes]
+        y, time = run.y[:, -1].copy(), float(run.t[-1])
+        if run.status == 1 and not pressed:
+            speed = tip @ y[modes:]
+            y[modes:] -= inverse @ tip * speed / compliance
+            lost += 0.5 * speed**2 / compliance
+            impacts.append(time)
+        if run.status == 1:
+            pressed = not pressed
+    return found, impacts, lost
+
+
+@pytest.mark.slow
+def test_a_beam_falls_on_a_stop_as_a_linear_beam_does() -> None:
+    depth, stiffness = 4e-4, 20.0
+    text = rod(FLOOR.format(height=-depth), duration=0.08, stiffness=stiffness, damping=1e-4)
+    # The tolerance is relative to the length, of which the deflections are a thousandth.
+    motion = simulate(moving(text.replace("frames = 41", "frames = 41, tolerance = 2e-7")))
+    assert motion.converged, motion.message
+    deflections, impacts, lost = beam_on_a_stop(depth, stiffness, motion.times)
+    assert len(impacts) >= 1
+    found = [event for event in motion.events if event.kind == "impact"]
+    assert all(event.place == 1.0 for event in found)
+    # A beam that is not linear differs by the square of its slopes, about 2e-6 of a deflection.
+    assert_allclose([event.time for event in found], impacts, rtol=0, atol=2e-5)
+    assert_allclose(sum(event.energy for event in found), lost, rtol=1e-3, atol=0)
+    assert_allclose(motion.tip().position[:, 2], deflections, rtol=0, atol=2e-3 * depth)
+    assert motion.tip().position[:, 2].min() > -depth - 1e-6
+    assert_allclose(motion.energy.impacts[-1], lost, rtol=1e-3, atol=0)
+    assert abs(motion.energy.imbalance).max() < 1e-3
+
+
+def test_energy_of_an_impact_is_what_the_kinetic_energy_falls_by(on_ball: Motion) -> None:
+    impact = next(event for event in on_ball.events if event.kind == "impact")
+    kinetic = []
+    for time in (impact.time, impact.time + 1e-9):
+        state = on_ball.at(time)
+        kinetic.append(float(on_ball.model.energies(state.x, state.v, state.inputs, 0 * state.inputs)[0]))
+    assert impact.energy > 0.05 * kinetic[0]
+    assert_allclose(kinetic[0] - kinetic[1], impact.energy, rtol=1e-5, atol=0)
+
+
+def test_a_damped_rod_comes_to_rest_on_a_ball_as_statics_has_it(on_ball: Motion) -> None:
+    assert on_ball.converged, on_ball.message
+    assert abs(on_ball.energy.imbalance).max() < 1e-3
+    (contact,) = on_ball.contacts[-1]
+    at_rest = solve(build(parse_scene(rod(BALL, modes=10).replace("nodes = 12", "nodes = 24"))))
+    (wanted,) = at_rest.contacts
+    # Three modes on one element stand for a rod whose shear force jumps at the contact.
+    assert_allclose(contact.at, wanted.start, rtol=0, atol=0.01)
+    assert_allclose(contact.force, wanted.force, rtol=0, atol=0.03 * np.linalg.norm(wanted.force))
+    assert_allclose(on_ball.tip().position[-1], at_rest.tip().position[0], rtol=0, atol=0.01 * 0.4)
+
+
+def test_no_section_is_inside_and_no_force_pulls_between_steps(on_ball: Motion) -> None:
+    (facing,) = facings(on_ball.model)
+    for time in np.linspace(0.0, 1.0, 201):
+        state = on_ball.at(float(time))
+        assert facing.gaps(facing.nodes(state.x, state.inputs)).min() > -1e-5
+    normals = [contact.force @ (on_ball.section("rod", [contact.at]).position[row, 0] - [0.25, 0, -0.09])
+               for row, contacts in enumerate(on_ball.contacts) for contact in contacts]  # fmt: skip
+    assert len(normals) > 5
+    assert min(normals) > 0.0
+
+
+@pytest.mark.slow
+def test_a_rod_that_lies_down_ends_the_motion_and_is_told() -> None:
+    motion = simulate(moving(rod(FLOOR.format(height=-0.03), stiffness=0.01, duration=0.6, damping=0.05)))
+    assert motion.outcome is MotionOutcome.CONTACT_UNSETTLED
+    assert not motion.converged
+    assert "'rod'" in motion.message
+    assert "t = " in motion.message
+
+
+def test_what_exact_contact_in_motion_does_not_go_with_is_refused() -> None:
+    text = rod(BALL).replace('start = "unloaded"', 'start = "unloaded", integrator = "gauss", step = 1e-3')
+    with pytest.raises(SceneError, match="does not converge for exact contact"):
+        simulate_scene(parse_scene(text))
+
+
+def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None:
+    write_motion(on_ball, tmp_path / "motion.json")
+    entry = json.loads((tmp_path / "motion.json").read_text())["contact"]
+    assert entry["kind"] == "exact"
+    assert entry["row"][-1] == 40
+    assert_allclose(entry["force"][-1], on_ball.contacts[-1][0].force, rtol=1e-15, atol=0)
+    assert entry["events"]["kind"][0] == "impact"
+    write_motion(on_ball, tmp_path / "motion.npz")
+    with np.load(tmp_path / "motion.npz") as arrays:
+        assert_allclose(arrays["contact.at"], entry["at"], rtol=1e-15, atol=0)
+
+
+def test_complementarity_of_three_constraints_is_that_of_all_choices() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        factor = rng.normal(size=(3, 3))
+        matrix = factor @ factor.T + 0.1 * np.eye(3)
+        rates = rng.normal(size=3)
+
+        def solved(
+            chosen: tuple[int, ...], matrix: FloatArray = matrix, rates: FloatArray = rates
+        ) -> tuple[FloatArray, FloatArray]:
+            own = list(chosen)
+            forces = np.linalg.solve(matrix[np.ix_(own, own)], -rates[own])
+            return forces, rates + matrix[:, own] @ forces
+
+        chosen = active_constraints(3, solved, 1e-12, 1e-12)
+        assert chosen is not None
+        forces, opening = solved(chosen)
+        assert forces.min(initial=0.0) >= 0.0
+        assert opening.min() >= -1e-9
