@@ -40,6 +40,7 @@ LONG = (
     "cosserat estimate examples/felt_loads.toml",
     "cosserat identify examples/wire_from_shapes.toml --hold-out",
     "cosserat export examples/tendon_robot_move.toml",
+    "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",
 )
 """What begins a command that takes many seconds: it is run with the slow tests, and its options have quick tests."""
