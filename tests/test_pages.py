@@ -40,6 +40,7 @@ LONG = (
     "cosserat estimate examples/felt_loads.toml",
     "cosserat identify examples/wire_from_shapes.toml --hold-out",
     "cosserat export examples/tendon_robot_move.toml",
+    "cosserat export examples/rod_over_bar.toml",
     "cosserat inverse examples/reach_past_bar.toml",
     "cosserat path examples/loaded_tubes.toml",
     "cosserat solve examples/robot_leans_on_wall.toml",

@@ -358,6 +358,50 @@ def test_export_writes_a_folder_and_says_how_to_go_on(wire: Path) -> None:
     assert sorted(p.name for p in wire.iterdir()) == ["c", "wire.toml"]
 
 
+CONTACT = """
+schema = 1
+
+[accuracy]
+modes = 2
+
+[[rods]]
+name = "rod"
+length = 1.0
+strain = "planar"
+stiffness = { bending_y = 1.0 }
+base = { position = [0, 0, 0], tangent = [1, 0, 0] }
+
+[[loads]]
+name = "push"
+kind = "tip_wrench"
+rod = "rod"
+force = [0, 0, -1.0]
+
+[[obstacles]]
+name = "floor"
+kind = "plane"
+point = [0, 0, -0.1]
+normal = [0, 0, 1]
+"""
+
+
+def test_export_in_exact_contact(tmp_path: Path) -> None:
+    """The contacts of the load cases are in the folder; other scenes refuse load cases."""
+    (tmp_path / "table.toml").write_text(CONTACT)
+    (tmp_path / "cases.csv").write_text("push.force.z\n-0.1\n")
+    done = cosserat("export", "table.toml", "--output", "c", "--over", "cases.csv", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "3 inputs" in " ".join(done.stdout.split())
+    manifest = json.loads((tmp_path / "c" / "manifest.json").read_text())
+    assert [[touch["kind"] for touch in entry["contacts"]] for entry in manifest["arrangements"]] == [["point"], []]
+    free = CONTACT[: CONTACT.index("[[obstacles]]")]
+    (tmp_path / "free.toml").write_text(free)
+    refused = cosserat("export", "free.toml", "--output", "d", "--over", "cases.csv", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "no rod of this scene touches an obstacle exactly" in " ".join(refused.stderr.split())
+    assert not (tmp_path / "d").exists()
+
+
 def test_export_with_derivatives(wire: Path) -> None:
     fixed = ("--set", "accuracy.modes=2", "--set", "accuracy.nodes=10")
     plain = cosserat("export", "wire.toml", "--output", "plain", *fixed, cwd=wire)

@@ -11,9 +11,11 @@ from rich.table import Table
 
 from cosserat_casadi.accuracy.tune import Tuning
 from cosserat_casadi.cli.reports.format import discretisation_table, print_plain, table_of, title_line
+from cosserat_casadi.equilibrium.contact.state import without_contacts
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.inputs import input_layout
 from cosserat_casadi.model.load_cases import CaseLayout
 from cosserat_casadi.model.price import price, price_of_load, price_of_obstacle
 from cosserat_casadi.scene.varying import VaryingValue
@@ -49,6 +51,8 @@ def print_check(console: Console, model: Model, varying: Sequence[VaryingValue])
 def print_export(console: Console, solution: Solution, folder: Path) -> None:
     """Print what was written, at what accuracy, and how to try it."""
     model = solution.model
+    # The forces of contacts are inputs of the solved model, not of the library.
+    inputs = input_layout(without_contacts(model.scene)).size
     estimate = "not known"
     if solution.error_estimate is not None:
         estimate = f"{solution.error_estimate:.1e}"
@@ -56,7 +60,7 @@ def print_export(console: Console, solution: Solution, folder: Path) -> None:
     console.print(discretisation_table(model))
     print_plain(
         console,
-        f"{model.size} unknowns, {model.inputs.size} inputs; estimated error of the tip pose at the scene's own "
+        f"{model.size} unknowns, {inputs} inputs; estimated error of the tip pose at the scene's own "
         f"inputs: {estimate}.",
     )
     print_plain(console, f"wrote {escape(str(folder))}; its README.md says how to compile and call it")

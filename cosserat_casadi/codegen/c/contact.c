@@ -97,11 +97,13 @@ contact_status contact_solve(const real *inputs, contact_state *state, workspace
   contact_info found = no_result();
   contact_status status = CONTACT_NOT_FINITE;
   if (all_finite(inputs, INPUTS)) {
+    work->jacobian_of = -1;
     if (is_known(state)) status = follow(inputs, state, &LONG_WAY, work, &found);
     if (status != CONTACT_CONVERGED && status != CONTACT_UNRESOLVED) {
       contact_state own;
       contact_start(&own);
       found = no_result();
+      work->jacobian_of = -1;
       status = follow(inputs, &own, &LONG_WAY, work, &found);
       if (found.load_factor == 1) *state = own;
     }
@@ -136,17 +138,38 @@ static contact_status derivatives(const real *inputs, const contact_state *state
   return CONTACT_CONVERGED;
 }
 
-contact_status contact_track(const real *inputs, contact_state *state, const contact_options *options,
-                             real *d_poses_d_inputs, workspace *work, contact_info *info) {
+/* The Jacobian of the turn before, for the arrangement that it is of. */
+static void recall(const contact_memory *memory, workspace *work) {
+  work->jacobian_of = -1;
+  if (!memory || !memory->has_jacobian || memory->arrangement < 0 || memory->arrangement >= ARRANGEMENTS) return;
+  work->jacobian_of = memory->arrangement;
+  memcpy(work->jacobian, memory->jacobian, sizeof memory->jacobian);
+  memcpy(work->pivots, memory->pivots, sizeof memory->pivots);
+}
+
+static void remember(contact_memory *memory, const workspace *work) {
+  if (!memory) return;
+  memory->has_jacobian = work->jacobian_of >= 0;
+  memory->arrangement = work->jacobian_of;
+  if (!memory->has_jacobian) return;
+  memcpy(memory->jacobian, work->jacobian, sizeof memory->jacobian);
+  memcpy(memory->pivots, work->pivots, sizeof memory->pivots);
+}
+
+contact_status contact_track(const real *inputs, contact_state *state, contact_memory *memory,
+                             const contact_options *options, real *d_poses_d_inputs, workspace *work,
+                             contact_info *info) {
   const contact_options chosen = options ? *options : DEFAULT_OPTIONS;
   contact_info found = no_result();
   contact_status status = CONTACT_NOT_FINITE;
   if (all_finite(inputs, INPUTS)) {
+    recall(memory, work);
     status = is_known(state) ? follow(inputs, state, &chosen, work, &found) : CONTACT_NOT_IN_EQUILIBRIUM;
   }
   found.status = status;
   if (info) *info = found;
   if (status == CONTACT_CONVERGED && d_poses_d_inputs) status = derivatives(inputs, state, d_poses_d_inputs, work);
+  remember(memory, work);
   return status;
 }
 

@@ -88,33 +88,86 @@ static void back_substitute(const real *a, const int *pivots, real *b, int n) {
 
 /* Factorises the Jacobian at z in the workspace; zero where it is singular or not finite. */
 static int linearise(const arrangement *at, const real *z, const real *inputs, workspace *work) {
+  work->jacobian_of = -1;
+  work->updates = 0;
   call(at->jacobian, z, inputs, work->jacobian, 0, work);
   if (!all_finite(work->jacobian, at->size * at->size)) return 0;
-  return factorise(work->jacobian, work->pivots, work->largest, at->size);
+  if (!factorise(work->jacobian, work->pivots, work->largest, at->size)) return 0;
+  work->jacobian_of = (int)(at - ARRANGEMENT);
+  return 1;
 }
 
-/* Halves the step until the residual falls well enough. Returns zero where it does not; moves z, residual and norm on. */
-static int take_step(const arrangement *at, const real *inputs, real *z, real *norm, workspace *work) {
+/* Minus the inverse of the Jacobian at hand times a residual. After steps with one Jacobian it is corrected by C. G. Broyden's
+   updates, applied from the steps alone: C. T. Kelley, Iterative Methods for Linear and Nonlinear Equations, SIAM 1995,
+   section 7.3. */
+static void quasi_newton_step(const arrangement *at, const real *residual, real *step, workspace *work) {
+  const int n = at->size;
+  for (int i = 0; i < n; i++) step[i] = -residual[i];
+  back_substitute(work->jacobian, work->pivots, step, n);
+  for (int j = 0; j + 1 < work->updates; j++) {
+    const real share = dot(work->steps[j], step, n) / work->squares[j];
+    for (int i = 0; i < n; i++) step[i] += work->steps[j + 1][i] * share;
+  }
+  if (work->updates > 0) {
+    const int last = work->updates - 1;
+    const real share = 1 - dot(work->steps[last], step, n) / work->squares[last];
+    for (int i = 0; i < n; i++) step[i] /= share;
+  }
+}
+
+/* Length of a change of z: forces count relative to the largest. */
+static real change_length(const arrangement *at, const real *z, const real *change) {
+  const int behind = at->unknowns + at->forces;
+  real largest = 1;
+  real sum = dot(change, change, at->unknowns);
+  for (int i = at->unknowns; i < behind; i++) largest = larger(largest, fabs(z[i]));
+  for (int i = at->unknowns; i < behind; i++) sum += change[i] / largest * (change[i] / largest);
+  return sqrt(sum + dot(change + behind, change + behind, at->places));
+}
+
+/* Halves the step until the one that would follow it, with the same Jacobian, is shorter. That test does not depend on how
+   equations are scaled, and those of a short line of contact are small beside the others: P. Deuflhard, Newton Methods for
+   Nonlinear Problems, Springer 2004, section 3.3. Returns the length that served, or zero; moves z, residual and norm on,
+   and tells how much shorter the step to come is. */
+static real take_step(const arrangement *at, const real *inputs, int max_halvings, real *z, real *norm, real *shortening,
+                      workspace *work) {
+  const size_t bytes = (size_t)at->size * sizeof *z;
+  const real whole = change_length(at, z, work->step);
   real length = 1;
-  for (int k = 0; k <= MAX_HALVINGS; k++) {
+  for (int k = 0; k <= max_halvings; k++) {
     for (int i = 0; i < at->size; i++) work->trial[i] = z[i] + length * work->step[i];
     const real trial_norm = residual_at(at, work->trial, inputs, work->trial_residual, work);
-    if (isfinite(trial_norm) && trial_norm <= (1 - SUFFICIENT_DECREASE * length) * *norm) {
-      memcpy(z, work->trial, (size_t)at->size * sizeof *z);
-      memcpy(work->residual, work->trial_residual, (size_t)at->size * sizeof *z);
+    *shortening = 0;
+    if (isfinite(trial_norm) && trial_norm > TOLERANCE * (1 + norm_of(work->trial, at->size))) {
+      quasi_newton_step(at, work->trial_residual, work->next_step, work);
+      *shortening = change_length(at, z, work->next_step) / whole;
+    }
+    if (isfinite(trial_norm) && *shortening <= 1 - length / 4) {
+      memcpy(z, work->trial, bytes);
+      memcpy(work->residual, work->trial_residual, bytes);
       *norm = trial_norm;
-      return 1;
+      return length;
     }
     length /= 2;
   }
   return 0;
 }
 
-/* Newton from z, which it moves on; info counts the work, of which there is a budget. */
+/* Remembers a full step for the updates. */
+static void append_step(const arrangement *at, workspace *work) {
+  memcpy(work->steps[work->updates], work->step, (size_t)at->size * sizeof *work->step);
+  work->squares[work->updates] = dot(work->step, work->step, at->size);
+  work->updates++;
+}
+
+/* Newton from z, which it moves on; info counts the work, of which there is a budget. It begins with the Jacobian at hand,
+   where that is of this arrangement, and keeps it while it serves. */
 static newton_result newton(const arrangement *at, const real *inputs, real *z, int max_iterations, workspace *work,
                             contact_info *info) {
   newton_result result = {.status = CONTACT_MAX_ITERATIONS, .residual_norm = HUGE_VAL};
   real norm = residual_at(at, z, inputs, work->residual, work);
+  int reuses = work->jacobian_of == (int)(at - ARRANGEMENT);
+  work->updates = 0;
   for (int iteration = 0;; iteration++) {
     const real size = 1 + norm_of(z, at->size);
     result.residual_norm = norm / size;
@@ -128,16 +181,22 @@ static newton_result newton(const arrangement *at, const real *inputs, real *z, 
     }
     if (iteration == MAX_ITERATIONS || info->iterations >= max_iterations) return result;
     info->iterations++;
-    info->jacobians++;
-    if (!linearise(at, z, inputs, work)) {
+    if (!reuses) {
+      info->jacobians++;
+      if (!linearise(at, z, inputs, work)) {
+        result.status = CONTACT_SINGULAR;
+        return result;
+      }
+    }
+    quasi_newton_step(at, work->residual, work->step, work);
+    /* A step of an old Jacobian is not halved: a new Jacobian is worth more. */
+    real shortening = 0;
+    const real length = take_step(at, inputs, reuses ? 0 : MAX_HALVINGS, z, &norm, &shortening, work);
+    if (length == 0 && !reuses) {
       result.status = CONTACT_SINGULAR;
       return result;
     }
-    for (int i = 0; i < at->size; i++) work->step[i] = -work->residual[i];
-    back_substitute(work->jacobian, work->pivots, work->step, at->size);
-    if (!take_step(at, inputs, z, &norm, work)) {
-      result.status = CONTACT_SINGULAR;
-      return result;
-    }
+    if (length == 1) append_step(at, work);
+    reuses = length == 1 && shortening <= REUSE_DECREASE && work->updates < MAX_REUSES;
   }
 }

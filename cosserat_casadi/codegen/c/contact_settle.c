@@ -2,7 +2,7 @@
    tried next. cosserat_casadi/equilibrium/contact/settle.py looks in the same way among all arrangements; here those of
    the library are tried, and their number is bounded. */
 
-enum { MOST_FAULTS = 16, MOST_OPTIONS = 5 };
+enum { MOST_FAULTS = 16, MOST_OPTIONS = 6 };
 
 /* A stretch of a rod that is inside an obstacle. */
 typedef struct {

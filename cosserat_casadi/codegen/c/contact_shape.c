@@ -79,6 +79,7 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
   real triangle[(CONTACT_FORCES + 1) * (CONTACT_FORCES + 1)];
   real shares[CONTACT_FORCES + 1];
   if (at->forces == 0 || !isfinite(residual_at(at, z, inputs, rest, work))) return;
+  work->jacobian_of = -1;
   call(at->jacobian, z, inputs, work->jacobian, 0, work);
   for (int j = 0; j < at->forces; j++) {
     memcpy(columns + j * unknowns, work->jacobian + (unknowns + j) * n, (size_t)unknowns * sizeof *columns);

@@ -1,7 +1,7 @@
 """Which arrangements of contacts a library in C holds: those that its scene meets, and no contact.
 
-They are collected by solving the scene, at its own inputs and over load cases. Between two load cases that end in
-different arrangements the straight line of inputs is halved, so that what lies between is met too.
+The scene is solved at its own inputs, and followed from there to each load case, one after the other, along straight
+lines of inputs, as the solver in C moves them too. What is met on the way is collected.
 """
 
 from __future__ import annotations
@@ -19,12 +19,10 @@ from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, wi
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import ExportError, Problem
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.build import Model
+from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.inputs import InputLayout, input_layout
 from cosserat_casadi.numerics.newton import NewtonSettings
-
-HALVINGS = 6
-"""Times that the way between two load cases is halved in search of what lies between."""
+from cosserat_casadi.paths.contact_path import ContactPath, follow_contact_path
 
 MOST_ARRANGEMENTS = 16
 """Most arrangements of a library: each has equations of its own."""
@@ -56,116 +54,31 @@ class Chosen:
         return max(self.scene.accuracy.tolerance, LEAST_TOLERANCE)
 
 
-def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> Chosen:
-    """The arrangements that a scene meets, and no contact.
-
-    Args:
-        model: of a scene with obstacles.
-        load_cases: stacked inputs, a row for each case, shape (k, m).
-
-    Raises:
-        ExportError: a load case has no equilibrium, or there are too many arrangements.
-    """
-    scene = without_contacts(model.scene)
-    grids = Grids(model.discretisation)
-    layout = input_layout(scene)
-    given = layout.pack(None)
-    search = _Search(scene, grids, layout)
-    own = search.solved(given, None, "the scene's own inputs")
-    search.note(own)
-    previous = _Case(given, own)
-    rows = np.zeros((0, layout.size)) if load_cases is None else load_cases
-    for number, row in enumerate(rows, start=1):
-        case = _Case(row, search.solved(row, previous.solution, f"load case {number}"))
-        search.between(previous, case, HALVINGS)
-        search.note(case.solution)
-        previous = case
-    search.add(ContactState(()))
-    if len(search.states) > MOST_ARRANGEMENTS:
-        problem = (
-            f"the load cases meet {len(search.states)} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
-        )
-        raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
-    equations = [ContactEquations(scene, given, grids, state) for state in search.states.values()]
-    start = list(search.states).index(search.key(state_in(own.model.scene)))
-    return Chosen(scene, layout, given, equations, start, _z_of(equations[start], own))
-
-
-def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
-    """Unknowns, forces and places of a solution in the equations of its arrangement."""
-    settling = Settling(equations.scene, equations.given, equations.grids, NewtonSettings(), LEAST_TOLERANCE)
-    z = settling.solved(equations, near)
-    if z is None:
-        raise ExportError(Problem("obstacles", "the contacts of the scene's own inputs could not be found again"))
-    return z
-
-
-@dataclass(frozen=True)
-class _Case:
-    """A load case.
-
-    Attributes:
-        inputs: stacked.
-        solution: its equilibrium.
-    """
-
-    inputs: FloatArray
-    solution: Solution
-
-
 @dataclass
-class _Search:
-    """Load cases on their way to a list of arrangements.
+class _Met:
+    """The arrangements that were met.
 
     Attributes:
         scene: without contacts.
         grids: modes and nodes of every element.
-        layout: inputs of the scene.
         states: by what is discrete of them.
     """
 
     scene: scenes.Scene
     grids: Grids
-    layout: InputLayout
     states: dict[object, ContactState] = field(default_factory=dict)
-
-    def solved(self, inputs: FloatArray, start: Solution | None, what: str) -> Solution:
-        """The equilibrium for some inputs.
-
-        Raises:
-            ExportError: there is none.
-        """
-        solution = self._try(inputs, start)
-        if not solution.converged:
-            raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out"))
-        return solution
-
-    def _try(self, inputs: FloatArray, start: Solution | None) -> Solution:
-        return solve_contact(self.scene, self.grids, self.layout.unpack(inputs), start=start)
-
-    def between(self, first: _Case, last: _Case, halvings: int) -> None:
-        """Note what is met on the straight line of inputs between two cases, where they differ in their contacts."""
-        if halvings == 0 or self._key_of(first.solution) == self._key_of(last.solution):
-            return
-        inputs = (first.inputs + last.inputs) / 2
-        solution = self._try(inputs, first.solution)
-        if not solution.converged:
-            return
-        middle = _Case(inputs, solution)
-        self.note(solution)
-        self.between(first, middle, halvings - 1)
-        self.between(middle, last, halvings - 1)
-
-    def note(self, solution: Solution) -> None:
-        """Add the arrangement of a solution."""
-        self.add(state_in(solution.model.scene))
 
     def add(self, state: ContactState) -> None:
         """Add an arrangement, unless it is there."""
         self.states.setdefault(self.key(state), state)
 
-    def _key_of(self, solution: Solution) -> object:
-        return self.key(state_in(solution.model.scene))
+    def add_path(self, path: ContactPath) -> None:
+        """Add those of a path between its load cases, each where it was met last."""
+        is_between = (path.factor >= 0.0) & (path.factor <= 1.0)
+        for number, arrangement in enumerate(path.arrangements):
+            points = np.flatnonzero((path.arrangement == number) & is_between)
+            if len(points):
+                self.add(arrangement.state(path.x[points[-1]]))
 
     def key(self, state: ContactState) -> object:
         """What is discrete of an arrangement: who touches what, and between which ends of elements that stay."""
@@ -175,3 +88,61 @@ class _Search:
             places = {float(end) for touch in state.touches if touch.rod == name for end in touch.moving}
             ends.append(tuple(None if end in places else end for end in discretisation.breaks))
         return state.signature, tuple(ends)
+
+
+def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> Chosen:
+    """The arrangements that a scene meets, and no contact.
+
+    Args:
+        model: of a scene with obstacles.
+        load_cases: stacked inputs, a row for each case, shape (k, m).
+
+    Raises:
+        ExportError: the scene has no equilibrium, a load case has none, or there are too many arrangements.
+    """
+    scene = without_contacts(model.scene)
+    grids = Grids(model.discretisation)
+    layout = input_layout(scene)
+    given = layout.pack(None)
+    met = _Met(scene, grids)
+    own = _solved(scene, grids, given, "the scene's own inputs")
+    first = state_in(own.model.scene)
+    met.add(first)
+    free = build(scene, grids.discretisation(scene))
+    before = given
+    for number, row in enumerate(np.zeros((0, layout.size)) if load_cases is None else load_cases, start=1):
+        # Where a path ends early, at a fold or a change that it does not find, the load case is solved all the same.
+        case = _solved(scene, grids, row, f"load case {number}")
+        if not np.array_equal(row, before):
+            met.add_path(follow_contact_path(free, free.inputs.names[0], before, row - before))
+        met.add(state_in(case.model.scene))
+        before = row
+    met.add(ContactState(()))
+    count = len(met.states)
+    if count > MOST_ARRANGEMENTS:
+        problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
+        raise ExportError(Problem("--over", problem, "give fewer load cases, or smaller ranges"))
+    equations = [ContactEquations(scene, given, grids, state) for state in met.states.values()]
+    start = list(met.states).index(met.key(first))
+    return Chosen(scene, layout, given, equations, start, _z_of(equations[start], own))
+
+
+def _solved(scene: scenes.Scene, grids: Grids, inputs: FloatArray, what: str) -> Solution:
+    """The equilibrium for some inputs.
+
+    Raises:
+        ExportError: there is none.
+    """
+    solution = solve_contact(scene, grids, input_layout(scene).unpack(inputs))
+    if not solution.converged:
+        raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out, or lead there by others"))
+    return solution
+
+
+def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:
+    """Unknowns, forces and places of a solution in the equations of its arrangement."""
+    settling = Settling(equations.scene, equations.given, equations.grids, NewtonSettings(), LEAST_TOLERANCE)
+    z = settling.solved(equations, near)
+    if z is None:
+        raise ExportError(Problem("obstacles", "the contacts of the scene's own inputs could not be found again"))
+    return z

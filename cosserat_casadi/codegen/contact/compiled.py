@@ -188,7 +188,7 @@ class CompiledContact:
         info = ContactInfo()
         columns = np.zeros((len(self.rods), len(self.defaults), POSE_SIZE))
         track = self._function("track")
-        status = track(pointer(given), state, options, pointer(columns), self._workspace(), ctypes.byref(info))
+        status = track(pointer(given), state, None, options, pointer(columns), self._workspace(), ctypes.byref(info))
         outcome = CONTACT_OUTCOMES[status]
         derivatives = columns if outcome is Outcome.CONVERGED else None
         # At a limit point there is a solution without derivatives.

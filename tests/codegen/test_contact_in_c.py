@@ -1,0 +1,195 @@
+"""Exact contact in exported C against Python's, along loads that touch, slide, lie down and lift off."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cosserat_casadi import ExportError, build, discretise, export, load, load_in_contact, read_scene, solve
+from cosserat_casadi.numerics.outcome import Outcome
+from tests.codegen.contact_libraries import ContactLibrary, assert_same, exported_contact, on_table, over_bar
+from tests.codegen.libraries import C99, QUICK
+from tests.scenes import rod, scene
+
+LINT = (*C99, "-Wshadow", "-Wconversion", "-Wsign-conversion", "-Wvla", "-Werror")
+
+
+def down(force: float) -> np.ndarray:
+    """Stacked inputs of a force downwards."""
+    return np.array([0.0, 0.0, -force])
+
+
+@pytest.fixture(scope="module")
+def bar(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
+    """A rod over a bar, which knows contact at a point, and none."""
+    return exported_contact(over_bar(), tmp_path_factory.mktemp("bar") / "bar", down(8.0)[None], 3, 6)
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> ContactLibrary:
+    """A rod on a table, which knows the tip, a line and no contact."""
+    return exported_contact(on_table(), tmp_path_factory.mktemp("table") / "table", down(60.0)[None], 4, 8)
+
+
+def test_touch_slide_and_lift_off(bar: ContactLibrary) -> None:
+    """Where the rod touches the bar, how hard, and where its tip is are those of Python, there and back."""
+    found = bar.loaded.start()
+    wanted = None
+    places = []
+    for force in (3.0, 0.5, 0.1, 2.0, 8.0):
+        found = bar.loaded.solve(down(force), found)
+        wanted = solve(bar.model, down(force), start=wanted)
+        assert_same(found, wanted)
+        assert len(found.contacts) == (force > 0.5)
+        places += [contact.start for contact in found.contacts]
+    assert np.ptp(places) > 0.01
+
+
+def test_a_tip_that_touches_and_a_rod_that_lies_down(table: ContactLibrary) -> None:
+    """None, the tip, and a line that grows and shrinks: each as in Python."""
+    kinds = []
+    found = table.loaded.start()
+    wanted = None
+    for force in (1.0, 10.0, 55.0, 40.0, 10.0, 1.0):
+        found = table.loaded.solve(down(force), found)
+        # From the tip alone Python lets it touch a hair's breadth beside the line too: the same to the tolerance.
+        wanted = solve(table.model, down(force), start=None if force == 55.0 else wanted)
+        # What errors of the moment make of the forces of a line is as large as it is short.
+        assert_same(found, wanted, forces=1e-6)
+        kinds.append([contact.kind for contact in found.contacts])
+    assert kinds == [[], ["point"], ["line"], ["line"], ["point"], []]
+
+
+@pytest.mark.parametrize("force", [0.2, 3.0])
+def test_derivatives_of_the_tip(bar: ContactLibrary, force: float) -> None:
+    """They are those of central differences of solves, in contact and without; the error falls as h²."""
+    found = bar.loaded.solve(down(force))
+    tracked = bar.loaded.track(down(force), found)
+    derivatives = bar.loaded.sensitivity(found)
+    assert derivatives is not None and tracked.derivatives is not None
+    np.testing.assert_allclose(tracked.derivatives["rod"], derivatives["rod"], rtol=1e-12, atol=1e-14)
+    errors = []
+    for step in (0.04, 0.02):
+        columns = []
+        for axis in range(3):
+            change = step * np.eye(3)[axis]
+            ends = [bar.loaded.solve(down(force) + sign * change, found).tips["rod"] for sign in (1, -1)]
+            columns.append((ends[0] - ends[1]) / (2 * step))
+        errors.append(np.abs(derivatives["rod"] - np.array(columns).T).max())
+    assert np.linalg.norm(derivatives["rod"][:3]) > 1e-3
+    assert errors[0] < 1e-4
+    assert np.log2(errors[0] / errors[1]) > 1.8
+
+
+def test_derivatives_of_a_line(table: ContactLibrary) -> None:
+    """The abscissa from which the rod lies moves; the derivative of its tip is that of differences in C."""
+    library = table.loaded
+    found = library.solve(down(50.0))
+    derivatives = library.sensitivity(found)
+    assert derivatives is not None
+    ends = [library.solve(down(50.0 + change), found).tips["rod"] for change in (1e-2, -1e-2)]
+    np.testing.assert_allclose(-derivatives["rod"][:, 2], (ends[0] - ends[1]) / 2e-2, rtol=1e-5, atol=1e-10)
+
+
+def test_what_the_library_does_not_know_is_not_found(table: ContactLibrary, tmp_path: Path) -> None:
+    """A library of the tip alone does not let the rod lie down in the table: it says so, and keeps its state."""
+    library = exported_contact(on_table(), tmp_path / "tip", np.zeros((0, 3)), 4, 8).loaded
+    assert [len(contacts) for contacts in library.arrangements] == [1, 0]
+    tip = library.start()
+    lying = library.solve(down(50.0), tip)
+    assert lying.outcome is Outcome.CONTACT_UNSETTLED
+    assert not lying.tips and not lying.contacts
+    assert 0.0 < lying.load_factor < 1.0
+    assert lying.state == tip.state
+    assert table.loaded.solve(down(50.0)).converged
+
+
+def test_no_step_leads_through_a_bar(bar: ContactLibrary) -> None:
+    """From above the bar a pull that a rod below it would follow ends on the bar, in one call."""
+    free = bar.loaded.solve(down(-8.0))
+    assert free.converged and not free.contacts
+    pushed = bar.loaded.solve(down(8.0), free)
+    assert pushed.converged and len(pushed.contacts) == 1
+    assert pushed.contacts[0].force[2] > 0.0
+    assert pushed.parts > 1
+
+
+def test_the_budget_of_a_turn_holds(bar: ContactLibrary) -> None:
+    """A turn that asks for too much says so, does no more than it may, and leaves the state."""
+    start = bar.loaded.start()
+    lost = bar.loaded.track(down(-8.0), start, max_iterations=3, max_parts=2)
+    assert not lost.converged and lost.derivatives is None
+    assert lost.iterations <= 3 and lost.parts <= 2
+    assert lost.state == start.state
+    assert bar.loaded.track(down(-8.0), start, max_iterations=400, max_parts=80).converged
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_inputs_that_are_not_finite(bar: ContactLibrary, bad: float) -> None:
+    """They are refused by the status, and nothing else happens."""
+    start = bar.loaded.start()
+    for found in (bar.loaded.solve([0.0, bad, 0.0], start), bar.loaded.track([0.0, bad, 0.0], start)):
+        assert found.outcome is Outcome.NOT_FINITE
+        assert found.state == start.state
+
+
+def test_sources_by_hand_compile_without_a_word(bar: ContactLibrary, table: ContactLibrary, tmp_path: Path) -> None:
+    """All but the kernels, which CasADi has written."""
+    for library in (bar, table):
+        name = library.folder.name
+        for file in (f"{name}.c", f"{name}_demo.c"):
+            subprocess.run(["gcc", *LINT, "-c", library.folder / file, "-o", tmp_path / "object.o"], check=True)
+    kernels = bar.folder / "bar_kernels.c"
+    objects = [bar.folder / "bar_demo.c", bar.folder / "bar.c", kernels]
+    subprocess.run(["gcc", "-std=c99", *QUICK, *objects, "-o", tmp_path / "demo", "-lm"], check=True)
+    printed = subprocess.run([tmp_path / "demo", "0", "0", "-5"], check=True, capture_output=True, text=True).stdout
+    answer = json.loads(printed)
+    assert answer["status"] == "converged"
+    wanted = solve(bar.model, down(5.0))
+    np.testing.assert_allclose(answer["tip"], wanted.tip().position[0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(answer["contacts"][0]["force"], wanted.contacts[0].force, rtol=0, atol=1e-8)
+
+
+def test_bytes_of_a_library(bar: ContactLibrary) -> None:
+    """Each arrangement has its equations; a third more than they are now would be noticed."""
+    assert len((bar.folder / "bar_kernels.c").read_bytes()) < 350_000
+
+
+def test_refused_uses(tmp_path: Path) -> None:
+    """What C does not have of exact contact is refused, with all faults at once, and nothing is written."""
+    wanted = over_bar()
+    model = build(wanted, discretise(wanted, 1, 2))
+    with pytest.raises(ExportError, match=r"no exact contact(?s:.*)not written in C"):
+        export(model, tmp_path / "folder", dynamics=True, stability=True)
+    with pytest.raises(ExportError, match="no one function for CasADi"):
+        export(model, tmp_path / "folder", derivatives=True)
+    with pytest.raises(ExportError, match=r"of shape \(k, 3\), got shape \(1, 2\)"):
+        export(model, tmp_path / "folder", load_cases=np.zeros((1, 2)))
+    free = scene(rods=[rod("planar")])
+    with pytest.raises(ExportError, match="no rod of this scene touches an obstacle exactly"):
+        export(build(free, discretise(free, 1, 2)), tmp_path / "folder", load_cases=np.zeros((1, 0)))
+    assert not list(tmp_path.iterdir())
+
+
+def test_load_names_the_other_function(bar: ContactLibrary) -> None:
+    """A folder in exact contact is loaded by a function of its own, and any other folder is not."""
+    with pytest.raises(ExportError, match="load it with load_in_contact"):
+        load(bar.folder)
+    with pytest.raises(ExportError, match="load any other with load"):
+        load_in_contact(Path(__file__).parents[2] / "generated" / "nitinol_wire")
+
+
+@pytest.mark.slow
+def test_a_rod_that_slides_aside_over_a_bar(tmp_path: Path) -> None:
+    """The example, in space: driven in a loop, as Python finds it."""
+    wanted = read_scene("examples/rod_over_bar.toml", ["accuracy.modes=5"])
+    model = build(wanted)
+    library = load_in_contact(export(model, tmp_path / "bar", load_cases=np.array([down(1.4), down(0.05)])))
+    found = library.solve()
+    for force in np.linspace(1.0, 1.4, 5):
+        found = library.track(down(force), found)
+        assert_same(found, solve(model, down(force)), forces=1e-8)
