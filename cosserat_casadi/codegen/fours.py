@@ -23,14 +23,12 @@ from cosserat_casadi.codegen.listing import (
     Read,
     UnknownOperationError,
 )
-from cosserat_casadi.codegen.statements import Block, Statement, in_parts, number_in_c, on_fours, on_numbers
+from cosserat_casadi.codegen.statements import Block, Statement, called, in_parts, number_in_c, on_fours, on_numbers
 from cosserat_casadi.codegen.texts import fill, resource
 from cosserat_casadi.maths.typing import FloatArray
 
 FEWEST = 3
 """Calls of one function from which on they are made together."""
-
-HEADER = "fours.h"
 
 PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define {name}_SZ_ARG 3
@@ -96,9 +94,9 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
     }
     bodies = "\n".join(kernel.body for kernel in kernels)
-    head = "/* Included once for each width of vectors. */\n"
     prototypes = "".join(PROTOTYPE.format(name=kernel.name(), reals=kernel.reals) for kernel in kernels)
-    included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
+    text = f"/* Included once for each width of vectors. */\n{bodies}"
+    included = {f"{stem}_in_fours.h": text, "fours.h": resource("c", "fours.h")}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)
 
 
@@ -304,7 +302,9 @@ class _Writing:
                 place = batch.given + i * batch.width + lane
                 self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
-        self.main.statements.append(Statement(f"MADE({name})(w + {batch.given}, w + {batch.made});", []))
+        lane = " + lane" if batch.width == LANES else ""
+        places = f"w + {batch.given}{lane}, w + {batch.made}{lane}"
+        self.main.statements.append(called(f"MADE({name})({places})", batch.width))
 
     def _write_results(self) -> None:
         """Append the entries of the first result."""
@@ -350,7 +350,7 @@ class _Writing:
         wide = width == LANES
         arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
         results = _starts(function.nnz_out(i) for i in range(function.n_out()))
-        block = Block("four", "b", []) if wide else Block("casadi_real", "a", [])
+        block = Block("FOUR", "b", []) if wide else Block("casadi_real", "a", [])
         for number, value in enumerate(listing.values):
             if isinstance(value, Computed):
                 written = on_fours if wide else on_numbers
@@ -384,16 +384,16 @@ class _Writing:
         for k, statements in enumerate(parts):
             own = {statement.made for statement in statements}
             elsewhere = {value: place for value, place in passed.items() if value not in own}
-            block = Block("four", "b", statements)
-            lines = block.lines(partial(self._text_in_columns, elsewhere))
+            block = Block("FOUR", "b", statements)
             names.append(f"{self.name}_columns_{k}")
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
-            self._write(f"{names[-1]})({given}", lines)
+            self._write(f"{names[-1]})({given}", block.lines(partial(self._text_in_columns, elsewhere)))
             self.statements += len(block.statements)
         for first in range(0, form.stride, LANES):
             for name in names:
-                given = f"w, {self.name}_turns + {len(form.turns) * first}, w + {self.columns + first}, w + {room}"
-                self.main.statements.append(Statement(f"MADE({name})({given});", []))
+                turns = f"{self.name}_turns + {len(form.turns) * first} + lane"
+                given = f"w, {turns}, w + {self.columns + first} + lane, w + {room} + lane"
+                self.main.statements.append(called(f"MADE({name})({given})", LANES))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
         statements = []
@@ -410,8 +410,7 @@ class _Writing:
             if row in entries:
                 statements.append(Statement(f"STORE(columns + {place}, {{0}});", [entries[row]]))
             else:
-                zeros = [Statement(f"columns[{place + lane}] = 0;", []) for lane in range(LANES)]
-                statements += zeros
+                statements.append(Statement(f"CLEAR(columns + {place});", []))
         return statements
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:
