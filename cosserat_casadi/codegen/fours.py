@@ -24,7 +24,7 @@ from cosserat_casadi.codegen.listing import (
     Read,
     UnknownOperationError,
 )
-from cosserat_casadi.codegen.statements import Block, Statement, in_parts, number_in_c, on_fours, on_numbers
+from cosserat_casadi.codegen.statements import Block, Statement, called, in_parts, number_in_c, on_fours, on_numbers
 from cosserat_casadi.maths.typing import FloatArray
 
 FEWEST = 3
@@ -244,7 +244,9 @@ class _Writing:
                 place = batch.given + i * batch.width + lane
                 self.main.statements.append(Statement(f"w[{place}] = {{0}};", [operand]))
         name = self._callee_name(self.listing.calls[batch.calls[0]].function, batch.width)
-        self.main.statements.append(Statement(f"MADE({name})(w + {batch.given}, w + {batch.made});", []))
+        lane = " + lane" if batch.width == LANES else ""
+        places = f"w + {batch.given}{lane}, w + {batch.made}{lane}"
+        self.main.statements.append(called(f"MADE({name})({places})", batch.width))
 
     def _write_results(self) -> None:
         """Append the entries of the first result."""
@@ -290,7 +292,7 @@ class _Writing:
         wide = width == LANES
         arguments = _starts(function.nnz_in(i) for i in range(function.n_in()))
         results = _starts(function.nnz_out(i) for i in range(function.n_out()))
-        block = Block("four", "b", []) if wide else Block("casadi_real", "a", [])
+        block = Block("FOUR", "b", []) if wide else Block("casadi_real", "a", [])
         for number, value in enumerate(listing.values):
             if isinstance(value, Computed):
                 written = on_fours if wide else on_numbers
@@ -324,11 +326,10 @@ class _Writing:
         for k, statements in enumerate(parts):
             own = {statement.made for statement in statements}
             elsewhere = {value: place for value, place in passed.items() if value not in own}
-            block = Block("four", "b", statements)
-            lines = block.lines(partial(self._text_in_columns, elsewhere))
+            block = Block("FOUR", "b", statements)
             names.append(f"{self.name}_columns_{k}")
             given = "const casadi_real *w, const casadi_real *turns, casadi_real *columns, casadi_real *passed"
-            self._write(f"{names[-1]})({given}", lines)
+            self._write(f"{names[-1]})({given}", block.lines(partial(self._text_in_columns, elsewhere)))
             self.statements += len(block.statements)
         size = len(form.turns)
         turns = f"{self.name}_turns"
@@ -338,8 +339,9 @@ class _Writing:
             start = form.turns_behind
         for first in range(0, form.stride, LANES):
             for name in names:
-                given = f"w, {turns} + {start + size * first}, w + {self.columns + first}, w + {room}"
-                self.main.statements.append(Statement(f"MADE({name})({given});", []))
+                given_turns = f"{turns} + {start + size * first} + lane"
+                given = f"w, {given_turns}, w + {self.columns + first} + lane, w + {room} + lane"
+                self.main.statements.append(called(f"MADE({name})({given})", LANES))
 
     def _statements_of_columns(self, form: ColumnForm) -> list[Statement]:
         statements = []
@@ -356,8 +358,7 @@ class _Writing:
             if row in entries:
                 statements.append(Statement(f"STORE(columns + {place}, {{0}});", [entries[row]]))
             else:
-                zeros = [Statement(f"columns[{place + lane}] = 0;", []) for lane in range(LANES)]
-                statements += zeros
+                statements.append(Statement(f"CLEAR(columns + {place});", []))
         return statements
 
     def _text_in_columns(self, elsewhere: dict[int, int], number: int) -> str | None:

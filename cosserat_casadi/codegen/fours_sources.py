@@ -10,8 +10,6 @@ import casadi as ca
 
 from cosserat_casadi.codegen.texts import fill, resource
 
-HEADER = "fours.h"
-
 PROTOTYPE = """int {name}(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define {name}_SZ_ARG {arguments}
 #define {name}_SZ_RES 1
@@ -84,7 +82,7 @@ def sources_in_fours(kernels: Sequence[InFours], stem: str) -> SourcesInFours:
         "kernels": "".join(f"KERNEL({kernel.name()})\n" for kernel in kernels),
     }
     bodies = "\n".join(kernel.body for kernel in kernels)
-    head = "/* Included once for each width of vectors. */\n"
     prototypes = "".join(kernel.prototype() for kernel in kernels)
-    included = {f"{stem}_in_fours.h": f"{head}{bodies}", HEADER: resource("c", HEADER)}
+    text = f"/* Included once for each width of vectors. */\n{bodies}"
+    included = {f"{stem}_in_fours.h": text, "fours.h": resource("c", "fours.h")}
     return SourcesInFours(fill(resource("templates", "fours.c.in"), words), prototypes, included)

@@ -34,6 +34,10 @@ PARTED = ("path_residual", "path_jacobian")
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
+STRAIGHT_BESIDE = {"tip_jacobian": 6000}
+"""Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a
+tip's Jacobian from there on, and compilers take half as long for them."""
+
 GENERATOR = {"with_header": True, "static_aux": True}
 
 
@@ -84,7 +88,7 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
                 return in_fours(straight, _signature(entry))
     except UnknownOperationError:
         pass
-    return kernel(model, entry.function, entry.kernel)
+    return kernel(model, entry.function, entry.kernel, STRAIGHT_BESIDE.get(entry.spec.name, STRAIGHT))
 
 
 def _signature(entry: FunctionInC) -> ca.Function:

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from cosserat_casadi.codegen.columns import LANES
 from cosserat_casadi.codegen.listing import BINARY, FUNCTIONS, UnknownOperationError
-
-WORDS = {"+": "ADD", "-": "SUBTRACT", "*": "MULTIPLY", "/": "DIVIDE"}
-"""Operations on fours, as fours.h calls them."""
 
 LONGEST = 300
 """Statements on fours in one function: compilers take longer, and stack without optimisation, with longer ones."""
@@ -92,7 +90,12 @@ def on_fours(operation: int, operands: Sequence[int], made: int) -> Statement:
     """
     if operation not in BINARY:
         raise UnknownOperationError(FUNCTIONS[operation])
-    return Statement(f"{{made}} = {WORDS[BINARY[operation]]}({{0}}, {{1}});", operands, made)
+    return on_numbers(operation, operands, made)
+
+
+def called(call: str, width: int) -> Statement:
+    """A call, for every lane of a four where it is of that width."""
+    return Statement(f"EVERY_LANE({call})" if width == LANES else f"{call};", [])
 
 
 def in_parts(statements: Sequence[Statement]) -> tuple[list[list[Statement]], dict[int, int]]:

@@ -7457,7 +7457,14 @@ CASADI_SYMBOL_EXPORT int follower_reissner_k_shape(const casadi_real** arg, casa
 
 /* ---- In fours ---- */
 
-#include "fours.h"
+#if defined(__GNUC__) && !defined(FOURS_ONE_BY_ONE)
+#define FOURS_HAVE_VECTORS
+/* On x86 functions are made a second time for the wider vectors of newer processors, and chosen as the program runs,
+   unless FOURS_ONCE asks for vectors that any processor has. */
+#if defined(__x86_64__) && !defined(__AVX2__) && !defined(FOURS_ONCE)
+#define FOURS_TWICE
+#endif
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -7510,8 +7517,13 @@ static const casadi_real follower_reissner_k_jacobian_turns[360] = {
   0, 0, 0, 0, 0, 0, 0, 0,
   0, 0, 0, 0, 0, 0, 0, 0};
 
+#if defined(FOURS_HAVE_VECTORS) && !defined(FOURS_TWICE)
+#define FOURS_IN_VECTORS
+#endif
+#include "fours.h"
 #if defined(__GNUC__) && !defined(__clang__) && (defined(FOURS_TWICE) || !defined(__OPTIMIZE__))
-/* For older processors, or without optimisation: what takes compilers longest is left out, but not what saves stack. */
+/* For older processors, or without optimisation: what takes compilers longest is left out, but not what saves stack.
+   Older processors compute lane after lane, since vectors of two take compilers twice as long. */
 #define FOURS_PLAINLY
 #pragma GCC push_options
 #pragma GCC optimize("O1")
@@ -7524,6 +7536,8 @@ static const casadi_real follower_reissner_k_jacobian_turns[360] = {
 #endif
 
 #ifdef FOURS_TWICE
+#define FOURS_IN_VECTORS
+#include "fours.h"
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #else

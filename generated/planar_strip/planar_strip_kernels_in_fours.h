@@ -1,46 +1,46 @@
 /* Included once for each width of vectors. */
 static void MADE(planar_strip_k_residual_increments)(const casadi_real *given, casadi_real *made) {
-  four b0, b1, b2, b3;
-  b0 = MULTIPLY(LOAD(given + 0), LOAD(given + 0));
-  b1 = MULTIPLY(EACH((-1.9572941063391263e-20)), b0);
-  b1 = ADD(EACH(8.22063524662433e-18), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH((-2.8114572543455206e-15)), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH(7.647163731819816e-13), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH((-1.6059043836821613e-10)), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH(2.505210838544172e-08), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH((-2.7557319223985893e-06)), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH(0.0001984126984126984), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH((-0.008333333333333333)), b1);
-  b1 = MULTIPLY(b0, b1);
-  b1 = ADD(EACH(0.16666666666666666), b1);
-  b2 = MULTIPLY(b0, b1);
-  b2 = SUBTRACT(EACH(1.0), b2);
-  b3 = MULTIPLY(EACH(4.289943320229371e-20), b0);
-  b3 = ADD(EACH((-4.667458332409556e-17)), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH(3.920664999224027e-14), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH((-2.446494959515793e-11)), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH(1.076457782186949e-08), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH((-3.1001984126984127e-06)), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH(0.0005208333333333333), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH((-0.041666666666666664)), b3);
-  b3 = MULTIPLY(b0, b3);
-  b3 = ADD(EACH(1.0), b3);
-  b2 = DIVIDE(b2, b3);
-  b0 = DIVIDE(b3, EACH(2.0));
-  b0 = MULTIPLY(b0, LOAD(given + 0));
+  FOUR b0, b1, b2, b3;
+  b0 = LOAD(given + 0) * LOAD(given + 0);
+  b1 = EACH((-1.9572941063391263e-20)) * b0;
+  b1 = EACH(8.22063524662433e-18) + b1;
+  b1 = b0 * b1;
+  b1 = EACH((-2.8114572543455206e-15)) + b1;
+  b1 = b0 * b1;
+  b1 = EACH(7.647163731819816e-13) + b1;
+  b1 = b0 * b1;
+  b1 = EACH((-1.6059043836821613e-10)) + b1;
+  b1 = b0 * b1;
+  b1 = EACH(2.505210838544172e-08) + b1;
+  b1 = b0 * b1;
+  b1 = EACH((-2.7557319223985893e-06)) + b1;
+  b1 = b0 * b1;
+  b1 = EACH(0.0001984126984126984) + b1;
+  b1 = b0 * b1;
+  b1 = EACH((-0.008333333333333333)) + b1;
+  b1 = b0 * b1;
+  b1 = EACH(0.16666666666666666) + b1;
+  b2 = b0 * b1;
+  b2 = EACH(1.0) - b2;
+  b3 = EACH(4.289943320229371e-20) * b0;
+  b3 = EACH((-4.667458332409556e-17)) + b3;
+  b3 = b0 * b3;
+  b3 = EACH(3.920664999224027e-14) + b3;
+  b3 = b0 * b3;
+  b3 = EACH((-2.446494959515793e-11)) + b3;
+  b3 = b0 * b3;
+  b3 = EACH(1.076457782186949e-08) + b3;
+  b3 = b0 * b3;
+  b3 = EACH((-3.1001984126984127e-06)) + b3;
+  b3 = b0 * b3;
+  b3 = EACH(0.0005208333333333333) + b3;
+  b3 = b0 * b3;
+  b3 = EACH((-0.041666666666666664)) + b3;
+  b3 = b0 * b3;
+  b3 = EACH(1.0) + b3;
+  b2 = b2 / b3;
+  b0 = b3 / EACH(2.0);
+  b0 = b0 * LOAD(given + 0);
   STORE(made + 0, b2);
   STORE(made + 4, b0);
   STORE(made + 8, LOAD(given + 0));
@@ -49,8 +49,8 @@ static void MADE(planar_strip_k_residual_increments)(const casadi_real *given, c
 }
 
 static void MADE(planar_strip_k_residual_pulls)(const casadi_real *given, casadi_real *made) {
-  four b0;
-  b0 = MULTIPLY(LOAD(given + 24), LOAD(given + 40));
+  FOUR b0;
+  b0 = LOAD(given + 24) * LOAD(given + 40);
   STORE(made + 0, b0);
 }
 
@@ -89,7 +89,7 @@ static int MADE(planar_strip_k_residual)(const casadi_real **arg, casadi_real **
   w[1] = a7;
   w[2] = a10;
   w[3] = a12;
-  MADE(planar_strip_k_residual_increments)(w + 0, w + 4);
+  EVERY_LANE(MADE(planar_strip_k_residual_increments)(w + 0 + lane, w + 4 + lane))
   a11 = arg[2] ? arg[2][0] : 0;
   a13 = arg[1] ? arg[1][3] : 0;
   a14 = 2.220446049250313e-16 * a13;
@@ -117,7 +117,7 @@ static int MADE(planar_strip_k_residual)(const casadi_real **arg, casadi_real **
   w[1] = a6;
   w[2] = a6;
   w[3] = a6;
-  MADE(planar_strip_k_residual_increments)(w + 0, w + 24);
+  EVERY_LANE(MADE(planar_strip_k_residual_increments)(w + 0 + lane, w + 24 + lane))
   a3 = a20 * w[24];
   a8 = a18 * w[11];
   a16 = a21 * w[7];
@@ -301,7 +301,7 @@ static int MADE(planar_strip_k_residual)(const casadi_real **arg, casadi_real **
   w[83] = a29;
   w[87] = a3;
   w[91] = a8;
-  MADE(planar_strip_k_residual_pulls)(w + 44, w + 92);
+  EVERY_LANE(MADE(planar_strip_k_residual_pulls)(w + 44 + lane, w + 92 + lane))
   a8 = w[92] + w[93];
   a3 = (-1.1164549684630114) * a8;
   a29 = w[94] + w[95];
@@ -357,7 +357,7 @@ static int MADE(planar_strip_k_residual)(const casadi_real **arg, casadi_real **
   w[83] = a33;
   w[87] = a49;
   w[91] = a20;
-  MADE(planar_strip_k_residual_pulls)(w + 44, w + 96);
+  EVERY_LANE(MADE(planar_strip_k_residual_pulls)(w + 44 + lane, w + 96 + lane))
   a20 = w[96] + w[97];
   a49 = (-4.166666666666669) * a20;
   a49 = a30 + a49;

@@ -16,7 +16,7 @@ from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.kernels import scalar
 from cosserat_casadi.codegen.listing import Listing, UnknownOperationError
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.model.functions import operations
+from cosserat_casadi.model.operations import operations
 from tests.codegen.libraries import gcc, run
 
 LOADS = {
