@@ -41,7 +41,6 @@ extern "C" {
 #define casadi_f0 CASADI_PREFIX(f0)
 #define casadi_f1 CASADI_PREFIX(f1)
 #define casadi_f10 CASADI_PREFIX(f10)
-#define casadi_f11 CASADI_PREFIX(f11)
 #define casadi_f2 CASADI_PREFIX(f2)
 #define casadi_f3 CASADI_PREFIX(f3)
 #define casadi_f4 CASADI_PREFIX(f4)
@@ -164,755 +163,8 @@ static int casadi_f1(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   return 0;
 }
 
-/* variation:(turn,omega[3x1,1nz],factors[2],rotation[3x3,5nz],moment[3])->(A[3x1,1nz],V[3x3,8nz],H[1x1,0nz]) */
-static int casadi_f2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
-  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  a00=arg[3]? arg[3][2] : 0;
-  if (res[0]!=0) res[0][0]=a00;
-  a01=arg[1]? arg[1][0] : 0;
-  a00=(a00*a01);
-  a01=5.0000000000000000e-01;
-  a02=arg[2]? arg[2][0] : 0;
-  a02=casadi_sq(a02);
-  a01=(a01/a02);
-  a02=-2.7777777777777779e-03;
-  a03=casadi_sq(a00);
-  a04=9.9206349206349206e-05;
-  a05=-1.6534391534391535e-06;
-  a06=1.6701405590294480e-08;
-  a07=-1.1470745597729724e-10;
-  a08=5.7353727988648621e-13;
-  a09=-2.1866889756020719e-15;
-  a10=6.5765081972994638e-18;
-  a11=-1.6014224506411032e-20;
-  a11=(a11*a03);
-  a10=(a10+a11);
-  a10=(a03*a10);
-  a09=(a09+a10);
-  a09=(a03*a09);
-  a08=(a08+a09);
-  a08=(a03*a08);
-  a07=(a07+a08);
-  a07=(a03*a07);
-  a06=(a06+a07);
-  a06=(a03*a06);
-  a05=(a05+a06);
-  a05=(a03*a05);
-  a04=(a04+a05);
-  a04=(a03*a04);
-  a02=(a02+a04);
-  a04=(a01*a02);
-  a05=arg[4]? arg[4][1] : 0;
-  a06=(a05*a00);
-  a04=(a04*a06);
-  a04=(a04*a00);
-  a06=arg[2]? arg[2][1] : 0;
-  a03=(a03*a02);
-  a06=(a06+a03);
-  a01=(a01*a06);
-  a06=(a01*a05);
-  a04=(a04-a06);
-  a04=(a00*a04);
-  a04=(2.*a04);
-  a04=(-a04);
-  if (res[1]!=0) res[1][0]=a04;
-  a06=arg[4]? arg[4][2] : 0;
-  a03=2.;
-  a02=(a06/a03);
-  a07=arg[4]? arg[4][0] : 0;
-  a08=(a01*a07);
-  a08=(a00*a08);
-  a09=(a02-a08);
-  if (res[1]!=0) res[1][1]=a09;
-  a05=(a05/a03);
-  a09=(-a05);
-  if (res[1]!=0) res[1][2]=a09;
-  a02=(a02+a08);
-  a02=(-a02);
-  if (res[1]!=0) res[1][3]=a02;
-  a07=(a07/a03);
-  a01=(a01*a06);
-  a00=(a00*a01);
-  a01=(a07-a00);
-  if (res[1]!=0) res[1][4]=a01;
-  if (res[1]!=0) res[1][5]=a05;
-  a07=(a07+a00);
-  a07=(-a07);
-  if (res[1]!=0) res[1][6]=a07;
-  if (res[1]!=0) res[1][7]=a04;
-  return 0;
-}
-
-/* planar_strip_k_jacobian:(x[4],inputs[6],load_factor)->(jacobian[4x4]) */
-static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
-  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
-  casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
-  casadi_real a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47;
-  casadi_real a48, a49, a50, a51, a52, a53, a54, a55, a56, a57, a58, a59;
-  casadi_real a60, a61, a62, a63, a64, a65, a66, a67, a68, a69, a70, a71;
-  casadi_real a72, a73, a74, a75, a76, a77, a78, a79, a80, a81, a82, a83;
-  casadi_real a84, a85, a86, a87, a88, a89, a90, a91, a92, a93, a94, a95;
-  casadi_real a96;
-  a00=1.;
-  a01=-1.1164549684630114e+00;
-  a02=6.6987298107780688e-02;
-  a03=arg[0]? arg[0][0] : 0;
-  a04=(a02*a03);
-  a05=5.4126587736527412e-02;
-  a06=arg[0]? arg[0][2] : 0;
-  a07=(a05*a06);
-  a08=(a04+a07);
-  a09=-6.2500000000000000e-02;
-  a10=arg[0]? arg[0][1] : 0;
-  a11=(a09*a10);
-  a12=-4.2968749999999979e-02;
-  a13=arg[0]? arg[0][3] : 0;
-  a14=(a12*a13);
-  a14=(a11+a14);
-  a15=(a08+a14);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a15;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a16 = w[1];
-  a17 = w[2];
-  a18 = w[3];
-  a19 = w[4];
-  a20 = w[5];
-  a21=0.;
-  a22=arg[2]? arg[2][0] : 0;
-  a23=2.2204460492503131e-16;
-  a24=arg[1]? arg[1][3] : 0;
-  a25=(a23*a24);
-  a26=arg[1]? arg[1][5] : 0;
-  a25=(a25-a26);
-  a25=(a22*a25);
-  a27=2.9999999999999999e-01;
-  a28=1.8301270189221933e-01;
-  a29=(a28*a03);
-  a30=3.9623412263472567e-02;
-  a31=(a30*a06);
-  a29=(a29+a31);
-  a31=-1.2499999999999999e-01;
-  a32=(a31*a10);
-  a33=3.1250000000000014e-02;
-  a34=(a33*a13);
-  a32=(a32+a34);
-  a34=(a29+a32);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a34;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a35 = w[1];
-  a36 = w[2];
-  a37 = w[3];
-  a38 = w[4];
-  a39 = w[5];
-  a40=(a16*a35);
-  a41=(a17*a36);
-  a40=(a40-a41);
-  a41=2.5000000000000011e-01;
-  a42=(a41*a03);
-  a43=-9.3750000000000014e-02;
-  a44=(a43*a06);
-  a42=(a42+a44);
-  a44=-6.2500000000000014e-02;
-  a45=(a44*a10);
-  a46=7.4218750000000014e-02;
-  a13=(a46*a13);
-  a45=(a45+a13);
-  a13=(a42+a45);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a13;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a47 = w[1];
-  a48 = w[2];
-  a49 = w[3];
-  a50 = w[4];
-  a51 = w[5];
-  a52=(a40*a47);
-  a36=(a16*a36);
-  a35=(a17*a35);
-  a36=(a36+a35);
-  a35=(a36*a48);
-  a52=(a52-a35);
-  a42=(a42-a45);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a42;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a45 = w[1];
-  a35 = w[2];
-  a53 = w[3];
-  a54 = w[4];
-  a55 = w[5];
-  a56=(a52*a45);
-  a48=(a40*a48);
-  a47=(a36*a47);
-  a48=(a48+a47);
-  a47=(a48*a35);
-  a56=(a56-a47);
-  a29=(a29-a32);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a29;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a32 = w[1];
-  a47 = w[2];
-  a57 = w[3];
-  a58 = w[4];
-  a59 = w[5];
-  a60=(a56*a32);
-  a35=(a52*a35);
-  a45=(a48*a45);
-  a35=(a35+a45);
-  a45=(a35*a47);
-  a60=(a60-a45);
-  a14=(a08-a14);
-  arg[3]=w+0;
-  res[1]=w+1;
-  res[2]=w+3;
-  res[3]=w+4;
-  w[0] = a14;
-  if (casadi_f1(arg+3, res+1, iw, w+6, 0)) return 1;
-  a45 = w[1];
-  a61 = w[2];
-  a62 = w[3];
-  a63 = w[4];
-  a64 = w[5];
-  a65=(a60*a61);
-  a47=(a56*a47);
-  a32=(a35*a32);
-  a47=(a47+a32);
-  a32=(a47*a45);
-  a65=(a65+a32);
-  a32=(2.*a65);
-  a32=(a32*a65);
-  a32=(a00-a32);
-  a32=(a27*a32);
-  a66=1.4285714285714282e-02;
-  a67=arg[1]? arg[1][1] : 0;
-  a67=(a22*a67);
-  a68=(a66*a67);
-  a69=(a32*a68);
-  a25=(a25-a69);
-  a69=(2.*a47);
-  a69=(a69*a47);
-  a69=(a00-a69);
-  a70=(a27*a69);
-  a71=1.2698412698412698e-01;
-  a72=(a71*a67);
-  a73=(a70*a72);
-  a73=(a25-a73);
-  a74=(2.*a35);
-  a74=(a74*a35);
-  a74=(a00-a74);
-  a75=(a27*a74);
-  a76=2.2857142857142854e-01;
-  a77=(a76*a67);
-  a78=(a75*a77);
-  a78=(a73-a78);
-  a79=(2.*a48);
-  a79=(a79*a48);
-  a79=(a00-a79);
-  a80=(a27*a79);
-  a81=2.6031746031746034e-01;
-  a67=(a81*a67);
-  a82=(a80*a67);
-  a82=(a78-a82);
-  a83=(2.*a36);
-  a83=(a83*a36);
-  a83=(a00-a83);
-  a84=(a27*a83);
-  a85=(a84*a77);
-  a85=(a82-a85);
-  a86=(2.*a17);
-  a86=(a86*a17);
-  a86=(a00-a86);
-  a87=(a27*a86);
-  a88=(a87*a72);
-  a88=(a85-a88);
-  a89=arg[1]? arg[1][0] : 0;
-  a90=(a23*a89);
-  a91=arg[1]? arg[1][2] : 0;
-  a90=(a90-a91);
-  a90=(a22*a90);
-  a92=(a66*a90);
-  a93=(a32*a92);
-  a45=(a60*a45);
-  a61=(a47*a61);
-  a45=(a45-a61);
-  a45=(2.*a45);
-  a45=(a45*a65);
-  a45=(a27*a45);
-  a91=(a23*a91);
-  a89=(a89+a91);
-  a89=(a22*a89);
-  a66=(a66*a89);
-  a91=(a45*a66);
-  a93=(a93-a91);
-  a91=arg[1]? arg[1][4] : 0;
-  a91=(a22*a91);
-  a93=(a93+a91);
-  a91=(a71*a90);
-  a65=(a70*a91);
-  a60=(2.*a60);
-  a60=(a60*a47);
-  a47=(a27*a60);
-  a71=(a71*a89);
-  a61=(a47*a71);
-  a65=(a65-a61);
-  a65=(a93+a65);
-  a61=(a76*a90);
-  a94=(a75*a61);
-  a56=(2.*a56);
-  a56=(a56*a35);
-  a35=(a27*a56);
-  a76=(a76*a89);
-  a95=(a35*a76);
-  a94=(a94-a95);
-  a94=(a65+a94);
-  a90=(a81*a90);
-  a95=(a80*a90);
-  a52=(2.*a52);
-  a52=(a52*a48);
-  a48=(a27*a52);
-  a81=(a81*a89);
-  a89=(a48*a81);
-  a95=(a95-a89);
-  a95=(a94+a95);
-  a89=(a84*a61);
-  a40=(2.*a40);
-  a40=(a40*a36);
-  a36=(a27*a40);
-  a96=(a36*a76);
-  a89=(a89-a96);
-  a89=(a95+a89);
-  a96=(a87*a91);
-  a16=(2.*a16);
-  a16=(a16*a17);
-  a27=(a27*a16);
-  a17=(a27*a71);
-  a96=(a96-a17);
-  a96=(a89+a96);
-  a68=(a45*a68);
-  a23=(a23*a26);
-  a24=(a24+a23);
-  a22=(a22*a24);
-  a68=(a68+a22);
-  a22=(a47*a72);
-  a22=(a68+a22);
-  a24=(a35*a77);
-  a24=(a22+a24);
-  a67=(a48*a67);
-  a67=(a24+a67);
-  a77=(a36*a77);
-  a77=(a67+a77);
-  a72=(a27*a72);
-  a72=(a77+a72);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a15;
-  w[1] = a18;
-  w[2] = a19;
-  w[3] = a20;
-  w[4] = a00;
-  w[5] = a21;
-  w[6] = a00;
-  w[7] = a21;
-  w[8] = a00;
-  w[9] = a88;
-  w[10] = a96;
-  w[11] = a72;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a15 = w[12];
-  a66=(a66*a32);
-  a92=(a92*a45);
-  a66=(a66+a92);
-  a92=(a02*a15);
-  a45=(-a16);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a34;
-  w[1] = a37;
-  w[2] = a38;
-  w[3] = a39;
-  w[4] = a86;
-  w[5] = a45;
-  w[6] = a00;
-  w[7] = a16;
-  w[8] = a86;
-  w[9] = a85;
-  w[10] = a89;
-  w[11] = a77;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a34 = w[12];
-  a37=(a28*a34);
-  a37=(a92+a37);
-  a38=(-a40);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a13;
-  w[1] = a49;
-  w[2] = a50;
-  w[3] = a51;
-  w[4] = a83;
-  w[5] = a38;
-  w[6] = a00;
-  w[7] = a40;
-  w[8] = a83;
-  w[9] = a82;
-  w[10] = a95;
-  w[11] = a67;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a13 = w[12];
-  a49=(a41*a13);
-  a49=(a37+a49);
-  a50=(-a52);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a42;
-  w[1] = a53;
-  w[2] = a54;
-  w[3] = a55;
-  w[4] = a79;
-  w[5] = a50;
-  w[6] = a00;
-  w[7] = a52;
-  w[8] = a79;
-  w[9] = a78;
-  w[10] = a94;
-  w[11] = a24;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a42 = w[12];
-  a41=(a41*a42);
-  a41=(a49+a41);
-  a53=(-a56);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a29;
-  w[1] = a57;
-  w[2] = a58;
-  w[3] = a59;
-  w[4] = a74;
-  w[5] = a53;
-  w[6] = a00;
-  w[7] = a56;
-  w[8] = a74;
-  w[9] = a73;
-  w[10] = a65;
-  w[11] = a22;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a29 = w[12];
-  a28=(a28*a29);
-  a28=(a41+a28);
-  a57=(-a60);
-  arg[3]=w+0;
-  arg[4]=w+1;
-  arg[5]=w+2;
-  arg[6]=w+4;
-  arg[7]=w+9;
-  res[1]=w+12;
-  res[2]=w+13;
-  res[3]=w+21;
-  w[0] = a14;
-  w[1] = a62;
-  w[2] = a63;
-  w[3] = a64;
-  w[4] = a69;
-  w[5] = a57;
-  w[6] = a00;
-  w[7] = a60;
-  w[8] = a69;
-  w[9] = a25;
-  w[10] = a93;
-  w[11] = a68;
-  if (casadi_f2(arg+3, res+1, iw, w+21, 0)) return 1;
-  a14 = w[12];
-  a62=(a02*a14);
-  a62=(a28+a62);
-  a62=(a66*a62);
-  a70=(a71*a70);
-  a47=(a91*a47);
-  a70=(a70+a47);
-  a28=(a70*a28);
-  a28=(a62+a28);
-  a75=(a76*a75);
-  a35=(a61*a35);
-  a75=(a75+a35);
-  a41=(a75*a41);
-  a41=(a28+a41);
-  a81=(a81*a80);
-  a90=(a90*a48);
-  a81=(a81+a90);
-  a49=(a81*a49);
-  a49=(a41+a49);
-  a76=(a76*a84);
-  a61=(a61*a36);
-  a76=(a76+a61);
-  a37=(a76*a37);
-  a37=(a49+a37);
-  a71=(a71*a87);
-  a91=(a91*a27);
-  a71=(a71+a91);
-  a92=(a71*a92);
-  a92=(a37+a92);
-  a92=(a15*a92);
-  a62=(a14*a62);
-  a92=(a92+a62);
-  a92=(a01*a92);
-  a62=-3.0502116982036553e+00;
-  a37=(a34*a37);
-  a28=(a29*a28);
-  a37=(a37+a28);
-  a37=(a62*a37);
-  a92=(a92+a37);
-  a37=-4.1666666666666687e+00;
-  a49=(a13*a49);
-  a41=(a42*a41);
-  a49=(a49+a41);
-  a49=(a37*a49);
-  a92=(a92+a49);
-  a92=(a00-a92);
-  if (res[0]!=0) res[0][0]=a92;
-  a92=(a09*a15);
-  a31=(a31*a34);
-  a31=(a92+a31);
-  a44=(a44*a13);
-  a44=(a31+a44);
-  a49=6.2500000000000014e-02;
-  a49=(a49*a42);
-  a49=(a44+a49);
-  a41=1.2499999999999999e-01;
-  a41=(a41*a29);
-  a41=(a49+a41);
-  a28=6.2500000000000000e-02;
-  a28=(a28*a14);
-  a28=(a41+a28);
-  a28=(a66*a28);
-  a41=(a70*a41);
-  a41=(a28+a41);
-  a49=(a75*a49);
-  a49=(a41+a49);
-  a44=(a81*a44);
-  a44=(a49+a44);
-  a31=(a76*a31);
-  a31=(a44+a31);
-  a92=(a71*a92);
-  a92=(a31+a92);
-  a92=(a15*a92);
-  a28=(a14*a28);
-  a91=(a92+a28);
-  a91=(a01*a91);
-  a31=(a34*a31);
-  a41=(a29*a41);
-  a27=(a31+a41);
-  a27=(a62*a27);
-  a91=(a91+a27);
-  a44=(a13*a44);
-  a49=(a42*a49);
-  a27=(a44+a49);
-  a27=(a37*a27);
-  a91=(a91+a27);
-  a91=(-a91);
-  if (res[0]!=0) res[0][1]=a91;
-  a27=(a05*a15);
-  a87=(a30*a34);
-  a87=(a27+a87);
-  a61=(a43*a13);
-  a61=(a87+a61);
-  a43=(a43*a42);
-  a43=(a61+a43);
-  a30=(a30*a29);
-  a30=(a43+a30);
-  a36=(a05*a14);
-  a36=(a30+a36);
-  a36=(a66*a36);
-  a30=(a70*a30);
-  a30=(a36+a30);
-  a43=(a75*a43);
-  a43=(a30+a43);
-  a61=(a81*a61);
-  a61=(a43+a61);
-  a87=(a76*a87);
-  a87=(a61+a87);
-  a27=(a71*a27);
-  a27=(a87+a27);
-  a27=(a15*a27);
-  a36=(a14*a36);
-  a84=(a27+a36);
-  a90=(a01*a84);
-  a87=(a34*a87);
-  a30=(a29*a30);
-  a48=(a87+a30);
-  a80=(a62*a48);
-  a90=(a90+a80);
-  a61=(a13*a61);
-  a43=(a42*a43);
-  a80=(a61+a43);
-  a35=(a37*a80);
-  a90=(a90+a35);
-  a90=(-a90);
-  if (res[0]!=0) res[0][2]=a90;
-  a12=(a12*a15);
-  a33=(a33*a34);
-  a33=(a12+a33);
-  a46=(a46*a13);
-  a46=(a33+a46);
-  a35=-7.4218750000000014e-02;
-  a35=(a35*a42);
-  a35=(a46+a35);
-  a47=-3.1250000000000014e-02;
-  a47=(a47*a29);
-  a47=(a35+a47);
-  a63=4.2968749999999979e-02;
-  a63=(a63*a14);
-  a63=(a47+a63);
-  a66=(a66*a63);
-  a70=(a70*a47);
-  a70=(a66+a70);
-  a75=(a75*a35);
-  a75=(a70+a75);
-  a81=(a81*a46);
-  a81=(a75+a81);
-  a76=(a76*a33);
-  a76=(a81+a76);
-  a71=(a71*a12);
-  a71=(a76+a71);
-  a15=(a15*a71);
-  a14=(a14*a66);
-  a66=(a15+a14);
-  a71=(a01*a66);
-  a34=(a34*a76);
-  a29=(a29*a70);
-  a70=(a34+a29);
-  a62=(a62*a70);
-  a71=(a71+a62);
-  a13=(a13*a81);
-  a42=(a42*a75);
-  a75=(a13+a42);
-  a37=(a37*a75);
-  a71=(a71+a37);
-  a71=(-a71);
-  if (res[0]!=0) res[0][3]=a71;
-  if (res[0]!=0) res[0][4]=a91;
-  a91=3.3333333333333337e-01;
-  a37=1.0416666666666667e+00;
-  a28=(a28-a92);
-  a28=(a37*a28);
-  a92=2.0833333333333330e+00;
-  a41=(a41-a31);
-  a41=(a92*a41);
-  a28=(a28+a41);
-  a41=1.0416666666666670e+00;
-  a49=(a49-a44);
-  a49=(a41*a49);
-  a28=(a28+a49);
-  a91=(a91+a28);
-  if (res[0]!=0) res[0][5]=a91;
-  a36=(a36-a27);
-  a36=(a37*a36);
-  a30=(a30-a87);
-  a30=(a92*a30);
-  a36=(a36+a30);
-  a43=(a43-a61);
-  a43=(a41*a43);
-  a36=(a36+a43);
-  if (res[0]!=0) res[0][6]=a36;
-  a14=(a14-a15);
-  a37=(a37*a14);
-  a29=(a29-a34);
-  a92=(a92*a29);
-  a37=(a37+a92);
-  a42=(a42-a13);
-  a41=(a41*a42);
-  a37=(a37+a41);
-  if (res[0]!=0) res[0][7]=a37;
-  if (res[0]!=0) res[0][8]=a90;
-  if (res[0]!=0) res[0][9]=a36;
-  a36=1.9999999999999996e-01;
-  a90=-9.0210979560879023e-01;
-  a84=(a90*a84);
-  a41=-6.6039020439120943e-01;
-  a48=(a41*a48);
-  a84=(a84+a48);
-  a48=1.5625000000000002e+00;
-  a80=(a48*a80);
-  a84=(a84+a80);
-  a36=(a36-a84);
-  if (res[0]!=0) res[0][10]=a36;
-  a90=(a90*a66);
-  a41=(a41*a70);
-  a90=(a90+a41);
-  a48=(a48*a75);
-  a90=(a90+a48);
-  a90=(-a90);
-  if (res[0]!=0) res[0][11]=a90;
-  if (res[0]!=0) res[0][12]=a71;
-  if (res[0]!=0) res[0][13]=a37;
-  if (res[0]!=0) res[0][14]=a90;
-  a90=1.4285714285714257e-01;
-  a37=7.1614583333333304e-01;
-  a37=(a37*a14);
-  a14=-5.2083333333333359e-01;
-  a14=(a14*a29);
-  a37=(a37+a14);
-  a14=-1.2369791666666670e+00;
-  a14=(a14*a42);
-  a37=(a37+a14);
-  a90=(a90+a37);
-  if (res[0]!=0) res[0][15]=a90;
-  return 0;
-}
-
-CASADI_SYMBOL_EXPORT int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f0(arg, res, iw, w, mem);
-}
-
 /* fwd1_pull:(turn,omega[3x1,1nz],factors[2],rotation[3x3,5nz],moment[3],out_force[1x1,0nz],fwd_turn,fwd_omega[3x1,1nz],fwd_factors[2],fwd_rotation[3x3,5nz],fwd_moment[3])->(fwd_force) */
-static int casadi_f4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f2(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1, a2;
   a0=arg[4]? arg[4][1] : 0;
   a1=arg[9]? arg[9][2] : 0;
@@ -926,7 +178,7 @@ static int casadi_f4(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 /* planar_strip_k_rate:(x[4],inputs[6],load_factor,inputs_rate[6],load_factor_rate)->(residual_rate[4]) */
-static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -1333,7 +585,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a100;
   w[22] = a081;
   w[23] = a028;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a014 = w[24];
   a017=(-a053);
   arg[5]=w+0;
@@ -1372,7 +624,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a025;
   w[22] = a030;
   w[23] = a039;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a013 = w[24];
   a055=(a014+a013);
   a056=(a000*a055);
@@ -1414,7 +666,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a099;
   w[22] = a078;
   w[23] = a033;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a031 = w[24];
   a034=(-a049);
   arg[5]=w+0;
@@ -1453,7 +705,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a095;
   w[22] = a064;
   w[23] = a012;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a029 = w[24];
   a050=(a031+a029);
   a057=(a057*a050);
@@ -1496,7 +748,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a098;
   w[22] = a074;
   w[23] = a041;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a040 = w[24];
   a042=(-a045);
   arg[5]=w+0;
@@ -1535,7 +787,7 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[21] = a097;
   w[22] = a069;
   w[23] = a032;
-  if (casadi_f4(arg+5, res+1, iw, w+25, 0)) return 1;
+  if (casadi_f2(arg+5, res+1, iw, w+25, 0)) return 1;
   a038 = w[24];
   a046=(a040+a038);
   a057=(a057*a046);
@@ -1575,11 +827,11 @@ static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f3(arg, res, iw, w, mem);
+  return casadi_f0(arg, res, iw, w, mem);
 }
 
 /* planar_strip_k_tangent:(inputs[6])->(tangent[4]) */
-static int casadi_f5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f3(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1, a2, a3;
   a0=-2.5000000000000000e+00;
   a1=arg[0]? arg[0][2] : 0;
@@ -1599,11 +851,11 @@ static int casadi_f5(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tangent(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f5(arg, res, iw, w, mem);
+  return casadi_f3(arg, res, iw, w, mem);
 }
 
 /* planar_strip_k_resolution_index:(x[4],inputs[6])->(resolution_index) */
-static int casadi_f6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f4(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10;
   a00=0.;
   a01=6.6987298107780688e-02;
@@ -1665,11 +917,11 @@ static int casadi_f6(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_resolution_index(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f6(arg, res, iw, w, mem);
+  return casadi_f4(arg, res, iw, w, mem);
 }
 
 /* pull:(turn,omega[3x1,1nz],factors[2],rotation[3x3,5nz],moment[3])->(force) */
-static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f6(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1;
   a0=arg[3]? arg[3][2] : 0;
   a1=arg[4]? arg[4][1] : 0;
@@ -1679,7 +931,7 @@ static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 /* planar_strip_k_igm:(q[4],base_position[3],base_quaternion[4],inputs[6])->(generalised_force[4],base_force[3],base_moment[3]) */
-static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f5(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a000, a001, a002, a003, a004, a005, a006, a007, a008, a009, a010, a011;
   casadi_real a012, a013, a014, a015, a016, a017, a018, a019, a020, a021, a022, a023;
   casadi_real a024, a025, a026, a027, a028, a029, a030, a031, a032, a033, a034, a035;
@@ -2017,7 +1269,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a100;
   w[10] = a077;
   w[11] = a078;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a014 = w[12];
   a017=(-a065);
   arg[4]=w+0;
@@ -2038,7 +1290,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a029;
   w[10] = a042;
   w[11] = a051;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a013 = w[12];
   a067=(a014+a013);
   a068=(a000*a067);
@@ -2062,7 +1314,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a096;
   w[10] = a083;
   w[11] = a084;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a043 = w[12];
   a046=(-a061);
   arg[4]=w+0;
@@ -2083,7 +1335,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a080;
   w[10] = a026;
   w[11] = a028;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a041 = w[12];
   a062=(a043+a041);
   a069=(a069*a062);
@@ -2108,7 +1360,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a092;
   w[10] = a089;
   w[11] = a090;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a052 = w[12];
   a054=(-a057);
   arg[4]=w+0;
@@ -2129,7 +1381,7 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   w[9] = a086;
   w[10] = a073;
   w[11] = a039;
-  if (casadi_f8(arg+4, res+3, iw, w+13, 0)) return 1;
+  if (casadi_f6(arg+4, res+3, iw, w+13, 0)) return 1;
   a050 = w[12];
   a058=(a052+a050);
   a069=(a069*a058);
@@ -2231,11 +1483,11 @@ static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_igm(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f7(arg, res, iw, w, mem);
+  return casadi_f5(arg, res, iw, w, mem);
 }
 
 /* planar_strip_k_tip:(x[4],inputs[6])->(position[3],quaternion[4]) */
-static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f7(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21;
   a00=3.8095238095238092e-02;
@@ -2441,11 +1693,90 @@ static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f9(arg, res, iw, w, mem);
+  return casadi_f7(arg, res, iw, w, mem);
+}
+
+/* variation:(turn,omega[3x1,1nz],factors[2],rotation[3x3,5nz],moment[3])->(A[3x1,1nz],V[3x3,8nz],H[1x1,0nz]) */
+static int casadi_f9(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  a00=arg[3]? arg[3][2] : 0;
+  if (res[0]!=0) res[0][0]=a00;
+  a01=arg[1]? arg[1][0] : 0;
+  a00=(a00*a01);
+  a01=5.0000000000000000e-01;
+  a02=arg[2]? arg[2][0] : 0;
+  a02=casadi_sq(a02);
+  a01=(a01/a02);
+  a02=-2.7777777777777779e-03;
+  a03=casadi_sq(a00);
+  a04=9.9206349206349206e-05;
+  a05=-1.6534391534391535e-06;
+  a06=1.6701405590294480e-08;
+  a07=-1.1470745597729724e-10;
+  a08=5.7353727988648621e-13;
+  a09=-2.1866889756020719e-15;
+  a10=6.5765081972994638e-18;
+  a11=-1.6014224506411032e-20;
+  a11=(a11*a03);
+  a10=(a10+a11);
+  a10=(a03*a10);
+  a09=(a09+a10);
+  a09=(a03*a09);
+  a08=(a08+a09);
+  a08=(a03*a08);
+  a07=(a07+a08);
+  a07=(a03*a07);
+  a06=(a06+a07);
+  a06=(a03*a06);
+  a05=(a05+a06);
+  a05=(a03*a05);
+  a04=(a04+a05);
+  a04=(a03*a04);
+  a02=(a02+a04);
+  a04=(a01*a02);
+  a05=arg[4]? arg[4][1] : 0;
+  a06=(a05*a00);
+  a04=(a04*a06);
+  a04=(a04*a00);
+  a06=arg[2]? arg[2][1] : 0;
+  a03=(a03*a02);
+  a06=(a06+a03);
+  a01=(a01*a06);
+  a06=(a01*a05);
+  a04=(a04-a06);
+  a04=(a00*a04);
+  a04=(2.*a04);
+  a04=(-a04);
+  if (res[1]!=0) res[1][0]=a04;
+  a06=arg[4]? arg[4][2] : 0;
+  a03=2.;
+  a02=(a06/a03);
+  a07=arg[4]? arg[4][0] : 0;
+  a08=(a01*a07);
+  a08=(a00*a08);
+  a09=(a02-a08);
+  if (res[1]!=0) res[1][1]=a09;
+  a05=(a05/a03);
+  a09=(-a05);
+  if (res[1]!=0) res[1][2]=a09;
+  a02=(a02+a08);
+  a02=(-a02);
+  if (res[1]!=0) res[1][3]=a02;
+  a07=(a07/a03);
+  a01=(a01*a06);
+  a00=(a00*a01);
+  a01=(a07-a00);
+  if (res[1]!=0) res[1][4]=a01;
+  if (res[1]!=0) res[1][5]=a05;
+  a07=(a07+a00);
+  a07=(-a07);
+  if (res[1]!=0) res[1][6]=a07;
+  if (res[1]!=0) res[1][7]=a04;
+  return 0;
 }
 
 /* planar_strip_k_tip_jacobian:(x[4],inputs[6])->(d_pose_d_x[7x4],d_pose_d_inputs[7x6]) */
-static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f8(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -2736,7 +2067,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a88;
   w[10] = a87;
   w[11] = a27;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a15 = w[12];
   a18=(a03*a15);
   a19=(a22*a18);
@@ -2763,7 +2094,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a86;
   w[10] = a85;
   w[11] = a36;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a34 = w[12];
   a37=(a28*a34);
   a37=(a18+a37);
@@ -2792,7 +2123,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a83;
   w[10] = a81;
   w[11] = a48;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a14 = w[12];
   a49=(a41*a14);
   a49=(a37+a49);
@@ -2820,7 +2151,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a79;
   w[10] = a76;
   w[11] = a35;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a42 = w[12];
   a41=(a41*a42);
   a41=(a49+a41);
@@ -2848,7 +2179,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a74;
   w[10] = a71;
   w[11] = a47;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a29 = w[12];
   a28=(a28*a29);
   a28=(a41+a28);
@@ -2877,7 +2208,7 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
   w[9] = a25;
   w[10] = a66;
   w[11] = a92;
-  if (casadi_f2(arg+2, res+2, iw, w+21, 0)) return 1;
+  if (casadi_f9(arg+2, res+2, iw, w+21, 0)) return 1;
   a12 = w[12];
   a62=(a03*a12);
   a62=(a28+a62);
@@ -3146,11 +2477,11 @@ static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_tip_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f10(arg, res, iw, w, mem);
+  return casadi_f8(arg, res, iw, w, mem);
 }
 
 /* planar_strip_k_shape:(x[4],inputs[6],X)->(position[3],quaternion[4]) */
-static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+static int casadi_f10(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
   casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23;
   casadi_real a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35;
@@ -3648,7 +2979,7 @@ static int casadi_f11(const casadi_real** arg, casadi_real** res, casadi_int* iw
 }
 
 CASADI_SYMBOL_EXPORT int planar_strip_k_shape(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem){
-  return casadi_f11(arg, res, iw, w, mem);
+  return casadi_f10(arg, res, iw, w, mem);
 }
 
 #ifdef __cplusplus
@@ -3670,6 +3001,10 @@ CASADI_SYMBOL_EXPORT int planar_strip_k_shape(const casadi_real** arg, casadi_re
 extern "C" {
 #endif
 
+static const casadi_real planar_strip_k_jacobian_turns[24] = {
+  0.066987298107780688, -0.0625, 0.054126587736527412, -0.042968749999999979, 0.18301270189221933, -0.12499999999999999, 0.039623412263472567, 0.031250000000000014,
+  0.25000000000000011, -0.062500000000000014, -0.093750000000000014, 0.074218750000000014, 0.25000000000000011, 0.062500000000000014, -0.093750000000000014, -0.074218750000000014,
+  0.18301270189221933, 0.12499999999999999, 0.039623412263472567, -0.031250000000000014, 0.066987298107780688, 0.0625, 0.054126587736527412, 0.042968749999999979};
 
 #if defined(FOURS_HAVE_VECTORS) && !defined(FOURS_TWICE)
 #define FOURS_IN_VECTORS
@@ -3720,6 +3055,7 @@ extern "C" {
     return KERNEL_IN_FOURS(kernel, arg, res, w);                                                                   \
   }
 KERNEL(planar_strip_k_residual)
+KERNEL(planar_strip_k_jacobian)
 
 #ifdef __cplusplus
 } /* extern "C" */

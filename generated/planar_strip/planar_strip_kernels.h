@@ -17,11 +17,6 @@ extern "C" {
 #define casadi_int int
 #endif
 
-int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define planar_strip_k_jacobian_SZ_ARG 8
-#define planar_strip_k_jacobian_SZ_RES 4
-#define planar_strip_k_jacobian_SZ_IW 0
-#define planar_strip_k_jacobian_SZ_W 34
 int planar_strip_k_rate(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define planar_strip_k_rate_SZ_ARG 16
 #define planar_strip_k_rate_SZ_RES 4
@@ -62,6 +57,11 @@ int planar_strip_k_residual(const casadi_real** arg, casadi_real** res, casadi_i
 #define planar_strip_k_residual_SZ_RES 1
 #define planar_strip_k_residual_SZ_IW 0
 #define planar_strip_k_residual_SZ_W 100
+int planar_strip_k_jacobian(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define planar_strip_k_jacobian_SZ_ARG 3
+#define planar_strip_k_jacobian_SZ_RES 1
+#define planar_strip_k_jacobian_SZ_IW 0
+#define planar_strip_k_jacobian_SZ_W 192
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

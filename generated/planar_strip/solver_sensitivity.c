@@ -16,7 +16,8 @@ static void add_product(const real *d_pose_d_x, const real *d_x_d_inputs, real *
 }
 
 /* Derivatives of the solution by the implicit function theorem; leaves the factorised Jacobian in
-   updated_jacobians[0]. Writes nothing unless it returns CONVERGED. */
+   updated_jacobians[0]. Writes nothing unless it returns CONVERGED. Those by the inputs may be wanted where they are
+   computed, in the workspace; where none are wanted the Jacobian is all. */
 static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_inputs, real *d_poses_d_inputs,
                                  workspace *work) {
   updated_jacobian *jacobian = work->updated_jacobians;
@@ -24,6 +25,7 @@ static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_
   jacobian->count = 0;
   if (!linearise(x, &at, &jacobian->factors, work)) return SOLVER_NOT_FINITE;
   if (!jacobian->factors.regular) return SOLVER_SINGULAR;
+  if (!d_x_d_inputs && !d_poses_d_inputs) return SOLVER_CONVERGED;
   real *columns = work->d_x_d_inputs;
   input_jacobian_at(x, &at, columns, work);
   for (int j = 0; j < INPUTS; j++) {
@@ -32,7 +34,7 @@ static solver_status derivatives(const real *inputs, const real *x, real *d_x_d_
     back_substitute(&jacobian->factors, column, work);
   }
   if (!all_finite(columns, N * INPUTS)) return SOLVER_SINGULAR;
-  if (d_x_d_inputs) memcpy(d_x_d_inputs, columns, (size_t)N * INPUTS * sizeof *columns);
+  if (d_x_d_inputs && d_x_d_inputs != columns) memcpy(d_x_d_inputs, columns, (size_t)N * INPUTS * sizeof *columns);
   if (!d_poses_d_inputs) return SOLVER_CONVERGED;
   for (int i = 0; i < POSES; i++) {
     real *pose = d_poses_d_inputs + i * POSE_SIZE * INPUTS;

@@ -5,6 +5,9 @@ static const solver_options DEFAULT_OPTIONS = {
     .max_continuation_steps = SOLVER_DEFAULT_CONTINUATION_STEPS,
 };
 
+/* Iterations of a turn beyond which a new Jacobian, which takes about as long as three, pays. */
+enum { RENEW_ABOVE = 3 };
+
 /* From the solution for the inputs of the last turn along the straight line to the new ones; zero, and x as it was, where
    the budget of the turn is spent before the end. */
 static int follow_last_turn(const solver_memory *memory, const solver_options *options, const real *inputs, real *x,
@@ -53,8 +56,11 @@ solver_status solver_track(const real *inputs, real *x, solver_memory *memory, c
   }
   for (int i = 0; i < INPUTS; i++) memory->inputs[i] = inputs[i];
   memory->has_inputs = 1;
-  memory->has_jacobian = 0;
   solver_status end = finish(x, inputs, &found, info, work);
+  /* Without derivatives the Jacobian of an earlier turn serves on, as long as Newton takes few steps with it. */
+  const int has_served = memory->has_jacobian && found.jacobians == 0 && found.iterations <= RENEW_ABOVE;
+  if (end == SOLVER_CONVERGED && has_served && !d_x_d_inputs && !d_poses_d_inputs) return end;
+  memory->has_jacobian = 0;
   if (end == SOLVER_CONVERGED) end = derivatives(inputs, x, d_x_d_inputs, d_poses_d_inputs, work);
   if (end == SOLVER_CONVERGED) {
     memory->jacobian = work->updated_jacobians[0].factors;

@@ -22,21 +22,11 @@ int six_rod_platform_k_residual_0(const casadi_real** arg, casadi_real** res, ca
 #define six_rod_platform_k_residual_0_SZ_RES 1
 #define six_rod_platform_k_residual_0_SZ_IW 0
 #define six_rod_platform_k_residual_0_SZ_W 0
-int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_residual_1_SZ_ARG 9
-#define six_rod_platform_k_residual_1_SZ_RES 4
-#define six_rod_platform_k_residual_1_SZ_IW 0
-#define six_rod_platform_k_residual_1_SZ_W 50
 int six_rod_platform_k_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_jacobian_0_SZ_RES 1
 #define six_rod_platform_k_jacobian_0_SZ_IW 0
 #define six_rod_platform_k_jacobian_0_SZ_W 0
-int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
-#define six_rod_platform_k_jacobian_1_SZ_ARG 9
-#define six_rod_platform_k_jacobian_1_SZ_RES 4
-#define six_rod_platform_k_jacobian_1_SZ_IW 0
-#define six_rod_platform_k_jacobian_1_SZ_W 96
 int six_rod_platform_k_input_jacobian_0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
 #define six_rod_platform_k_input_jacobian_0_SZ_ARG 4
 #define six_rod_platform_k_input_jacobian_0_SZ_RES 1
@@ -197,6 +187,16 @@ int six_rod_platform_k_body_jacobian_platform(const casadi_real** arg, casadi_re
 #define six_rod_platform_k_body_jacobian_platform_SZ_RES 2
 #define six_rod_platform_k_body_jacobian_platform_SZ_IW 0
 #define six_rod_platform_k_body_jacobian_platform_SZ_W 0
+int six_rod_platform_k_residual_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_residual_1_SZ_ARG 4
+#define six_rod_platform_k_residual_1_SZ_RES 1
+#define six_rod_platform_k_residual_1_SZ_IW 0
+#define six_rod_platform_k_residual_1_SZ_W 236
+int six_rod_platform_k_jacobian_1(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem);
+#define six_rod_platform_k_jacobian_1_SZ_ARG 4
+#define six_rod_platform_k_jacobian_1_SZ_RES 1
+#define six_rod_platform_k_jacobian_1_SZ_IW 0
+#define six_rod_platform_k_jacobian_1_SZ_W 1804
 #ifdef __cplusplus
 } /* extern "C" */
 #endif

@@ -205,11 +205,12 @@ tendon_robot_status tendon_robot_solve_sensitivity(const tendon_robot_real *inpu
 /* One turn of a control loop: the solution for these inputs and its derivatives, which may be null. Call tendon_robot_solve
    once, then this turn after turn, with the x of the turn before. It never starts again from the unloaded scene.
 
-   Newton from x is tried first, with the Jacobian of the derivatives of the turn before. Where its strains and poses stray
+   Newton from x is tried first, with the Jacobian of the derivatives of the turn before; where no derivatives are asked
+   for, with that of an earlier turn, as long as three iterations are enough with it. Where its strains and poses stray
    by more than a turn may move them, the straight line from the inputs of the last turn is followed. Where that does not
    reach the inputs either, within the budget: LOST_TRACK, and x and memory are as they were, so that the next turn may
    ask for something nearer. NOT_FINITE leaves them too. SINGULAR with info->status CONVERGED: x is the solution, at a
-   limit or bifurcation point, and has no derivatives.
+   limit or bifurcation point, and has no derivatives; a turn that keeps its Jacobian does not look for that.
 
    The work is bounded. For m = max_iterations and c = max_continuation_steps a call evaluates at most m + c + 2
    residuals, m + c + 2 Jacobians and c + 1 rates, and at the end the index of resolution and the derivatives by the inputs

@@ -140,7 +140,7 @@ def test_the_same_digits_at_any_width(kind: str, tmp_path: Path) -> None:
 
 def test_unloaded_tangent_with_a_cable_of_given_length() -> None:
     """A cable that may go slack answers to its length nonlinearly: the tangent is exact at the scene's own length."""
-    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "length": 0.79, "offset": [0.02, 0.0]}
+    cable = {"name": "cable", "kind": "tendon", "rod": "rod", "length": 0.79, "slack": True, "offset": [0.02, 0.0]}
     model = build(scene(actuators=[cable]), {"rod": Discretisation((3, 3, 1), 5)})
     inputs = model.pack()
     unloaded = model.unloaded()

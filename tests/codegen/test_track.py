@@ -48,12 +48,17 @@ WRAPPED = [f"-Wl,--wrap=cables_k_{kernel}" for kernel in ("residual", "jacobian"
 
 
 def cables(
-    made: Exported, inputs: np.ndarray, iterations: int = TRACK_ITERATIONS, steps: int = TRACK_STEPS
+    made: Exported,
+    inputs: np.ndarray,
+    iterations: int = TRACK_ITERATIONS,
+    steps: int = TRACK_STEPS,
+    *,
+    derivatives: bool = True,
 ) -> dict[str, Any]:
-    """Turns of a loop at these inputs, with this budget for a turn."""
+    """Turns of a loop at these inputs, with this budget for a turn, with or without derivatives."""
     text = f"{len(inputs)}\n" + "\n".join(" ".join(map(repr, row)) for row in inputs.tolist())
     program = made.program("cables.c", *QUICK, *WRAPPED)
-    command = [str(program), str(iterations), str(steps)]
+    command = [str(program), str(iterations), str(steps), *([] if derivatives else ["without"])]
     done = subprocess.run(command, input=text, capture_output=True, text=True, check=True, timeout=100)
     found: dict[str, Any] = json.loads(done.stdout)
     # The bounds that the header states.
@@ -73,6 +78,29 @@ def test_cables_of_given_lengths_are_tracked_without_a_cold_start(library: Libra
     assert found["continuations"] == 0
     assert found["iterations"] < 10
     assert found["apart"] < 1e-8
+
+
+def test_turns_without_derivatives_keep_their_jacobian(library: Library) -> None:
+    """While few steps are enough a Jacobian serves many turns; the solutions are those of a solve at every turn."""
+    turns = 500
+    found = cables(library("cables"), cable_lengths(2e-4, turns), derivatives=False)
+    assert (found["failures"], found["lost"], found["cold_starts"], found["continuations"]) == (0, 0, 0, 0)
+    assert found["all_jacobians"] < turns / 2
+    assert found["apart"] < 1e-8
+    with_derivatives = cables(library("cables"), cable_lengths(2e-4, turns))
+    assert with_derivatives["all_jacobians"] >= turns
+
+
+def test_turns_without_derivatives_go_as_far(library: Library) -> None:
+    """Large turns and lost ones: as with derivatives."""
+    made = library("cables")
+    found = cables(made, cable_lengths(4e-3, 100), derivatives=False)
+    assert (found["failures"], found["lost"]) == (0, 0)
+    assert found["apart"] < 1e-8
+    near = cable_lengths(2e-4, 20)
+    near[5:10] += [0.12, -0.06, -0.06]
+    found = cables(made, near, 6, 2, derivatives=False)
+    assert (found["failures"], found["lost"]) == (0, 5)
 
 
 def test_a_turn_that_strays_is_followed_from_the_last_solution(library: Library) -> None:

@@ -1,5 +1,5 @@
 /* Turns of a control loop with the inputs of standard input, one turn a line after their count; by track, then by solve
-   from the solution before. Prints how often each failed, the most work of a turn, and the calls of the kernels of an
+   from the solution before; with a third word without derivatives. Prints how often each failed, the most work of a turn, and the calls of the kernels of an
    assembly's parts, which a linker's --wrap counts. */
 #include "@{name}.h"
 
@@ -34,7 +34,10 @@ int main(int count, char **words) {
   const @{name}_options options = {atoi(words[1]), atoi(words[2])};
   double inputs[INPUTS], x[N] = {0}, warm[N] = {0}, before[N], d_x[N * INPUTS], apart = 0;
   int turns, failures = 0, warm_failures = 0, lost = 0, moved_when_lost = 0, most_residuals = 0, most_jacobians = 0;
-  int most_rates = 0, most_iterations = 0, continuations = 0;
+  int most_rates = 0, most_iterations = 0, continuations = 0, all_jacobians = 0;
+  double *const derivatives = count > 3 ? 0 : d_x;
+  /* The derivatives call the rate once for each input. */
+  const int rates_of_derivatives = derivatives ? INPUTS : 0;
   if (count < 3 || scanf("%d", &turns) != 1) return 2;
   for (int k = 0; k < turns; k++) {
     @{name}_info info;
@@ -50,7 +53,7 @@ int main(int count, char **words) {
     static @{name}_memory memory_before;
     memory_before = memory;
     residuals = jacobians = rates = 0;
-    const @{name}_status end = @{name}_track(inputs, x, &memory, &options, d_x, 0, &workspace, &info);
+    const @{name}_status end = @{name}_track(inputs, x, &memory, &options, derivatives, 0, &workspace, &info);
     if (end != info.status) return 1;
     if (end == @{MACRO}_LOST_TRACK) {
       lost++;
@@ -60,9 +63,9 @@ int main(int count, char **words) {
     }
     most_residuals = (int)largest(most_residuals, residuals);
     most_jacobians = (int)largest(most_jacobians, jacobians);
-    /* The derivatives call the rate once for each input. */
-    most_rates = (int)largest(most_rates, end == @{MACRO}_CONVERGED ? rates - INPUTS : rates);
-    continuations += end == @{MACRO}_CONVERGED && rates > INPUTS;
+    all_jacobians += jacobians;
+    most_rates = (int)largest(most_rates, end == @{MACRO}_CONVERGED ? rates - rates_of_derivatives : rates);
+    continuations += end == @{MACRO}_CONVERGED && rates > rates_of_derivatives;
     most_iterations = (int)largest(most_iterations, info.iterations);
     warm_failures += @{name}_solve(inputs, warm, &workspace, 0) != @{MACRO}_CONVERGED;
     if (end == @{MACRO}_CONVERGED) {
@@ -74,6 +77,6 @@ int main(int count, char **words) {
          failures, lost, moved_when_lost, warm_failures, cold_starts);
   printf("\"continuations\": %d, \"residuals\": %d, \"jacobians\": %d, \"rates\": %d, \"iterations\": %d, ",
          continuations, most_residuals, most_jacobians, most_rates, most_iterations);
-  printf("\"apart\": %.3g}\n", apart);
+  printf("\"all_jacobians\": %d, \"apart\": %.3g}\n", all_jacobians, apart);
   return 0;
 }
