@@ -136,6 +136,21 @@ def test_cable_goes_slack_in_motion() -> None:
     assert motion.actuator("cable").effort[-1] < 1e-6
 
 
+def test_slack_cable_of_a_free_rod_takes_no_momentum_from_it() -> None:
+    """Its tension and its impacts act within the rod: momentum is the impulse of the push, in closed form."""
+    scene = pushed_cable("kirchhoff", 0.02, 1.0, 2.0)
+    scene["rods"][0]["base"] = {"free": True}
+    motion = simulated(scene, 0.3, start="unloaded", tolerance=1e-3)
+    effort, _ = motion.actuator("cable")
+    assert effort.max() > 0.0
+    assert effort.min() == 0.0
+    still = np.zeros(motion.model.inputs.size)
+    states = [motion.at(float(time)) for time in motion.times]
+    momentum = [float(motion.model.momentum(state.x, state.v, state.inputs, still)[0][0]) for state in states]
+    impulse = (1.0 - np.cos(4.0 * np.pi * motion.times)) / (4.0 * np.pi)
+    assert_allclose(momentum[-1], impulse[-1], rtol=0, atol=1e-5)  # 0.144 N s
+
+
 @pytest.mark.parametrize(
     ("strain", "amplitude", "frequency"), [("kirchhoff", 3.0, 1.0), ("reissner", 0.5, 0.3)], ids=["stiff", "slow"]
 )
