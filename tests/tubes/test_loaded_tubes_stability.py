@@ -170,7 +170,9 @@ def _frame(quaternion: np.ndarray) -> np.ndarray:
         pytest.param([], [0, 0, 1], marks=pytest.mark.slow),
         (["push.force=[0.3,0.1,-0.5]"], [0, 0, 1]),
         pytest.param(["push.force=[0.0,0.0,-2.5]"], [0, 0, 1], marks=pytest.mark.slow),
-        (["inner.curvature=0.0", "outer.curvature=0.0", "push.force=[0,0,-12.0]"], [2]),
+        pytest.param(
+            ["inner.curvature=0.0", "outer.curvature=0.0", "push.force=[0,0,-12.0]"], [2], marks=pytest.mark.slow
+        ),
         (["inner.curvature=0.0", "outer.curvature=0.1", "push.force=[0.1,0,-60.0]"], [4]),
     ],
 )
@@ -206,6 +208,7 @@ def test_pivots_are_symmetric() -> None:
     assert_allclose(at_plate, at_plate.T, rtol=0, atol=1e-11 * np.abs(at_plate).max())
 
 
+@pytest.mark.slow
 def test_a_load_is_followed() -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-3", "inner.rotation=2.0"])
     path = follow_tubes(scene, "push.force.z", -0.5)
