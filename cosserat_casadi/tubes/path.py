@@ -128,6 +128,7 @@ def follow_tubes(
     to: float,
     values: Values = None,
     *,
+    first: TubeSolution | None = None,
     progress: Progress | None = None,
 ) -> TubePath:
     """Follow the equilibrium of concentric tubes while one input moves from its value to another.
@@ -137,18 +138,23 @@ def follow_tubes(
         name: of the input, such as "inner.rotation" or "push.force.z".
         to: its value at the end, in its unit.
         values: where the path begins, as in :func:`solve_tubes`.
+        first: an equilibrium of the same tubes and loads to begin at instead, such as one of another path.
         progress: receives the largest share of the way.
 
     Raises:
-        SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move.
+        SceneError: the scene has no tubes, an input is unknown or out of its range, or does not move; the equilibrium
+            to begin at is of another robot, or stands beside values.
     """
     robot = robot_of(scene)
+    if first is not None:
+        _check_first(robot, first, values)
+        values = first.inputs
     start = robot.packed(values)
     index = robot.input_index(name)
     end = robot.packed({**dict(zip(robot.input_names, start, strict=True)), name: to})
     if end[index] == start[index]:
         raise SceneError(Problem(name, f"is {to:g} where the path begins", "give another value to go to"))
-    way = _Way(robot, name, start, end)
+    way = _Way(robot, name, start, end, first)
     # What a solve ends with has been found to be enough by half of its steps.
     steps = max(solve_tubes(scene, start).model.steps, solve_tubes(scene, end).model.steps) // 2
     rough = way.followed(steps, progress)
@@ -166,6 +172,19 @@ def follow_tubes(
                 outcome = PathOutcome.UNRESOLVED
             return replace(fine, outcome=outcome, error_estimate=error)
         rough = fine
+
+
+def _check_first(robot: Robot, first: TubeSolution, values: Values) -> None:
+    """Refuse an equilibrium that a path of a robot cannot begin at.
+
+    Raises:
+        SceneError: it is of another robot, or the path would begin at other inputs too.
+    """
+    if values is not None:
+        raise SceneError(Problem("first", "stands beside values", "its inputs are where the path begins"))
+    if first.robot.input_names != robot.input_names:
+        problem = "is of tubes or loads with other names"
+        raise SceneError(Problem("first", problem, f"inputs of the scene: {', '.join(robot.input_names)}"))
 
 
 def _difference(rough: TubePath, fine: TubePath) -> float | None:
@@ -190,12 +209,14 @@ class _Way:
         name: of the input.
         start: inputs at factor 0.
         end: inputs at factor 1.
+        at_start: an equilibrium to begin at; None for that of a solve.
     """
 
     robot: Robot
     name: str
     start: FloatArray
     end: FloatArray
+    at_start: TubeSolution | None
 
     @property
     def unit(self) -> str:
@@ -213,7 +234,10 @@ class _Way:
     def followed(self, steps: int, progress: Progress | None) -> TubePath:
         """The path of the model with a number of steps."""
         model = model_of(self.robot, steps)
-        first = solve_at(model, self.start)
+        if self.at_start is None:
+            first = solve_at(model, self.start)
+        else:
+            first = solution_near(model, self.start, self.at_start.x)
         if not first.converged:
             return self._path(model, Trace([], outcome=PathOutcome.NO_START))
         change = self.end - self.start

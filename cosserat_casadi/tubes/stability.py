@@ -84,21 +84,20 @@ def _falling(model: TubeFunctions, variations: Variations, inputs: FloatArray) -
     return falling + _negative(_held(model, inputs, configuration[-1], variations.at_plate))
 
 
-def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, conjugate: FloatArray) -> FloatArray:
-    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, m×m, scaled.
+def _held(model: TubeFunctions, inputs: FloatArray, configuration: FloatArray, torques: FloatArray) -> FloatArray:
+    """Last pivot: stiffness of the robot at the plate beside that of the torsion in the housing, n×n, scaled.
 
-    With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no compliance, nor has the
-    plate, which holds the tangent, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.
+    The plate holds the tangent. With the compliance C of the housing the pivot is A + C⁻¹. A drive at the plate has no
+    compliance, and C⁻¹ no value: 1 + √C A √C has the same signs, and exists.
     """
     robot = model.robot
-    root = np.zeros(len(configuration))
-    root[: robot.size] = np.sqrt((robot.length - robot.translations(inputs)).clip(min=0.0) / robot.torsion)
-    at_plate = -_divided(conjugate, configuration)
-    return np.eye(len(root)) + root[:, None] * at_plate * root
+    root = np.sqrt((robot.length - robot.translations(inputs)).clip(min=0.0) / robot.torsion)
+    at_plate = -_divided(torques, configuration)[:, : robot.size]
+    return np.eye(robot.size) + root[:, None] * at_plate * root
 
 
 def _divided(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    """The quotient A B⁻¹ of n×n matrices."""
+    """The quotient A B⁻¹ with a square B."""
     size = len(denominator)
     try:
         return np.asarray(np.linalg.solve(denominator.T, numerator.T).T)

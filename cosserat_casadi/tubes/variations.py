@@ -25,7 +25,7 @@ class Variations:
     Attributes:
         configuration: of each station with that of the tip, shape (k, m, m), rad: turns of the tubes about the tangent,
             then those of the tangent.
-        at_plate: what is conjugate to the configuration, at the plate, shape (m, m), N m.
+        at_plate: torques of the tubes at the plate, which are conjugate to their turns, shape (n, m), N m.
         of_steps: the configuration at the end of each step with what is conjugate to it at its start, shape
             (k − 1, m, m), rad/(N m).
     """
@@ -78,16 +78,8 @@ def of_loaded(size: int, x: FloatArray, stations: FloatArray, along: FloatArray,
         conjugate[size:, :size] = frame[:, 2:]
         conjugate[size:, size:] = frame[:, :DIRECTIONS]
         responses.append(_configuration(size, step @ conjugate, end))
-    moment = stations[2 * size + 8 : 2 * size + 11, -1]
-    plate = changes[-1]
-    bending = frames[-1].T @ plate[2 * size + 8 : 2 * size + 11]
-    tangent_turns = configuration[-1][size:]
-    # Half way from how the moment changes in the axes of the frame to how it does in those of the world, the change is
-    # conjugate to the turn.
-    twist = float(frames[-1][:, 2] @ moment)
-    across = twist / 2 * np.array([-tangent_turns[1], tangent_turns[0]])
-    at_plate = np.concatenate([plate[size : 2 * size], bending[:DIRECTIONS] + across])
-    return Variations(np.array(configuration), at_plate, np.array(responses))
+    torques = changes[-1, size : 2 * size]
+    return Variations(np.array(configuration), torques, np.array(responses))
 
 
 def _of_tip(size: int, x: FloatArray) -> FloatArray:

@@ -183,7 +183,7 @@ def wrench(**keys: object) -> str:
     return '[[loads]]\nname = "wrench"\nkind = "tip_wrench"\nrod = "tube"\n' + "\n".join(lines) + "\n"
 
 
-@pytest.mark.parametrize("curvature", [0.0, 9.0])
+@pytest.mark.parametrize("curvature", [pytest.param(0.0, marks=pytest.mark.slow), 9.0])
 @pytest.mark.parametrize(
     "load",
     [
@@ -214,6 +214,7 @@ def test_a_tube_in_its_housing_twists_there() -> None:
     assert_allclose(found.angles[0], 0.02 / 0.04 * 0.5, rtol=1e-12, atol=0)
 
 
+@pytest.mark.slow
 def test_aligned_tubes_are_a_rod_of_their_summed_stiffness() -> None:
     tubes = ONE.replace("CURVATURE", "9.0").replace("STRAIGHT", "0.0")
     # Of one shape, and of one ratio of torsion to bending: they twist alike.
@@ -246,7 +247,7 @@ def test_order_eight() -> None:
     scene = parse_scene(weighed(THREE) + PUSH + POKE + WEIGHT)
     robot = robot_of(scene)
     tips = []
-    for steps in (3, 6, 24):
+    for steps in (3, 6, 12):
         found = solve_at(LoadedTubeModel(robot, steps), robot.inputs)
         tips.append(found.tip().position)
     rate = np.log2(np.abs(tips[0] - tips[2]).max() / np.abs(tips[1] - tips[2]).max())

@@ -170,7 +170,9 @@ def _frame(quaternion: np.ndarray) -> np.ndarray:
         pytest.param([], [0, 0, 1], marks=pytest.mark.slow),
         (["push.force=[0.3,0.1,-0.5]"], [0, 0, 1]),
         pytest.param(["push.force=[0.0,0.0,-2.5]"], [0, 0, 1], marks=pytest.mark.slow),
-        (["inner.curvature=0.0", "outer.curvature=0.0", "push.force=[0,0,-12.0]"], [2]),
+        pytest.param(
+            ["inner.curvature=0.0", "outer.curvature=0.0", "push.force=[0,0,-12.0]"], [2], marks=pytest.mark.slow
+        ),
         (["inner.curvature=0.0", "outer.curvature=0.1", "push.force=[0.1,0,-60.0]"], [4]),
     ],
 )
@@ -193,6 +195,20 @@ def test_falling_directions_vs_elements(settings: list[str], falling: list[int])
     assert counts == falling
 
 
+def test_pivots_are_symmetric() -> None:
+    """The steps are symplectic: what the pivots are made of is a second variation."""
+    scene = parse_scene(TWO, ["push.force=[0.3,0.4,-0.5]", "accuracy.tolerance=1e-3"])
+    found = solve_tubes(scene)
+    variations = found.model.varied(found.x, found.inputs)
+    configuration = variations.configuration
+    for before, after, step in zip(configuration[:-1], configuration[1:], variations.of_steps, strict=True):
+        pivot = np.linalg.solve(-step, after @ np.linalg.inv(before))
+        assert_allclose(pivot, pivot.T, rtol=0, atol=1e-11 * np.abs(pivot).max())
+    at_plate = (variations.at_plate @ np.linalg.inv(configuration[-1]))[:, :2]
+    assert_allclose(at_plate, at_plate.T, rtol=0, atol=1e-11 * np.abs(at_plate).max())
+
+
+@pytest.mark.slow
 def test_a_load_is_followed() -> None:
     scene = parse_scene(TWO, ["accuracy.tolerance=1e-3", "inner.rotation=2.0"])
     path = follow_tubes(scene, "push.force.z", -0.5)
@@ -222,6 +238,31 @@ def test_a_force_moves_the_snap_and_its_mirror_image() -> None:
     assert_allclose(snaps[0][0] + snaps[1][1], 2 * np.pi, rtol=0, atol=1e-4)
     assert_allclose(snaps[1][0] + snaps[0][1], 2 * np.pi, rtol=0, atol=1e-4)
     assert abs(snaps[0][0] - snaps[1][0]) > 0.1
+
+
+@pytest.mark.slow
+def test_a_force_tips_a_robot_that_was_turned_to_where_it_would_snap() -> None:
+    scene = parse_scene(TWO, ["weight.acceleration=[0,0,0]", "accuracy.tolerance=1e-4", "push.force=[0,0,0]"])
+    turned = follow_tubes(scene, "inner.rotation", 5.4).solutions[-1]
+    assert turned.stable
+    pushed = follow_tubes(scene, "push.force.y", -0.6, first=turned)
+    snap = pushed.events[0]
+    assert_allclose(pushed.solutions[0].x[:2], turned.angles, rtol=0, atol=1e-3)
+    assert snap.kind == "limit"
+    assert snap.solution.stability.neutral
+    # Under that force it snaps at that rotation.
+    bent = parse_scene(TWO, ["weight.acceleration=[0,0,0]", "accuracy.tolerance=1e-4"])
+    under = follow_tubes(bent, "inner.rotation", 9.0, {"push.force": [0.0, snap.value, 0.0]})
+    assert_allclose(under.events[0].value, 5.4, rtol=0, atol=1e-3)
+
+
+def test_a_path_begins_at_an_equilibrium_of_its_own_robot() -> None:
+    scene = parse_scene(TWO, ["accuracy.tolerance=1e-3"])
+    other = solve_tubes(parse_scene(TWO.partition("[[loads]]")[0], ["accuracy.tolerance=1e-3"]))
+    with pytest.raises(SceneError, match="other names"):
+        follow_tubes(scene, "push.force.y", 1.0, first=other)
+    with pytest.raises(SceneError, match="stands beside values"):
+        follow_tubes(scene, "push.force.y", 1.0, {"push.force.x": 1.0}, first=solve_tubes(scene))
 
 
 def test_loads_that_follow_have_no_energy() -> None:
