@@ -556,6 +556,14 @@ FREE = ROD.replace("base = { position = [0, 0, 0], tangent = [1, 0, 0] }", "base
 REFUSED = {
     "free rod": (FREE + BAR, "is free: at rest contact alone"),
     "ball of a free rod": (FREE + BALL + DOME, "is free: at rest contact alone"),
+    "too wide": (
+        ROD
+        + BALL
+        + DOME[: DOME.index("kind")]
+        + 'kind = "lumen"\npoints = [[-0.1, 0, 0], [1.2, 0, 0]]\nradius = 0.04\n'
+        'bodies = ["ball"]\n',
+        "has the radius",
+    ),
     "no radius": (ROD + BALL.replace("radius = 0.05", "") + DOME, "has no radius to keep"),
 }
 
@@ -564,4 +572,4 @@ REFUSED = {
 def test_refused_scenes(case: str) -> None:
     text, problem = REFUSED[case]
     with pytest.raises(SceneError, match=problem):
-        parse_scene(HEAD + text)
+        build(parse_scene(HEAD + text))
