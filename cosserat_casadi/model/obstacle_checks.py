@@ -22,7 +22,7 @@ TOUCHING = 1e-9
 
 
 def check_obstacles(discrete: DiscreteScene) -> None:
-    """Refuse a scene whose rods start, or are held, inside obstacles, or do not fit into them.
+    """Refuse a scene whose rods start, or are held, inside obstacles, or do not fit into them, nor do its bodies.
 
     Raises:
         SceneError: with the faults of all obstacles.
@@ -70,3 +70,8 @@ def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
                     problem = f"the rod {rod.name!r} {how} {depth:.4g} m inside it, at {position.tolist()}"
                     remedy = "move one of the two, or name the rods that it concerns: rods = [...]"
                     yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
+    for body in discrete.scene.bodies:
+        for obstacle in discrete.scene.obstacles:
+            if obstacle.concerns_body(body.name):
+                assert body.radius is not None, "the rules of the scene ask for one"
+                yield from SURFACES[obstacle.kind].faults(obstacle, body.radius)

@@ -348,10 +348,7 @@ class Arrangement:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                # Every row of the Jacobian is in a unit of its own.
-                discrete = self.equations.nominal.model.discrete
-                unit = discrete.rods[touch.rod].energy_unit / discrete.unknowns.units
-                hessian = hessian + ends[0] / bend * np.outer(unit * own[1], own[1])
+                hessian = hessian + ends[0] / bend * np.outer(own[1], own[1])
         return admissible_eigenvalues(*restricted(hessian, held, self._variations))
 
 

@@ -134,9 +134,8 @@ def _eigenvalues(found: Found) -> FloatArray:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                # Every row of the Jacobian is in a unit of its own.
-                unit = model.discrete.rods[touch.rod].energy_unit / model.discrete.unknowns.units
-                jacobian = jacobian + ends[0] / bend * np.outer(unit * own[1], own[1])
+                # The slope depends on the strains and the base of this rod alone, whose rows are in one unit.
+                jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 
