@@ -6,20 +6,18 @@ exactly, and the distance of the paths of the tips tells what is left. See docs/
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from cosserat_casadi.accuracy.refine import LARGEST_SHAPE_ERROR
-from cosserat_casadi.equilibrium.contact.gaps import pairs
-from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.model.registry import EFFECTS
+from cosserat_casadi.motion.contact_checks import inside, too_deep, untouchable
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -326,38 +324,9 @@ def check_simulation(model: Model, simulation: Simulation | None) -> None:
         what = "'gauss' does not converge for supports, joints, carried rods and cables of given length"
         problems.append(Problem("simulation.integrator", what, "use 'radau'"))
     if simulation is not None and model.scene.touches_exactly:
-        problems += list(_untouchable(model, simulation))
+        problems += list(untouchable(model, simulation))
     if problems:
         raise SceneError(*problems)
-
-
-def _untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
-    """What a motion with exact contact does not go with."""
-    if simulation.integrator == "gauss":
-        yield Problem("simulation.integrator", "'gauss' does not converge for exact contact", "use 'radau'")
-    remedy = "give each obstacle a width, m, for a contact that is smooth"
-    slack = [
-        cable.tendon.name for cable in model.discrete.cables if EFFECTS[cable.tendon.kind].may_go_slack(cable.tendon)
-    ]
-    if slack:
-        what = f"exact contact in motion does not go with cables that may go slack: {', '.join(slack)}"
-        yield Problem("obstacles", what, remedy)
-    touching = {rod for rod, _ in pairs(model.scene)}
-    if any(obstacle.bodies for obstacle in model.scene.obstacles):
-        yield Problem("obstacles", "exact contact in motion is for rods, not for bodies", remedy)
-    assembled = [rod for rod in touching if _is_assembled(model, rod)]
-    if assembled:
-        names = ", ".join(sorted(assembled))
-        what = f"exact contact in motion is for rods on their own, not for those of assemblies: {names}"
-        yield Problem("obstacles", what, remedy)
-
-
-def _is_assembled(model: Model, rod: str) -> bool:
-    """Whether a rod is carried, carries others, or is held by a joint."""
-    scene = model.scene
-    (record,) = [one for one in scene.rods if one.name == rod]
-    carries = any(one.base.rod == rod for one in scene.rods)
-    return record.base.rod is not None or carries or any(joint.rod == rod for joint in scene.joints)
 
 
 def check_movable(model: Model) -> None:
@@ -400,31 +369,6 @@ def unresolved(history: History, duration: float) -> bool:
     return bool(indices.max() > 1.0)
 
 
-def _too_deep(history: History, duration: float) -> str:
-    """A sentence where what is not resolved is contact: rods are deeper inside obstacles than their width."""
-    if not any(obstacle.is_smooth for obstacle in history.model.scene.obstacles):
-        return ""
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
-    depths = depths_along(history.model, x, inputs)
-    worst = int(np.argmax(depths))
-    if depths[worst] <= 1.0:
-        return ""
-    return (
-        f" At t = {times[worst]:.6g} s a rod is {depths[worst]:.3g} widths deep inside an obstacle, too deep to be "
-        "contact: give the obstacle more width or stiffness."
-    )
-
-
-def inside(history: History, duration: float) -> float:
-    """How deep a section is inside an obstacle that has no width at any time, over the length; negative outside."""
-    if history.contacts is None:
-        return -np.inf
-    times = watched_times(history, duration)
-    x, inputs = history.rough_positions(times)
-    return max(history.contacts.deepest(*state) for state in zip(x, inputs, strict=True))
-
-
 def judged(simulator: Simulator, history: History, error: float, bound: float) -> Motion:
     """The motion that was computed to its end; not resolved where its error is beyond a bound, or is not known.
 
@@ -438,7 +382,7 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
     message = message_of(history, outcome)
     if unresolved(history, simulator.simulation.duration):
         outcome = MotionOutcome.UNRESOLVED
-        message = message_of(history, outcome) + _too_deep(history, simulator.simulation.duration)
+        message = message_of(history, outcome) + too_deep(history, simulator.simulation.duration)
     elif inside(history, simulator.simulation.duration) > tolerance_of(history.model, simulator.simulation):
         outcome = MotionOutcome.CONTACT_UNSETTLED
         message = "A section is deeper inside an obstacle than the tolerance: no contact was found there."

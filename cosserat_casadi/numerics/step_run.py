@@ -31,6 +31,9 @@ NEARBY = 1e-3
 AT_START = 1e-10
 """Share of a step after its start in which a guard counts as zero where the step starts."""
 
+CLOSED = 1e-9
+"""Row of a constraint, without unit, up to which it counts as closed."""
+
 ON_GUARD = 1e-13
 """Value of a guard that counts as zero."""
 
@@ -256,12 +259,17 @@ class StepRun:
         self.size = wanted
         return True
 
+    def _open(self, step: Step) -> bool:
+        """Whether the end of a step leaves constraints open."""
+        rows = self.equations.residual_at(step.end)[~self.equations.differential]
+        return not float(np.abs(rows).max(initial=0.0)) <= CLOSED
+
     def _step_to(self, cut: Step, guard: int) -> None:
         """Take a step that ends where a guard vanishes.
 
         Args:
-            cut: the part of a longer step to the time, about, at which it does; where no step is found that ends on
-                the guard the first one found stands, which keeps the constraints, else this part.
+            cut: the part of a longer step to the time, about, at which it does; it stands where no step is found that
+                ends on the guard. Where it leaves the constraints open the first step that was found stands.
             guard: number of the guard.
         """
         assert self.guards is not None
@@ -280,7 +288,7 @@ class StepRun:
             if abs(value) <= ON_GUARD:
                 return
             self.steps.pop()
-            if stands is cut:
+            if stands is cut and self._open(cut):
                 stands = step
             following = time - float(value / rate) if rate < 0.0 else time
             latest = min(2.0 * cut.end.time - cut.start.time, self.stop)

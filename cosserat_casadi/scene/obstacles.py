@@ -63,7 +63,7 @@ class ObstacleRecord(Entry):
     width: Positive | None = Field(
         None,
         description="gap from which on it pushes, smoothly, m; when left out rods touch it exactly, which is found at "
-        "rest alone",
+        "rest and in motion",
     )
     stiffness: Positive | None = Field(
         None,

@@ -157,7 +157,7 @@ inputs = ["push.force", "cable.tension"]
 
     @property
     def touches_exactly(self) -> bool:
-        """Whether rods touch obstacles exactly, which is found at rest alone."""
+        """Whether rods touch obstacles exactly, which is found at rest and in motion."""
         return any(not obstacle.is_smooth for obstacle in self.obstacles)
 
     def baked(self) -> Scene:

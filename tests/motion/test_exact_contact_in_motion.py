@@ -11,7 +11,7 @@ from numpy.polynomial import legendre
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from cosserat_casadi import build, parse_scene, simulate, simulate_scene, solve, write_motion
+from cosserat_casadi import build, parse_scene, read_scene, simulate, simulate_scene, solve, write_motion
 from cosserat_casadi.errors import SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -206,6 +206,34 @@ def test_a_rod_that_lies_down_ends_the_motion_and_is_told() -> None:
     assert not motion.converged
     assert "'rod'" in motion.message
     assert "t = " in motion.message
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "changes",
+    [
+        ["motions=[{input='rod.base.position',amplitude=[0,0,0.02],frequency=3.0,wave='one_minus_cosine'}]"],
+        ["rod.strain='kirchhoff'", "accuracy.modes=3", "bar.from=[0.22,-0.1,-0.09]", "bar.to=[0.28,0.1,-0.09]"],
+    ],
+)
+def test_energies_balance_with_a_base_that_moves_and_off_the_plane(changes: list[str]) -> None:
+    scene = read_scene("examples/bouncing_rod.toml", [*changes, "simulation.duration=0.4"])
+    motion = simulate(build(scene.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    assert motion.events[0].kind == "impact"
+    assert motion.energy.impacts[-1] > 0.005
+    assert abs(motion.energy.imbalance).max() < 3e-4
+
+
+def test_a_start_that_touches_is_told_and_one_that_does_not_is_an_equilibrium() -> None:
+    text = rod(BALL).replace('start = "unloaded"', 'start = "equilibrium"')
+    touching = simulate(moving(text))
+    assert touching.outcome is MotionOutcome.NO_START
+    assert "touch obstacles" in touching.message
+    apart = simulate(moving(text.replace("-9.81", "-2.0").replace("duration = 0.5", "duration = 0.05")))
+    assert apart.converged, apart.message
+    assert not apart.events
+    assert_allclose(apart.tip().position[-1], apart.tip().position[0], rtol=0, atol=1e-6)
 
 
 def test_what_exact_contact_in_motion_does_not_go_with_is_refused() -> None:
