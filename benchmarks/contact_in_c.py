@@ -58,7 +58,7 @@ int turns(const double *inputs, double change, int count, double *best) {
     if (rod_track(moved, &state, &memory, 0, k % 2 ? derivatives : 0, &workspace, &info) != ROD_CONVERGED) return 0;
     const double duration = now_us() - start;
     /* Each load is kept for two turns: the first of them solves, the second has nothing left to solve. */
-    if (k % 2 == 0 && duration < best[0]) best[0] = duration;
+    if (k >= 4 && k % 2 == 0 && duration < best[0]) best[0] = duration;
     if (k % 2 == 1 && duration < best[1]) best[1] = duration;
   }
   return 1 + rod_contacts(&state, contacts, &workspace);
@@ -68,26 +68,26 @@ int turns(const double *inputs, double change, int count, double *best) {
 
 @dataclass(frozen=True)
 class Case:
-    """An example with a load, and one under which it touches nothing.
+    """An example with its load, and one under which it touches nothing.
 
     Attributes:
         example: name of the file.
         load: stacked inputs at which it touches.
-        free: stacked inputs at which it does not.
+        free: stacked inputs at which it does not; none where that is not timed.
         modes: polynomials of each strain in an element.
         nodes: intervals of an element.
     """
 
     example: str
     load: tuple[float, ...]
-    free: tuple[float, ...]
+    free: tuple[float, ...] = ()
     modes: int = 5
     nodes: int = 12
 
 
 CASES = (
     Case("rod_over_bar", (0.0, 0.0, -1.0), (0.0, 0.0, -0.02)),
-    Case("rod_on_table", (0.0, 0.0, -9.81), (0.0, 0.0, -0.4)),
+    Case("rod_on_table", (0.0, 0.0, -9.81)),
 )
 
 
@@ -141,11 +141,11 @@ def rows_of(case: Case) -> list[list[str]]:
     """The lines of a case: in contact, then without."""
     scene = read_scene(ROOT / "examples" / f"{case.example}.toml")
     model = build(scene, discretise(scene, case.modes, case.nodes))
-    touching, free = np.array(case.load), np.array(case.free)
+    loads = [np.array(load) for load in (case.load, case.free) if load]
     lines = []
     with tempfile.TemporaryDirectory() as folder:
-        library, size = compiled(model, np.array([free]), Path(folder) / "rod")
-        for inputs in (touching, free):
+        library, size = compiled(model, np.array(loads), Path(folder) / "rod")
+        for inputs in loads:
             own = row(library, model, inputs)
             lines.append(
                 [
