@@ -61,10 +61,24 @@ def too_deep(history: History, duration: float) -> str:
     )
 
 
-def inside(history: History, duration: float) -> float:
-    """How deep a section is inside an obstacle that has no width at any time, over the length; negative outside."""
+def told_inside(history: History, duration: float, deepest: float) -> str:
+    """A sentence where a section is inside an obstacle that has no width, with the time and the place; else nothing.
+
+    Args:
+        history: the motion.
+        duration: of the motion, s.
+        deepest: depth over the length up to which a section touches.
+    """
     if history.contacts is None:
-        return -np.inf
+        return ""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
-    return max(history.contacts.deepest(*state) for state in zip(x, inputs, strict=True))
+    found = [history.contacts.deepest(*state) for state in zip(x, inputs, strict=True)]
+    number = int(np.argmax([one.depth for one in found]))
+    worst = found[number]
+    if worst.depth <= deepest:
+        return ""
+    return (
+        f"At t = {times[number]:.6g} s the section X = {worst.place:.4g} of {worst.rod!r} is {worst.depth:.2g} of the "
+        f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there."
+    )
