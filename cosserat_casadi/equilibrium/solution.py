@@ -45,6 +45,18 @@ class BaseWrench:
     moment: FloatArray
 
 
+class SectionForce(NamedTuple):
+    """A force on one section inside a line of contact.
+
+    Attributes:
+        at: abscissa X.
+        force: along the normal, N.
+    """
+
+    at: float
+    force: float
+
+
 @dataclass(frozen=True)
 class Contact:
     """Where a rod touches an obstacle, and how it is held off.
@@ -57,6 +69,7 @@ class Contact:
         force: resultant on the rod, world axes, shape (3,), N.
         ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.
         kind: "point" or "line"; "smooth" where the obstacle has a width.
+        inside: forces at sections inside a line, where loads are taken by the obstacle.
         width: of the obstacle, m; None where contact is exact.
         of_body: whether it is a body that is pressed.
         gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
@@ -69,6 +82,7 @@ class Contact:
     force: FloatArray
     ends: tuple[float, ...]
     kind: str
+    inside: tuple[SectionForce, ...] = ()
     width: float | None = None
     gap: float | None = None
     of_body: bool = False

@@ -56,10 +56,9 @@ class ContactPath(EquilibriumPath):
         contacts = []
         for touch, ends, _ in arrangement.parts(self.x[index]):
             unit = self.model.discrete.tension_unit(touch.rod)
-            forces = tuple((unit * ends).tolist())
-            contacts.append(
-                PathContact(touch.obstacle, touch.rod, float(touch.start), float(touch.end), touch.kind, forces)
-            )
+            forces, inside = touch.sorted_forces(unit * ends)
+            start, end = float(touch.start), float(touch.end)
+            contacts.append(PathContact(touch.obstacle, touch.rod, start, end, touch.kind, forces, inside))
         return tuple(contacts)
 
     def tip(self, rod: str | None = None) -> Pose:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
@@ -28,6 +28,7 @@ class PathContact:
         end: abscissa at which it ends; the same for a point.
         kind: "point" or "line".
         ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
+        inside: forces at sections inside a line.
     """
 
     obstacle: str
@@ -36,6 +37,7 @@ class PathContact:
     end: float
     kind: str
     ends: tuple[float, ...]
+    inside: tuple[SectionForce, ...] = ()
 
 
 @dataclass(frozen=True)

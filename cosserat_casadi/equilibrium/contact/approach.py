@@ -120,7 +120,8 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
         cushions.append(cushion)
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
     if scene.inputs is not None:
-        changes["inputs"] = (*scene.inputs, *(f"{cushion.name}.stiffness" for cushion in cushions))
+        names = [f"{cushion.name}.{field}" for cushion in cushions for field in Penetration.inputs]
+        changes["inputs"] = (*scene.inputs, *names)
     soft = scene.model_copy(update=changes)
     discretisation = {}
     for rod in scene.rods:
@@ -181,7 +182,7 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         factor = (2 * depth(found) / SHALLOW) ** 2
         stiffer = inputs.copy()
         for entry, span in model.inputs:
-            if entry.owner.startswith("cushion "):
+            if entry.owner.startswith("cushion ") and entry.field == "stiffness":
                 stiffer[span] *= factor
         end = follow(_guarded(model, inputs, input_path(model, found.x, inputs, stiffer)), settings, None)
         found = _judged(model, stiffer, end)

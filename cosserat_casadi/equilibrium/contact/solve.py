@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.contact.approach import approach, first_state
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.passage import passes_through
 from cosserat_casadi.equilibrium.contact.settle import Settling
+from cosserat_casadi.equilibrium.contact.sharpen import likely_states, sharpened
 from cosserat_casadi.equilibrium.contact.state import ContactState, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
@@ -51,7 +52,7 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        found, holds = settling.run(state_in(start.model.scene), start)
+        found, holds = settling.run([(state_in(start.model.scene), start)])
         if found is not None and holds and not passes_through(start, found.solution):
             return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
@@ -59,7 +60,7 @@ def solve_contact(
     if not cushioned.converged:
         # Short of the full load there is nothing whose contacts could be found.
         return replace(cushioned, iterations=settling.iterations)
-    found, holds = settling.run(first_state(cushioned), cushioned)
+    found, holds = settling.run(_guesses(cushioned))
     if found is None:
         found = settling.solve(ContactState(()), cushioned)
     if found is None:
@@ -69,3 +70,13 @@ def solve_contact(
     if solution.converged and PATH_OF_ENERGY in cushioned.message:
         return replace(solution, message=solution.message + PATH_OF_ENERGY)
     return solution
+
+
+def _guesses(cushioned: Solution) -> list[tuple[ContactState, Solution]]:
+    """What the contacts look like on cushions, those that hold rods at the surface first, each with the shape there."""
+    rough = (first_state(cushioned), cushioned)
+    sharp = sharpened(cushioned)
+    if sharp is None:
+        return [rough]
+    shape, pressures = sharp
+    return [*((state, shape) for state in likely_states(pressures)), rough]

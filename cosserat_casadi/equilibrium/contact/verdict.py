@@ -73,29 +73,35 @@ def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> S
 def contacts_of(found: Found) -> tuple[Contact, ...]:
     """The contacts by name, with the forces on the rods."""
     contacts = []
-    for touch, ends, line in found.parts():
+    for touch, carried, line in found.parts():
         unit = found.placed.model.discrete.tension_unit(touch.rod)
         obstacle = found.placed.obstacle(touch.obstacle)
-        forces = unit * ends
-        normal = normals(found.solution, touch.rod, obstacle, np.array(touch.ends))
+        zero = PRESSING * found.largest_force
+        # What only rounding pulls does not pull.
+        forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
+        normal = normals(found.solution, touch.rod, obstacle, np.array(touch.carriers))
         total = forces @ normal
         if touch.is_line:
             total = total + unit * _resultant(found, touch, obstacle, line)
-        contacts.append(
-            Contact(touch.obstacle, touch.rod, touch.start, touch.end, total, tuple(map(float, forces)), touch.kind)
-        )
+        ends, sections = touch.sorted_forces(forces)
+        # Where loads have no jump of their own a section carries what the polynomials leave.
+        inside = tuple(own for own in sections if abs(own.force) > unit * zero)
+        contact = Contact(touch.obstacle, touch.rod, touch.start, touch.end, total, ends, touch.kind, inside=inside)
+        contacts.append(contact)
     return tuple(contacts)
 
 
 def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
     """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
     grid = found.placed.model.discrete.rods[touch.rod].grid
-    nodes = grid.nodes_in(touch.start, touch.end)
-    X = known(grid.nodes_at(nodes))
-    width = touch.end - touch.start
-    along = legendre_polynomials(len(line), (X - touch.start) / width) @ line
-    normal = normals(found.solution, touch.rod, obstacle, X)
-    return np.asarray((grid.weights[nodes] * along) @ normal)
+    total = np.zeros(3)
+    for start, end, own in touch.by_stretch(line, found.placed.modes[touch.rod]):
+        nodes = grid.nodes_in(start, end)
+        X = known(grid.nodes_at(nodes))
+        along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
+        normal = normals(found.solution, touch.rod, obstacle, X)
+        total += (grid.weights[nodes] * along) @ normal
+    return total
 
 
 def _eigenvalues(found: Found) -> FloatArray:
@@ -107,14 +113,14 @@ def _eigenvalues(found: Found) -> FloatArray:
     rows = placed.gaps(found.x, inputs)[1].full()
     held: list[FloatArray] = []
     first = 0
-    for touch, ends, line in found.parts():
-        count = len(ends) + len(touch.moving) + len(line)
+    for touch, carried, line in found.parts():
+        count = len(carried) + len(touch.moving) + len(line)
         own = rows[first : first + count]
         first += count
         if touch.is_line:
             held.extend(own)
             continue
-        if ends[0] <= PRESSING * found.largest_force:
+        if carried[0] <= PRESSING * found.largest_force:
             continue
         held.append(own[0])
         if touch.moving:
@@ -122,7 +128,7 @@ def _eigenvalues(found: Found) -> FloatArray:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
+                jacobian = jacobian + carried[0] / bend * np.outer(own[1], own[1])
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 
