@@ -69,10 +69,10 @@ class Contact:
         force: resultant on the rod, world axes, shape (3,), N.
         ends: force at the point, or at both ends of a line, along the normals there, N; none where contact is smooth.
         kind: "point" or "line"; "smooth" where the obstacle has a width.
-        inside: forces at sections inside a line, where loads are taken by the obstacle.
         width: of the obstacle, m; None where contact is exact.
         of_body: whether it is a body that is pressed.
         gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
+        inside: forces at sections inside a line, where loads are taken by the obstacle.
     """
 
     obstacle: str
@@ -82,10 +82,10 @@ class Contact:
     force: FloatArray
     ends: tuple[float, ...]
     kind: str
-    inside: tuple[SectionForce, ...] = ()
     width: float | None = None
     gap: float | None = None
     of_body: bool = False
+    inside: tuple[SectionForce, ...] = ()
 
 
 @dataclass(frozen=True)

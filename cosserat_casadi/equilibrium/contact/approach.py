@@ -205,7 +205,7 @@ def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
     barriers = Barriers(model, inputs)
     if not barriers.watched:
         return path
-    return replace(path, admits=lambda before, after: not barriers.are_between(before, after))
+    return replace(path, admits=lambda before, after: not barriers.are_between(before[0], after[0]))
 
 
 def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:

@@ -23,6 +23,9 @@ Place = Any
 TIP = 1.0
 """Abscissa of the section that contact cannot move beyond."""
 
+CLEAR = 1e-3
+"""Distance of a place from a section with a load below which it is sought from a place that far beside it."""
+
 SHORTEST = 1e-5
 """Least distance of places of contact from each other and from the base, relative to the length of the rod."""
 
@@ -110,14 +113,17 @@ class Touch:
         return replace(self, start=ends[0], end=ends[-1])
 
     def split(self, sections: Sequence[float]) -> Touch:
-        """The same contact with seams at those sections that are inside it.
+        """The same contact with seams at those sections that are inside it, and no place on a section.
 
         Args:
             sections: abscissae at which loads make the shear force, or its rate, jump.
         """
         if not self.is_line:
-            return self
-        return replace(self, seams=tuple(X for X in sections if self.start < X < self.end))
+            place = _beside(self.start, sections, CLEAR) if self.moves[0] else self.start
+            return replace(self, start=place, end=place)
+        start = _beside(self.start, sections, -CLEAR)
+        end = self.end if self.reaches_tip else _beside(self.end, sections, CLEAR)
+        return replace(self, start=start, end=end, seams=tuple(X for X in sections if start < X < end))
 
     def moment_counts(self, modes: int) -> tuple[int, ...]:
         """Number of polynomials of the force per length on each stretch.
@@ -142,6 +148,14 @@ class Touch:
         for (start, end), count in zip(self.stretches, self.moment_counts(modes), strict=True):
             yield start, end, along[first : first + count]
             first += count
+
+
+def _beside(place: float, sections: Sequence[float], way: float) -> float:
+    """A place, or one by a way beside a section on which it is."""
+    for section in sections:
+        if abs(place - section) < CLEAR:
+            return section + way
+    return place
 
 
 @dataclass(frozen=True)
