@@ -17,7 +17,7 @@ from cosserat_casadi.accuracy.levels import nodes_for_turn
 from cosserat_casadi.accuracy.metrics import SAFETY, largest_turn, with_estimate
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.solve import solve_contact
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -111,6 +111,7 @@ def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
         distances += [abs(first.start - second.start), abs(first.end - second.end)]
         forces = np.concatenate([first.force - second.force, np.subtract(first.ends, second.ends)])
         distances.append(float(np.abs(forces).max()) / largest)
+        distances += [distance / largest for distance in _between_sections(first, second)]
     contact_error = SAFETY * max(distances)
     assert judged.error_estimate is not None
     assert judged.shape_error_estimate is not None
@@ -119,3 +120,9 @@ def _with_contact_error(coarse: Solution, fine: Solution) -> Solution:
         error_estimate=max(judged.error_estimate, contact_error),
         shape_error_estimate=max(judged.shape_error_estimate, contact_error),
     )
+
+
+def _between_sections(first: Contact, second: Contact) -> list[float]:
+    """Differences of the forces at sections inside two lines, N."""
+    one, other = ({section.at: section.force for section in contact.inside} for contact in (first, second))
+    return [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]

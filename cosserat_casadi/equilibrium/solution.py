@@ -45,6 +45,18 @@ class BaseWrench:
     moment: FloatArray
 
 
+class SectionForce(NamedTuple):
+    """A force on one section inside a line of contact.
+
+    Attributes:
+        at: abscissa X.
+        force: along the normal, N.
+    """
+
+    at: float
+    force: float
+
+
 @dataclass(frozen=True)
 class Contact:
     """Where a rod, or a body, touches an obstacle, and how it is held off.
@@ -60,6 +72,7 @@ class Contact:
         width: of the obstacle, m; None where contact is exact.
         of_body: whether it is a body that is pressed.
         gap: smallest gap along a smooth contact, m, negative where the rod is inside; None where contact is exact.
+        inside: forces at sections inside a line, where loads are taken by the obstacle.
     """
 
     obstacle: str
@@ -72,6 +85,7 @@ class Contact:
     width: float | None = None
     gap: float | None = None
     of_body: bool = False
+    inside: tuple[SectionForce, ...] = ()
 
 
 @dataclass(frozen=True)

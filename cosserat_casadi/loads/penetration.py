@@ -24,9 +24,12 @@ from cosserat_casadi.scene.loads import LoadRecord
 
 
 class Penetration(LoadRecord):
-    """A soft obstacle."""
+    """A soft obstacle, whose surface is raised by one height all along the rod, or by one at each node."""
 
-    inputs: ClassVar[Mapping[str, InputField]] = {"stiffness": InputField("N/m³", 1)}
+    inputs: ClassVar[Mapping[str, InputField]] = {
+        "stiffness": InputField("N/m³", 1),
+        "raised": InputField("m", 1, polynomial=True),
+    }
 
     kind: Literal["penetration"] = "penetration"
     rod: str | None
@@ -34,6 +37,7 @@ class Penetration(LoadRecord):
     stiffness: float
     body: str | None = None
     radius: float = 0.0
+    raised: tuple[tuple[float, ...]] = ((0.0,),)
 
 
 @final
@@ -52,8 +56,12 @@ class PenetrationLoad(Load[Penetration]):
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """k/3 (ρ − d)³, J/m, or J of a body."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)
-        radius = load.radius if load.body is not None else section.data[0]
-        depth = ca.fmax(radius - distance, 0.0)
+        if load.body is not None:
+            depth = load.radius - distance
+        else:
+            raised = ca.mtimes(values["raised"], section.data[1:])
+            depth = section.data[0] + raised - distance
+        depth = ca.fmax(depth, 0.0)
         energy: Matrix = values["stiffness"] / 3 * depth**3
         return energy
 
@@ -62,8 +70,11 @@ class PenetrationLoad(Load[Penetration]):
         return np.ones((columns, X.shape[0]))
 
     def data(self, load: Penetration, site: Site) -> FloatArray:
-        """Radius of the sections, m."""
-        return section_radius(site.rod, known(site.X))[None, :]
+        """Radius of the sections, m, and how much each height raises the obstacle there."""
+        X = known(site.X)
+        count = len(load.raised[0])
+        shares = np.eye(count) if count == len(X) else np.ones((count, len(X)))
+        return np.vstack([section_radius(site.rod, X), shares])
 
 
 def section_radius(rod: RodProperties, X: FloatArray) -> FloatArray:

@@ -36,6 +36,10 @@ ENDS_MEET = 1e-12
 """Distance in t from the end of the path below which a step ends there."""
 
 
+PathPoint = tuple[FloatArray, float]
+"""Unknowns x with the parameter t that they belong to."""
+
+
 @dataclass(frozen=True)
 class Path:
     """Equations that change along a path t ∈ [0, 1].
@@ -48,8 +52,8 @@ class Path:
         tangent: dx/dt at the start where it is known beforehand, and with it that the start is in equilibrium.
         step_weights: how much each unknown counts in the length of a step, shape (n,); None where all count alike.
         first_step: longest first step in t.
-        admits: (x before, x after) ↦ whether a step may lead from one to the other; None where any may. What is refused
-            is tried with half the step.
+        admits: ((x, t) before, (x, t) after) ↦ whether a step may lead from one to the other; None where any may. What
+            is refused is tried with half the step.
     """
 
     residual: Callable[[FloatArray, float], FloatArray]
@@ -59,7 +63,7 @@ class Path:
     tangent: FloatArray | None = None
     step_weights: FloatArray | None = None
     first_step: float = 1.0
-    admits: Callable[[FloatArray, FloatArray], bool] | None = None
+    admits: Callable[[PathPoint, PathPoint], bool] | None = None
 
     def length(self, change: FloatArray) -> float:
         """Weighted 2-norm of a change of x, shape (n,)."""
@@ -201,7 +205,7 @@ def follow(
         if not _corrector_accepted(path, trial, current.x, predicted):
             step /= 2
             continue
-        if path.admits is not None and not path.admits(current.x, trial.x):
+        if path.admits is not None and not path.admits((current.x, current.t), (trial.x, target)):
             step /= 2
             continue
 

@@ -15,7 +15,7 @@ from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
 from cosserat_casadi.equilibrium.contact.state import TIP, Touch, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
 from cosserat_casadi.equilibrium.stability import stability_of
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -56,7 +56,8 @@ class ContactPath(EquilibriumPath):
         contacts = []
         for touch, ends, _ in arrangement.parts(self.x[index]):
             unit = self.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
-            contacts.append(_path_contact(touch, tuple((unit * ends).tolist())))
+            forces, inside = touch.sorted_forces(unit * ends)
+            contacts.append(_path_contact(touch, forces, inside))
         return tuple(contacts)
 
     def tip(self, rod: str | None = None) -> Pose:
@@ -267,10 +268,10 @@ class Travel:
         )
 
 
-def _path_contact(touch: Touch, forces: tuple[float, ...]) -> PathContact:
-    """A contact at its place, with the forces at its ends, N."""
+def _path_contact(touch: Touch, forces: tuple[float, ...], inside: tuple[SectionForce, ...] = ()) -> PathContact:
+    """A contact at its place, with the forces at its ends and at sections inside it, N."""
     start, end = float(touch.start), float(touch.end)
-    return PathContact(touch.obstacle, touch.rod, start, end, touch.kind, forces, touch.of_body)
+    return PathContact(touch.obstacle, touch.rod, start, end, touch.kind, forces, touch.of_body, inside)
 
 
 def follow_contact_path(

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import column
-from cosserat_casadi.equilibrium.solution import Pose, Solution
+from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.numerics.newton import relative_norm
@@ -29,6 +29,7 @@ class PathContact:
         kind: "point" or "line".
         ends: force at the point, or at both ends of a line, along the normals there, N; none at an event.
         of_body: whether it is a body that touches.
+        inside: forces at sections inside a line.
     """
 
     obstacle: str
@@ -38,6 +39,7 @@ class PathContact:
     kind: str
     ends: tuple[float, ...]
     of_body: bool = False
+    inside: tuple[SectionForce, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -14,18 +14,19 @@ import numpy.typing as npt
 
 from cosserat_casadi.equilibrium.load_path import input_path
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
+from cosserat_casadi.equilibrium.smooth_passage import SmoothBarriers
 from cosserat_casadi.equilibrium.solve import solve
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, stability_of, variations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.arclength import ArcSettings, Curve, Monitor
+from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.broyden import dense
 from cosserat_casadi.numerics.continuation import Path
-from cosserat_casadi.numerics.events import DETERMINANT, Event
+from cosserat_casadi.numerics.events import DETERMINANT, Arc, Event
 from cosserat_casadi.numerics.progress import Progress
 from cosserat_casadi.paths.contact_path import follow_contact_path
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathEvent
-from cosserat_casadi.paths.trace import PathOutcome, Trace, trace
+from cosserat_casadi.paths.trace import Guard, PathOutcome, Trace, trace
 
 
 @dataclass(frozen=True)
@@ -207,8 +208,24 @@ def follow_path(
         empty = Trace([], outcome=outcome)
         return followed.record(empty, f"{outcome.value} {start.message}")
     curve = followed.curve(start.x, settings or ArcSettings())
-    traced = trace(curve, branch=branch, progress=progress)
+    traced = trace(curve, branch=branch, progress=progress, guard=_smooth_guard(followed))
     return _unless_too_deep(followed.record(traced))
+
+
+def _smooth_guard(followed: _Followed) -> Guard | None:
+    """Refuses steps that take a rod through a smooth bar or ball; None in a scene that has none."""
+    barriers = SmoothBarriers(followed.model)
+    if not barriers.watched:
+        return None
+
+    def guard(arc: Arc, end: ArcPoint) -> ArcPoint | None:
+        before, after = (point.x * followed.scale for point in (arc.start, end))
+        first, last = (followed.base + point.load_factor * followed.change for point in (arc.start, end))
+        if barriers.are_between(before, after, (first, last)):
+            return None
+        return end
+
+    return guard
 
 
 def _unless_too_deep(path: EquilibriumPath) -> EquilibriumPath:

@@ -12,9 +12,8 @@ from enum import Enum
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.contact.settle import AT_TIP, SAMPLES
+from cosserat_casadi.equilibrium.contact.settle import AT_TIP, pressure_along
 from cosserat_casadi.equilibrium.contact.state import TIP
-from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.arrangement import Arrangement
 from cosserat_casadi.paths.gaps_along import GapsAlong
@@ -62,7 +61,7 @@ class Key:
     Attributes:
         watch: what it is of.
         number: of the contact in the arrangement; −1 for a gap.
-        end: number of the end of a line whose force it is.
+        end: number of the section of a line whose force it is, base to tip.
         pair: rod, or body, and obstacle.
     """
 
@@ -97,7 +96,7 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
         pair = (touch.rod, touch.obstacle)
         # What errors of the moment make of the forces of a short line is as large as it is short.
         lever = touch.end - touch.start if touch.is_line else 1.0
-        for end, (force, X) in enumerate(zip(ends, touch.ends, strict=True)):
+        for end, (force, X) in enumerate(zip(ends, touch.carriers, strict=True)):
             found[Key(Watch.FORCE, number, pair, end)] = Margin(float(force) * lever / largest, float(X))
         if touch.moving:
             last = float(touch.moving[-1])
@@ -108,10 +107,10 @@ def margins(arrangement: Arrangement, z: FloatArray, load_factor: float) -> dict
                 found[Key(Watch.TO_BASE, number, pair)] = Margin(last - OVER_JOINT, last)
         if touch.is_line:
             width = touch.end - touch.start
-            pressure = chebyshev.legendre_polynomials(len(line), SAMPLES) @ line
-            weakest = float(pressure.min()) * width / largest
-            at = float(touch.start + width * SAMPLES[int(pressure.argmin())])
-            found[Key(Watch.PRESSURE, number, pair)] = Margin(weakest, at)
+            abscissae, pressure = pressure_along(touch, line, arrangement.equations.nominal.modes[touch.rod])
+            weakest = int(pressure.argmin())
+            pressing = float(pressure[weakest]) * width / largest
+            found[Key(Watch.PRESSURE, number, pair)] = Margin(pressing, float(abscissae[weakest]))
             found[Key(Watch.WIDTH, number, pair)] = Margin(width - OPEN, float(touch.start))
         elif touch.of_body:
             # It has no place along a rod that could change.

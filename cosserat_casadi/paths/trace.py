@@ -73,7 +73,7 @@ class Trace:
     branch: int | None = None
 
 
-def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) -> Trace:
+def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None, guard: Guard | None = None) -> Trace:
     """Follow a curve from the start of its path, at load factor 0, until the load factor first reaches 1.
 
     Args:
@@ -81,6 +81,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) ->
         branch: number of the bifurcation, counted from 1, to leave at along the branch that crosses there; negative
             for the other half of that branch, 0 goes straight on.
         progress: receives the largest load factor reached, in [0, 1].
+        guard: as that of :func:`extend`.
     """
     # The start has no point before it: that the load grows decides which way is forward.
     unloaded = np.append(curve.path.start, 0.0)
@@ -96,7 +97,7 @@ def trace(curve: Curve, *, branch: int = 0, progress: Progress | None = None) ->
         leave_at = 0
         if traced.branch is None:
             leave_at = branch
-        step = extend(curve, traced, step, leave_at)
+        step = extend(curve, traced, step, leave_at, guard)
         reached = min(traced.points[-1].load_factor, 1.0)
         largest = max(largest, reached)
         if progress is not None:

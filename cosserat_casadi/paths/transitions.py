@@ -8,15 +8,15 @@ line that shrinks or a place that comes to the tip, is left a little before, and
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.alternatives import instead_of_pulling
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.projection import projected
-from cosserat_casadi.equilibrium.contact.settle import instead_of_pulling
-from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch, load_sections
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcPoint, Plane, plane_through
 from cosserat_casadi.numerics.events import Arc
@@ -116,7 +116,7 @@ def changes(arrangement: Arrangement, z: FloatArray, key: Key, X: float) -> Iter
         inwards = TIP - WIDER * OPEN
         yield _opened("slide_from_tip", touch, others, Touch.point(touch.obstacle, touch.rod, inwards))
         yield _opened("point_to_line", touch, others, Touch.line(touch.obstacle, touch.rod, inwards, TIP))
-    elif key.watch is Watch.FORCE and touch.reaches_tip and key.end:
+    elif key.watch is Watch.FORCE and touch.reaches_tip and key.end == len(touch.carriers) - 1:
         yield _opened("slide_from_tip", touch, others, replace(touch, end=TIP - WIDER * OPEN))
     else:
         for option in instead_of_pulling(touch):
@@ -139,7 +139,7 @@ def _added(state: ContactState, touch: Touch) -> Change:
 def _replaced(kind: str, old: Touch, others: list[Touch], new: Touch, watch: Watch) -> Change:
     """A contact of another kind, which begins where a margin of its own vanishes."""
     following = ContactState.of([*others, new])
-    last = len(new.ends) - 1 if watch is Watch.FORCE else 0
+    last = len(new.carriers) - 1 if watch is Watch.FORCE else 0
     grows = Key(watch, _number(following, new), (new.rod, new.obstacle), last)
     return Change(kind, old, following, grows, located=True)
 
@@ -173,6 +173,7 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Change) -> Entry 
         point: its last point.
         change: into the next.
     """
+    change = _split(change, load_sections(arrangement.scene))
     if not change.state.in_order:
         return None
     z = arrangement.z(point)
@@ -196,6 +197,12 @@ def entered(arrangement: Arrangement, point: ArcPoint, change: Change) -> Entry 
         return None
     start = replace(met, length=0.0)
     return Entry(change, following, start, change.located)
+
+
+def _split(change: Change, sections: Mapping[str, Sequence[float]]) -> Change:
+    """The same change, with seams in lines where loads act."""
+    opens = tuple((touch.split(sections[touch.rod]), number, factor) for touch, number, factor in change.opens)
+    return replace(change, state=change.state.split(sections), opens=opens)
 
 
 def _plane(arrangement: Arrangement, change: Change, load_factor: float) -> Plane:

@@ -1,12 +1,14 @@
-"""What a file of many states tells of smooth contact."""
+"""What files tell of contacts."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
+from cosserat_casadi.equilibrium.solution import Contact
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.paths.equilibrium_path import PathContact
 
 
 def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, Any]:
@@ -22,3 +24,11 @@ def contact_entry(model: Model, x: FloatArray, inputs: FloatArray) -> dict[str, 
         "widths": {obstacle.name: obstacle.width for obstacle in model.scene.obstacles},
         "depth": depths_along(model, x, inputs),
     }
+
+
+def point_forces(contact: Contact | PathContact) -> dict[str, Any]:
+    """Forces at the point or at both ends of a line, and those at sections inside it where there are any."""
+    entry: dict[str, Any] = {"point_forces": contact.ends}
+    if contact.inside:
+        entry["inside_forces"] = [{"at": section.at, "force": section.force} for section in contact.inside]
+    return entry

@@ -10,7 +10,7 @@ from typing import Any
 from cosserat_casadi.equilibrium.solution import Pose
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.paths.equilibrium_path import EquilibriumPath, PathContact, PathEvent
-from cosserat_casadi.results.contact_entry import contact_entry
+from cosserat_casadi.results.contact_entry import contact_entry, point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 POSE_COLUMNS = ("x", "y", "z", "qw", "qx", "qy", "qz")
@@ -105,7 +105,7 @@ def _point_entries(path: EquilibriumPath) -> list[dict[str, Any]]:
         # How deep rods are inside smooth obstacles is told of the whole path.
         if path.model.scene.touches_exactly:
             entry["contacts"] = [
-                {**_contact_entry(contact), "point_forces": contact.ends} for contact in path.contacts(index)
+                {**_contact_entry(contact), **point_forces(contact)} for contact in path.contacts(index)
             ]
         entries.append(entry)
     return entries

@@ -12,6 +12,7 @@ from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.files import write_atomically
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import input_layout
+from cosserat_casadi.results.contact_entry import point_forces
 from cosserat_casadi.results.json_text import SCHEMA, discretisation_entries, json_text, plain
 
 SAMPLES = 41
@@ -99,7 +100,7 @@ def _contact_entry(contact: Contact) -> dict[str, Any]:
         entry |= {"rod": contact.rod, "from": contact.start, "to": contact.end}
     entry |= {"force": contact.force, "kind": contact.kind}
     if contact.width is None:
-        entry["point_forces"] = contact.ends
+        entry |= point_forces(contact)
     else:
         entry |= {"width": contact.width, "gap": contact.gap}
     return entry

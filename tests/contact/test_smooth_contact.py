@@ -553,6 +553,38 @@ def test_energy_of_a_rod_that_is_pushed_out_onto_a_table_balances() -> None:
     assert np.abs(motion.energy.imbalance).max() < 1e-4
 
 
+WIRE = """
+[[obstacles]]
+name = "wire"
+kind = "capsule"
+from = [0.9, -1, -0.1]
+to = [0.9, 1, -0.1]
+radius = 4e-3
+width = 1e-3
+"""
+
+
+def test_no_step_of_a_path_passes_through_a_thin_wire() -> None:
+    """Steps of their own length would end behind it; the solve from a solution and the path end in front of it."""
+    model = build(parse_scene(ROD + PUSH + WIRE))
+    path = follow_path(model, "push.force", [0.0, 0.0, -2.5])
+    assert path.converged
+    held = path.solution(-1)
+    assert held.pose([0.906]).position[0, 2] > -0.1
+    assert held.tip().position[0, 2] > -0.2
+
+
+@pytest.mark.slow
+def test_no_step_from_a_solution_passes_through_a_thin_wire() -> None:
+    """At the lower wire the path stalls in front of it, and says so."""
+    model = build(parse_scene(ROD + PUSH + WIRE.replace("-0.1]", "-0.2]")))
+    near = solve(model, {"push.force": [0.0, 0.0, -0.05]})
+    assert near.converged
+    far = solve(model, {"push.force": [0.0, 0.0, -2.5]}, start=near)
+    assert far.outcome is Outcome.LOAD_STALLED
+    assert far.tip().position[0, 2] > -0.3
+
+
 def test_a_path_on_which_a_rod_is_pushed_through_is_not_resolved(pressed: Solution) -> None:
     soft = build(parse_scene(ROD + PUSH + TABLE + "stiffness = 1.0\n"))
     path = follow_path(soft, "push.force", [0.0, 0.0, -0.6])

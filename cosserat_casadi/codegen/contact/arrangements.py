@@ -98,7 +98,8 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> C
         load_cases: stacked inputs, a row for each case, shape (k, m).
 
     Raises:
-        ExportError: the scene has no equilibrium, a load case has none, or there are too many arrangements.
+        ExportError: the scene has no equilibrium, a load case has none, there are too many arrangements, or a load acts
+            inside a line of contact.
     """
     scene = without_contacts(model.scene)
     grids = Grids(model.discretisation)
@@ -118,6 +119,7 @@ def chosen_arrangements(model: Model, load_cases: FloatArray | None = None) -> C
         met.add(state_in(case.model.scene))
         before = row
     met.add(ContactState(()))
+    _refuse_split_lines(list(met.states.values()))
     count = len(met.states)
     if count > MOST_ARRANGEMENTS:
         problem = f"the load cases meet {count} arrangements of contacts, a library holds {MOST_ARRANGEMENTS}"
@@ -137,6 +139,25 @@ def _solved(scene: scenes.Scene, grids: Grids, inputs: FloatArray, what: str) ->
     if not solution.converged:
         raise ExportError(Problem("--over", f"{what}: {solution.message}", "leave it out, or lead there by others"))
     return solution
+
+
+def _refuse_split_lines(states: Sequence[ContactState]) -> None:
+    """Refuse lines of contact that a load inside them splits.
+
+    Raises:
+        ExportError: there are some.
+    """
+    split = {(touch.rod, touch.obstacle, X) for state in states for touch in state.touches for X in touch.seams}
+    problems = [
+        Problem(
+            "loads",
+            f"what acts at {X:g} of {rod!r} is inside the line along which it touches {obstacle!r}: not written in C",
+            "give each obstacle a width, m, for a contact that is smooth",
+        )
+        for rod, obstacle, X in sorted(split)
+    ]
+    if problems:
+        raise ExportError(*problems)
 
 
 def _z_of(equations: ContactEquations, near: Solution) -> FloatArray:

@@ -20,7 +20,7 @@ from cosserat_casadi.codegen.memory import largest_room, stack_bytes
 from cosserat_casadi.codegen.names import Names, identifier
 from cosserat_casadi.codegen.status import contact_status_words
 from cosserat_casadi.codegen.texts import render, resource
-from cosserat_casadi.equilibrium.contact import equations, passage, settle, state
+from cosserat_casadi.equilibrium.contact import alternatives, equations, passage, settle, state
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.numerics import newton
 from cosserat_casadi.scene.writing import scene_text
@@ -177,9 +177,9 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "farthest": FARTHEST,
         "looked_along": LOOKED_ALONG,
         "golden_sections": GOLDEN_SECTIONS,
-        "near": settle.NEAR,
+        "near": alternatives.NEAR,
         "at_tip": settle.AT_TIP,
-        "lies_from": settle.LIES_FROM,
+        "lies_from": alternatives.LIES_FROM,
         "shorter": SHORTER,
         "alike": settle.ALIKE,
         "fit": equations.FIT,

@@ -130,7 +130,9 @@ def cushioned(scene: scenes.Scene, factor: float = 1.0) -> Model:
     cushions += _cushions_of_bodies(scene, factor)
     changes: dict[str, object] = {"loads": (*scene.loads, *cushions)}
     if scene.inputs is not None:
-        changes["inputs"] = (*scene.inputs, *(f"{cushion.name}.stiffness" for cushion in cushions))
+        names = [f"{cushion.name}.stiffness" for cushion in cushions]
+        names += [f"{cushion.name}.raised" for cushion in cushions if cushion.rod is not None]
+        changes["inputs"] = (*scene.inputs, *names)
     soft = scene.model_copy(update=changes)
     discretisation = {}
     for rod in scene.rods:
@@ -213,7 +215,7 @@ def approach(scene: scenes.Scene, values: Values, progress: Progress | None = No
         factor = (2 * depth(found) / SHALLOW) ** 2
         stiffer = inputs.copy()
         for entry, span in model.inputs:
-            if entry.owner.startswith("cushion "):
+            if entry.owner.startswith("cushion ") and entry.field == "stiffness":
                 stiffer[span] *= factor
         end = follow(_guarded(model, inputs, input_path(model, found.x, inputs, stiffer)), settings, None)
         found = _judged(model, stiffer, end)
@@ -236,7 +238,7 @@ def _guarded(model: Model, inputs: FloatArray, path: Path) -> Path:
     barriers = Barriers(model, inputs)
     if not barriers.watched and not barriers.watched_bodies:
         return path
-    return replace(path, admits=lambda before, after: not barriers.are_between(before, after))
+    return replace(path, admits=lambda before, after: not barriers.are_between(before[0], after[0]))
 
 
 def _judged(model: Model, inputs: FloatArray, end: ContinuationResult) -> Solution:
@@ -267,10 +269,14 @@ def first_state(solution: Solution) -> ContactState:
         # Quadratic in the depth, as the cushions are.
         pressed = [Pressure(rod, obstacle.name, DENSE[part], gaps[part] ** 2) for part in runs(gaps < 0.0)]
         touches += [pressure.touch() for pressure in pressed]
+    return ContactState.of([*touches, *pressed_balls(solution)])
+
+
+def pressed_balls(solution: Solution) -> Iterator[Touch]:
+    """The contacts of bodies that have sunk into cushions."""
     for body, obstacle in body_pairs(solution.model.scene):
         if body_gap(solution, body, obstacle) < 0.0:
-            touches.append(Touch.ball(obstacle.name, body.name))
-    return ContactState.of(touches)
+            yield Touch.ball(obstacle.name, body.name)
 
 
 def _all_gaps(solution: Solution) -> Iterator[tuple[str, scenes.ObstacleRecord, FloatArray]]:

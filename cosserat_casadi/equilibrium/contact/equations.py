@@ -1,10 +1,11 @@
 """Equations of rods and bodies in known contact: balance, no gap where they touch, no slope where contact moves.
 
 Unknowns are z = (x, f, p): the unknowns of the model, the forces of the contacts, and the abscissae of contact that
-are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a stretch gives the same at
-its ends, and the moments of d − ρ with the polynomials of its force. A body is a ball: it gives d(r) = ρ. Elements end
-at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept. See
-docs/contact.md.
+are not at the tip. A point of contact gives d(r) = ρ and, where it may move, dd/dX = ρ′; a line gives the same at
+its ends, and the moments of d − ρ with the polynomials of its force. Where a load acts inside a line its force per
+length is split: the section takes a force of its own and gives d(r) = ρ. A body is a ball: it gives d(r) = ρ. Elements
+end at p and move with it, so that every field is smooth inside an element and the accuracy of the polynomials is kept.
+See docs/contact.md.
 """
 
 from __future__ import annotations
@@ -175,20 +176,24 @@ def obstacle_of(scene: scenes.Scene, name: str) -> scenes.ObstacleRecord:
 
 
 def gap_rows(system: System, state: ContactState, modes: Mapping[str, int]) -> Matrix:
-    """What the contacts ask to be zero, without unit: for each, the rows of its ends, then the moments along it."""
+    """What the contacts ask to be zero, without unit: for each, the rows of its sections, then the moments along it."""
     rows: list[Matrix] = [ca.MX(0, 1)]
     for touch in state.touches:
         if touch.of_body:
             rows.append(_body_gap(system, touch))
             continue
         distances = Distances(system, touch.rod, obstacle_of(system.discrete.scene, touch.obstacle))
-        for end, moves in zip(touch.ends, touch.moves, strict=True):
+        for end, moves in zip(touch.carriers, touch.carriers_move, strict=True):
             gap, slope = distances.at(end)
             rows.append(gap)
             if moves:
                 rows.append(slope)
         if touch.is_line:
-            rows.append(distances.moments(touch.start, touch.end, touch.moment_count(modes[touch.rod])))
+            counts = touch.moment_counts(modes[touch.rod])
+            rows += [
+                distances.moments(start, end, count)
+                for (start, end), count in zip(touch.stretches, counts, strict=True)
+            ]
     return ca.vertcat(*rows)
 
 
@@ -341,6 +346,21 @@ class ContactEquations:
         """The model that the equations start from, whose elements the places of contact move."""
         return self.placed(self.state)
 
+    @cached_property
+    def slope_rows(self) -> list[int]:
+        """Rows of the residual that ask for no slope, one for each place that is sought."""
+        rows = []
+        row = self.nominal.model.size
+        for touch in self.state.touches:
+            for moves in touch.carriers_move:
+                row += 1
+                if moves:
+                    rows.append(row)
+                    row += 1
+            if touch.is_line:
+                row += touch.moment_count(self.nominal.modes[touch.rod])
+        return rows
+
     def parts(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """x, f and p."""
         unknowns = self.nominal.model.size
@@ -388,7 +408,7 @@ class ContactEquations:
 
     @staticmethod
     def _places_on(state: ContactState, rod: str) -> list[float]:
-        return [float(end) for touch in state.along(rod) for end in touch.ends]
+        return [float(end) for touch in state.along(rod) for end in touch.carriers]
 
     def moved_strains(self, p: FloatArray) -> FloatArray:
         """What the unknowns of elements that stay are multiplied by to be those of elements moved to p, shape (n,).

@@ -9,14 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.alternatives import NEAR, instead_of_pulling, met, otherwise
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids, Placed
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, body_gap, body_pairs, gap_along, pairs, runs
 from cosserat_casadi.equilibrium.contact.projection import projected
-from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch
+from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, Touch, load_sections
+from cosserat_casadi.equilibrium.contact.steps import sought
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.chebyshev import legendre_polynomials
 from cosserat_casadi.maths.typing import FloatArray
@@ -26,17 +29,14 @@ from cosserat_casadi.numerics.outcome import Outcome
 MOST_STATES = 24
 """Most states that are tried."""
 
-NEAR = 0.03
-"""Distance along the rod within which a penetration belongs to a contact."""
-
 ROUNDING = 1e-12
 """Force, relative to the largest, that is zero."""
 
 AT_TIP = 1e-3
 """Distance from the tip within which it is the tip that touches."""
 
-LIES_FROM = 0.8
-"""Where a rod that lies down from its tip on is first thought to begin to."""
+OPENING = 0.3
+"""Share of the way to the nearer end of a line over which it is first thought to open inside."""
 
 ALIKE = 0.05
 """Places of contact that differ by less make the same attempt."""
@@ -67,7 +67,7 @@ class Found:
         return self.placed.state
 
     def parts(self) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
-        """Each contact, the forces at its ends, and the coefficients of the force along it, without unit."""
+        """Each contact, the forces at its sections, and the coefficients of the force along it, without unit."""
         return self.state.with_forces(self.forces, self.placed.modes)
 
     @property
@@ -77,13 +77,28 @@ class Found:
 
     def pulls(self) -> Iterator[tuple[Touch, float]]:
         """How much each contact would have to pull at most, relative to the largest force; 0 for one that does not."""
-        for touch, ends, line in self.parts():
-            least = float(ends.min())
+        for touch, carried, line in self.parts():
+            least = float(carried.min())
             if touch.is_line:
+                _, pressure = self.pressure(touch, line)
                 # Per length, over the whole of it.
-                along = legendre_polynomials(len(line), SAMPLES) @ line
-                least = min(least, float(along.min()) * (touch.end - touch.start))
+                least = min(least, float(pressure.min()) * (touch.end - touch.start))
             yield touch, max(-least, 0.0) / self.largest_force
+
+    def pressure(self, touch: Touch, line: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Abscissae along a line of contact and the force per length there, without unit."""
+        return pressure_along(touch, line, self.placed.modes[touch.rod])
+
+    def weakest(self, touch: Touch) -> float:
+        """Abscissa at which a line presses least, or pulls most; of sections too."""
+        for other, carried, line in self.parts():
+            if other != touch:
+                continue
+            X, pressure = self.pressure(touch, line)
+            sections = np.array(touch.carriers)
+            forces = np.concatenate([pressure * (touch.end - touch.start), carried])
+            return float(np.concatenate([X, sections])[forces.argmin()])
+        raise ValueError("no contact of this state")
 
     @property
     def worst_pull(self) -> float:
@@ -161,6 +176,7 @@ class Settling:
         newton: limits of the solve of each state.
         tolerance: depth and pull, relative, up to which a state holds.
         iterations: Newton steps so far.
+        squeezed: the contacts of the last state that was not solved, where its places were last; None of none.
     """
 
     scene: scenes.Scene
@@ -169,28 +185,37 @@ class Settling:
     newton: NewtonSettings
     tolerance: float
     iterations: int = 0
+    squeezed: ContactState | None = None
 
-    def run(self, state: ContactState, near: Solution) -> tuple[Found | None, bool]:
+    @cached_property
+    def sections(self) -> dict[str, tuple[float, ...]]:
+        """Abscissae inside each rod at which lines of contact have seams, by name."""
+        return load_sections(self.scene)
+
+    def run(self, guesses: Sequence[tuple[ContactState, Solution]]) -> tuple[Found | None, bool]:
         """Try states until one holds.
 
         Args:
-            state: the first one.
-            near: a shape to start from.
+            guesses: the first ones, the likeliest first, each with a shape to start from.
 
         Returns:
             the state that holds, or the last one that was solved; whether it holds.
         """
-        waiting = [(state, near)]
+        waiting = list(guesses)
         tried: list[ContactState] = []
         last: Found | None = None
         while waiting and len(tried) < MOST_STATES:
             candidate, start = waiting.pop(0)
+            candidate = candidate.split(self.sections)
             if not candidate.in_order or any(_alike(candidate, other) for other in tried):
                 continue
             tried.append(candidate)
             found = self.solve(candidate, start)
             if found is None:
-                waiting += [(other, start) for other in _otherwise(candidate)]
+                # Where places have run into something the state beyond it is the likeliest.
+                beyond = [] if self.squeezed is None else list(met(self.squeezed, self.sections))
+                waiting = [(other, start) for other in beyond] + waiting
+                waiting += [(other, start) for other in otherwise(candidate, self.sections)]
                 continue
             last = found
             others = list(next_states(found, self.tolerance))
@@ -212,6 +237,14 @@ class Settling:
         """Unknowns, forces and places that solve equations, from a shape near them."""
         x = projected(near, equations.nominal.model)
         start = np.concatenate([x, equations.nominal.fitting_forces(x), equations.state.places])
+        self.squeezed = None
+        if len(equations.state.places):
+            z, solved, taken = sought(equations, start, self.newton)
+            self.iterations += taken
+            if solved:
+                return z
+            _, _, places = equations.parts(z)
+            self.squeezed = equations.state.at(places.tolist())
         result = newton(equations.equations, start, self.newton)
         self.iterations += result.iterations
         if result.outcome is not Outcome.CONVERGED:
@@ -232,9 +265,27 @@ def found_at(equations: ContactEquations, z: FloatArray, given: FloatArray) -> F
     return Found(placed, x, forces, solution)
 
 
+def pressure_along(touch: Touch, line: FloatArray, modes: int) -> tuple[FloatArray, FloatArray]:
+    """Abscissae along a line of contact and the force per length there, without unit.
+
+    Args:
+        touch: the line.
+        line: coefficients of its force per length.
+        modes: polynomials of the curvature of its rod.
+    """
+    X = []
+    pressure = []
+    for start, end, own in touch.by_stretch(line, modes):
+        X.append(start + (end - start) * SAMPLES)
+        pressure.append(legendre_polynomials(len(own), SAMPLES) @ own)
+    return np.concatenate(X), np.concatenate(pressure)
+
+
 def _alike(first: ContactState, second: ContactState) -> bool:
     """Whether two states are the same attempt."""
-    if first.signature != second.signature:
+    if first.signature != second.signature or any(
+        one.seams != other.seams for one, other in zip(first.touches, second.touches, strict=True)
+    ):
         return False
     return bool(np.all(np.abs(first.places - second.places) < ALIKE))
 
@@ -255,7 +306,7 @@ class Change:
 def next_states(found: Found, tolerance: float) -> Iterator[ContactState]:
     """States to try instead of one that is at fault, the likeliest first; none for one that holds."""
     pulling = [touch for touch, pull in found.pulls() if pull > tolerance]
-    changes = [Change(touch, tuple(instead_of_pulling(touch))) for touch in pulling]
+    changes = [Change(touch, tuple(_where_it_opens(found, touch))) for touch in pulling]
     for penetrated, touch in _by_touch(found, tolerance):
         # What is inside a stretch of contact is its polynomials' error, and no change of the state mends it.
         if touch is not None and touch.is_line and touch.start < penetrated.deepest < touch.end:
@@ -294,20 +345,16 @@ def _changed(state: ContactState, changes: Sequence[tuple[Touch | None, tuple[To
     return ContactState.of([*kept, *added])
 
 
-def instead_of_pulling(touch: Touch) -> Iterator[tuple[Touch, ...]]:
-    """What a contact that pulls may be instead."""
-    if not touch.is_line:
-        yield ()
-        return
-    middle = (touch.start + touch.end) / 2
-    first, last, between = (Touch.point(touch.obstacle, touch.rod, place) for place in (touch.start, touch.end, middle))
-    yield (first, last)
-    yield (between,)
-    yield (first,)
-    yield (last,)
-    if touch.end == TIP:
-        # A rod that curls up leaves before its tip.
-        yield (replace(touch, end=touch.start + 0.7 * (touch.end - touch.start)),)
+def _where_it_opens(found: Found, touch: Touch) -> Iterator[tuple[Touch, ...]]:
+    """What a contact that pulls may be instead, a line that is lifted in its middle first two."""
+    if touch.is_line:
+        lifted = found.weakest(touch)
+        reach = OPENING * min(lifted - touch.start, touch.end - lifted)
+        if reach > 0.0:
+            before = Touch.line(touch.obstacle, touch.rod, touch.start, lifted - reach)
+            after = Touch.line(touch.obstacle, touch.rod, lifted + reach, touch.end)
+            yield before, after
+    yield from instead_of_pulling(touch)
 
 
 def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterator[tuple[Touch, ...]]:
@@ -336,18 +383,3 @@ def _instead_of_entering(penetrated: Penetrated, touch: Touch | None) -> Iterato
         yield (line,)
         yield (touch, point)
         yield (point,)
-
-
-def _otherwise(state: ContactState) -> Iterator[ContactState]:
-    """States beside one whose equations have no solution near by."""
-    for index, touch in enumerate(state.touches):
-        rest = [other for i, other in enumerate(state.touches) if i != index]
-        if touch.is_line:
-            for option in instead_of_pulling(touch):
-                yield ContactState.of([*rest, *option])
-        elif touch.reaches_tip:
-            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP - 2 * NEAR)])
-            yield ContactState.of([*rest, Touch.line(touch.obstacle, touch.rod, LIES_FROM, TIP)])
-        elif not touch.of_body:
-            yield ContactState.of([*rest, Touch.point(touch.obstacle, touch.rod, TIP)])
-        yield ContactState.of(rest)

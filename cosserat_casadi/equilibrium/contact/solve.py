@@ -13,6 +13,7 @@ from cosserat_casadi.equilibrium.contact.approach import approach, first_state
 from cosserat_casadi.equilibrium.contact.equations import Grids
 from cosserat_casadi.equilibrium.contact.passage import passes_through
 from cosserat_casadi.equilibrium.contact.settle import Settling
+from cosserat_casadi.equilibrium.contact.sharpen import likely_states, sharpened
 from cosserat_casadi.equilibrium.contact.state import TIP, ContactState, continuations, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
 from cosserat_casadi.equilibrium.relax import PATH_OF_ENERGY
@@ -55,7 +56,7 @@ def solve_contact(
     tolerance = max(bare.accuracy.tolerance, LEAST_TOLERANCE)
     settling = Settling(bare, given, grids, settings, tolerance)
     if start is not None:
-        found, holds = settling.run(state_in(start.model.scene), start)
+        found, holds = settling.run([(state_in(start.model.scene), start)])
         if found is not None and holds and not passes_through(start, found.solution):
             return judged(found, holds=True, iterations=settling.iterations, tolerance=settings.tolerance)
     cushioned = approach(bare, values, progress)
@@ -64,7 +65,7 @@ def solve_contact(
         # Short of the full load there is nothing whose contacts could be found.
         return replace(cushioned, iterations=settling.iterations)
     first = first_state(cushioned)
-    found, holds = settling.run(first, cushioned)
+    found, holds = settling.run(_guesses(cushioned, first))
     if found is None:
         found = settling.solve(ContactState(()), cushioned)
     if found is None:
@@ -77,6 +78,15 @@ def solve_contact(
     if not holds:
         return replace(solution, message=solution.message + _over_joints(bare, first))
     return solution
+
+
+def _guesses(cushioned: Solution, first: ContactState) -> list[tuple[ContactState, Solution]]:
+    """What the contacts look like on cushions, those that hold rods at the surface first, each with the shape there."""
+    rough = (first, cushioned)
+    sharp = sharpened(cushioned)
+    if sharp is None:
+        return [rough]
+    return [*((state, sharp.shape) for state in likely_states(sharp)), rough]
 
 
 def _over_joints(scene: scenes.Scene, state: ContactState) -> str:

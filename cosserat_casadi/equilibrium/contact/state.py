@@ -4,21 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.solution import SectionForce
 from cosserat_casadi.loads.contact_line import ContactLine
 from cosserat_casadi.loads.contact_point import ContactPoint
 from cosserat_casadi.maths.numbers import is_symbolic
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.places import element_ends
 
 Place = Any
 """An abscissa X: a number, or an expression while it is sought."""
 
 TIP = 1.0
 """Abscissa of the section that contact cannot move beyond."""
+
+CLEAR = 1e-3
+"""Distance of a place from a section with a load below which it is sought from a place that far beside it."""
 
 SHORTEST = 1e-5
 """Least distance of places of contact from each other and from the base, relative to the length of the rod."""
@@ -35,6 +41,7 @@ class Touch:
         end: abscissa at which it ends; the same for a point.
         is_line: whether a stretch lies on the obstacle.
         of_body: whether it is a body that touches.
+        seams: abscissae inside a line where the force per length may jump, base to tip; they do not move.
     """
 
     obstacle: str
@@ -43,6 +50,7 @@ class Touch:
     end: Place
     is_line: bool = False
     of_body: bool = False
+    seams: tuple[float, ...] = ()
 
     @classmethod
     def ball(cls, obstacle: str, body: str) -> Touch:
@@ -77,6 +85,28 @@ class Touch:
         return tuple(end for end, moves in zip(self.ends, self.moves, strict=True) if moves)
 
     @property
+    def carriers(self) -> tuple[Place, ...]:
+        """Abscissae of the forces at sections, base to tip: of the one point, or of both ends and the seams."""
+        return (self.start, *self.seams, self.end) if self.is_line else (self.start,)
+
+    @property
+    def carriers_move(self) -> tuple[bool, ...]:
+        """Whether each of these is sought."""
+        return (self.moves[0], *(False for _ in self.seams), *self.moves[1:])
+
+    def sorted_forces(self, forces: FloatArray) -> tuple[tuple[float, ...], tuple[SectionForce, ...]]:
+        """Forces at sections as those at the ends, and those inside a line."""
+        if not self.is_line:
+            return tuple(forces.tolist()), ()
+        first, *inside, last = forces.tolist()
+        return (first, last), tuple(map(SectionForce, self.seams, inside))
+
+    @property
+    def stretches(self) -> tuple[tuple[Place, Place], ...]:
+        """Start and end of each part of a line along which its force per length is smooth; none of a point."""
+        return tuple(pairwise(self.carriers))
+
+    @property
     def reaches_tip(self) -> bool:
         """Whether it ends at the tip."""
         return not self.of_body and not self.moves[-1]
@@ -93,14 +123,50 @@ class Touch:
         ends = [*places, TIP][: len(self.ends)]
         return replace(self, start=ends[0], end=ends[-1])
 
-    def moment_count(self, modes: int) -> int:
-        """Number of polynomials of the force per length on a stretch.
+    def split(self, sections: Sequence[float]) -> Touch:
+        """The same contact with seams at those sections that are inside it, and no place on a section.
 
-        In a stretch whose curvature has n polynomials the distance has n + 2. Of their conditions each sought end takes
-        two, distance and slope, the tip one; with the rest every one is met, and none twice.
+        Args:
+            sections: abscissae at which loads make the shear force, or its rate, jump.
         """
-        conditions = len(self.ends) + len(self.moving)
-        return max(modes + 2 - conditions, 1)
+        if not self.is_line:
+            place = _beside(self.start, sections, CLEAR) if self.moves[0] else self.start
+            return replace(self, start=place, end=place)
+        start = _beside(self.start, sections, -CLEAR)
+        end = self.end if self.reaches_tip else _beside(self.end, sections, CLEAR)
+        return replace(self, start=start, end=end, seams=tuple(X for X in sections if start < X < end))
+
+    def moment_counts(self, modes: int) -> tuple[int, ...]:
+        """Number of polynomials of the force per length on each stretch.
+
+        In a stretch whose curvature has n polynomials the distance has n + 2. At its start distance and slope are
+        known: where the line begins as the conditions of a sought end, at a seam from the stretch before. At its end a
+        sought end takes two more, a seam or the tip the distance alone; with the rest all are met, and none twice.
+        """
+        counts = []
+        for moves in self.carriers_move[1:]:
+            conditions = 2 + (2 if moves else 1)
+            counts.append(max(modes + 2 - conditions, 1))
+        return tuple(counts)
+
+    def moment_count(self, modes: int) -> int:
+        """Number of polynomials of the force per length, over all stretches."""
+        return sum(self.moment_counts(modes))
+
+    def by_stretch(self, along: FloatArray, modes: int) -> Iterator[tuple[float, float, FloatArray]]:
+        """Start and end of each stretch, with its part of the coefficients of the force per length."""
+        first = 0
+        for (start, end), count in zip(self.stretches, self.moment_counts(modes), strict=True):
+            yield start, end, along[first : first + count]
+            first += count
+
+
+def _beside(place: float, sections: Sequence[float], way: float) -> float:
+    """A place, or one by a way beside a section on which it is."""
+    for section in sections:
+        if abs(place - section) < CLEAR:
+            return section + way
+    return place
 
 
 @dataclass(frozen=True)
@@ -125,6 +191,11 @@ class ContactState:
             (touch.rod, touch.obstacle, touch.kind, touch.reaches_tip, touch.of_body) for touch in self.touches
         )
 
+    def split(self, sections: Mapping[str, Sequence[float]]) -> ContactState:
+        """The same contacts with seams at the sections of each rod, by name, that are inside them."""
+        touches = [touch if touch.of_body else touch.split(sections[touch.rod]) for touch in self.touches]
+        return ContactState(tuple(touches))
+
     @property
     def places(self) -> FloatArray:
         """All abscissae that are sought, shape (k,)."""
@@ -147,7 +218,7 @@ class ContactState:
     def with_forces(
         self, forces: FloatArray, modes: Mapping[str, int]
     ) -> Iterator[tuple[Touch, FloatArray, FloatArray]]:
-        """Each contact, the forces at its ends, and the coefficients of the force along it.
+        """Each contact, the forces at its sections, and the coefficients of the force along it.
 
         Args:
             forces: of all contacts, in the order of the loads.
@@ -155,7 +226,7 @@ class ContactState:
         """
         first = 0
         for touch in self.touches:
-            last = first + len(touch.ends)
+            last = first + len(touch.carriers)
             count = touch.moment_count(modes[touch.rod]) if touch.is_line else 0
             yield touch, forces[first:last], forces[last : last + count]
             first = last + count
@@ -164,14 +235,14 @@ class ContactState:
     def in_order(self) -> bool:
         """Whether the places of each rod follow each other between base and tip, a little apart."""
         for rod in {touch.rod for touch in self.touches}:
-            ends = [0.0, *(end for touch in self.along(rod) for end in touch.ends)]
+            ends = [0.0, *(end for touch in self.along(rod) for end in touch.carriers)]
             gaps = np.diff(ends)
             if np.any(gaps < SHORTEST) or ends[-1] > TIP:
                 return False
         return True
 
     def loads(self, scene: scenes.Scene, modes: Mapping[str, int]) -> list[scenes.LoadRecord]:
-        """The forces of the contacts as loads of the scene, without magnitude yet: at its ends, then along it.
+        """The forces of the contacts as loads of the scene, without magnitude yet: at its sections, then along it.
 
         Args:
             scene: the scene without them.
@@ -181,7 +252,7 @@ class ContactState:
         loads: list[scenes.LoadRecord] = []
         for touch in self.touches:
             obstacle = obstacles[touch.obstacle]
-            for end in touch.ends:
+            for end in touch.carriers:
                 loads.append(
                     ContactPoint.model_construct(
                         name=f"contact {len(loads) + 1}",
@@ -192,15 +263,16 @@ class ContactState:
                         force=0.0,
                     )
                 )
-            if touch.is_line:
-                no_force = ((0.0,) * touch.moment_count(modes[touch.rod]),)
+            if not touch.is_line:
+                continue
+            for span, count in zip(touch.stretches, touch.moment_counts(modes[touch.rod]), strict=True):
                 loads.append(
                     ContactLine.model_construct(
                         name=f"contact {len(loads) + 1}",
                         rod=touch.rod,
                         obstacle=obstacle,
-                        span=(touch.start, touch.end),
-                        force=no_force,
+                        span=span,
+                        force=((0.0,) * count,),
                     )
                 )
         return loads
@@ -247,21 +319,32 @@ def without_contacts(scene: scenes.Scene) -> scenes.Scene:
     return scene.model_copy(update=changes)
 
 
+def load_sections(scene: scenes.Scene) -> dict[str, tuple[float, ...]]:
+    """Abscissae inside each rod at which what acts on it makes the shear force, or its rate, jump, by name."""
+    return {rod.name: element_ends(scene, rod.name)[1:-1] for rod in scene.rods}
+
+
 def state_in(scene: scenes.Scene) -> ContactState:
     """The contacts whose forces are among the loads of a scene."""
-    touches = []
+    touches: list[Touch] = []
     loads = contact_loads(scene)
     for line in loads:
-        if isinstance(line, ContactLine):
-            start, end = line.span
-            touches.append(Touch.line(line.obstacle.name, line.rod, start, end))
-    ends_of_lines = {(touch.rod, touch.obstacle, end) for touch in touches for end in touch.ends}
+        if not isinstance(line, ContactLine):
+            continue
+        start, end = line.span
+        touch = Touch.line(line.obstacle.name, line.rod, start, end)
+        if touches and (touches[-1].rod, touches[-1].obstacle, touches[-1].end) == (touch.rod, touch.obstacle, start):
+            # One line, of stretches that follow each other.
+            before = touches.pop()
+            touch = replace(touch, start=before.start, seams=(*before.seams, start))
+        touches.append(touch)
+    of_lines = {(touch.rod, touch.obstacle, at) for touch in touches for at in touch.carriers}
     for point in loads:
         if not isinstance(point, ContactPoint):
             continue
         if point.body is not None:
             touches.append(Touch.ball(point.obstacle.name, point.body))
-        elif point.rod is not None and (point.rod, point.obstacle.name, point.at) not in ends_of_lines:
+        elif point.rod is not None and (point.rod, point.obstacle.name, point.at) not in of_lines:
             touches.append(Touch.point(point.obstacle.name, point.rod, point.at))
     return ContactState.of(touches)
 

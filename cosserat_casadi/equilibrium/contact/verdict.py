@@ -73,17 +73,20 @@ def judged(found: Found, *, holds: bool, iterations: int, tolerance: float) -> S
 def contacts_of(found: Found) -> tuple[Contact, ...]:
     """The contacts by name, with the forces on the rods."""
     contacts = []
-    for touch, ends, line in found.parts():
+    for touch, carried, line in found.parts():
         unit = found.placed.model.discrete.contact_unit(touch.rod, of_body=touch.of_body)
         obstacle = found.placed.obstacle(touch.obstacle)
-        forces = unit * ends
+        zero = PRESSING * found.largest_force
+        # What only rounding pulls does not pull.
+        forces = unit * np.where((carried < 0.0) & (carried > -zero), 0.0, carried)
         if touch.of_body:
             normal = body_normal(found.solution, touch.rod, obstacle)[None, :]
         else:
-            normal = normals(found.solution, touch.rod, obstacle, np.array(touch.ends))
+            normal = normals(found.solution, touch.rod, obstacle, np.array(touch.carriers))
         total = forces @ normal
         if touch.is_line:
             total = total + unit * _resultant(found, touch, obstacle, line)
+        ends, sections = touch.sorted_forces(forces)
         contacts.append(
             Contact(
                 obstacle=touch.obstacle,
@@ -91,9 +94,11 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
                 start=touch.start,
                 end=touch.end,
                 force=total,
-                ends=tuple(map(float, forces)),
+                ends=ends,
                 kind=touch.kind,
                 of_body=touch.of_body,
+                # Where loads have no jump of their own a section carries what the polynomials leave.
+                inside=tuple(own for own in sections if abs(own.force) > unit * zero),
             )
         )
     return tuple(contacts)
@@ -102,12 +107,14 @@ def contacts_of(found: Found) -> tuple[Contact, ...]:
 def _resultant(found: Found, touch: Touch, obstacle: scenes.ObstacleRecord, line: FloatArray) -> FloatArray:
     """∫ λ n over a stretch of contact, in units of EI/ℓ², shape (3,)."""
     grid = found.placed.model.discrete.rods[touch.rod].grid
-    nodes = grid.nodes_in(touch.start, touch.end)
-    X = known(grid.nodes_at(nodes))
-    width = touch.end - touch.start
-    along = legendre_polynomials(len(line), (X - touch.start) / width) @ line
-    normal = normals(found.solution, touch.rod, obstacle, X)
-    return np.asarray((grid.weights[nodes] * along) @ normal)
+    total = np.zeros(3)
+    for start, end, own in touch.by_stretch(line, found.placed.modes[touch.rod]):
+        nodes = grid.nodes_in(start, end)
+        X = known(grid.nodes_at(nodes))
+        along = legendre_polynomials(len(own), (X - start) / (end - start)) @ own
+        normal = normals(found.solution, touch.rod, obstacle, X)
+        total += (grid.weights[nodes] * along) @ normal
+    return total
 
 
 def _eigenvalues(found: Found) -> FloatArray:
@@ -119,14 +126,14 @@ def _eigenvalues(found: Found) -> FloatArray:
     rows = placed.gaps(found.x, inputs)[1].full()
     held: list[FloatArray] = []
     first = 0
-    for touch, ends, line in found.parts():
-        count = len(ends) + len(touch.moving) + len(line)
+    for touch, carried, line in found.parts():
+        count = len(carried) + len(touch.moving) + len(line)
         own = rows[first : first + count]
         first += count
         if touch.is_line:
             held.extend(own)
             continue
-        if ends[0] <= PRESSING * found.largest_force:
+        if carried[0] <= PRESSING * found.largest_force:
             continue
         held.append(own[0])
         if touch.moving:
@@ -134,8 +141,9 @@ def _eigenvalues(found: Found) -> FloatArray:
             if bend <= FLAT:
                 held.append(own[1])
             else:
-                # The slope depends on the strains and the base of this rod alone, whose rows are in one unit.
-                jacobian = jacobian + ends[0] / bend * np.outer(own[1], own[1])
+                # Every row of the Jacobian is in a unit of its own.
+                unit = model.discrete.rods[touch.rod].energy_unit / model.discrete.unknowns.units
+                jacobian = jacobian + carried[0] / bend * np.outer(unit * own[1], own[1])
     return admissible_eigenvalues(*restricted(jacobian, held, variations(model)))
 
 

@@ -1,0 +1,190 @@
+"""Loads that act inside a line of contact: shooting, closed forms, balance, complementarity and energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
+
+from cosserat_casadi import Solution, build, discretise, parse_scene, solve, solve_scene
+from cosserat_casadi.equilibrium.contact.gaps import gap_along, pairs
+from cosserat_casadi.results.solution_file import result
+from tests.contact.test_contact import TABLE, check_forces_sum, free_span
+
+BENDING, WEIGHT, HEIGHT, LENGTH = 0.03, 0.981, 0.08, 1.2
+
+DENSE = np.linspace(0.0, 1.0, 3001)
+
+
+def point_load(at: float, force: float, name: str = "load") -> str:
+    return f'[[loads]]\nname = "{name}"\nkind = "point_wrench"\nrod = "rod"\nat = {at}\nforce = [0, 0, {force}]\n'
+
+
+def solved(loads: str, modes: int = 7, start: Solution | None = None) -> Solution:
+    scene = parse_scene(TABLE + loads)
+    return solve(build(scene, discretise(scene, modes)), start=start)
+
+
+def check_contact(solution: Solution, tolerance: float = 1e-8) -> None:
+    """No section is in the table, none of its forces pulls, and it presses where it is touched alone."""
+    assert solution.converged, solution.message
+    for rod, obstacle in pairs(solution.model.scene):
+        assert gap_along(solution, rod, obstacle, DENSE).min() >= -tolerance
+        for contact in solution.contacts:
+            touching = np.linspace(contact.start, contact.end, 301)
+            assert_allclose(gap_along(solution, rod, obstacle, touching), 0.0, rtol=0, atol=tolerance)
+            assert min(contact.ends) >= 0.0
+            assert all(section.force > 0.0 for section in contact.inside)
+
+
+def check_balance(solution: Solution, loads: float) -> None:
+    check_forces_sum(solution, np.array([0.0, 0.0, loads - WEIGHT * LENGTH]))
+
+
+@pytest.fixture(scope="module")
+def pressed() -> Solution:
+    return solved(point_load(0.7, -0.5))
+
+
+def test_the_table_takes_a_load_where_it_stands(pressed: Solution) -> None:
+    """The free span does not know of it: the rod lifts off where it does without the load."""
+    check_contact(pressed)
+    (line,) = pressed.contacts
+    length, reaction, _ = free_span()
+    assert_allclose(line.start * LENGTH, length, rtol=0, atol=1e-7)
+    assert (line.kind, line.end) == ("line", 1.0)
+    assert_allclose(line.ends, [reaction, 0.0], rtol=0, atol=1e-7)
+    (section,) = line.inside
+    assert section.at == 0.7
+    assert_allclose(section.force, 0.5, rtol=1e-8, atol=0)
+    # All that lies there is borne there.
+    on_table = (LENGTH - length) * WEIGHT
+    assert_allclose(line.force, [0.0, 0.0, reaction + on_table + 0.5], rtol=1e-7, atol=1e-12)
+    check_balance(pressed, -0.5)
+    assert pressed.stable
+
+
+def test_files_list_the_forces_inside(pressed: Solution) -> None:
+    (contact,) = result(pressed)["contacts"]
+    (section,) = pressed.contacts[0].inside
+    assert contact["inside_forces"] == [{"at": 0.7, "force": section.force}]
+    assert len(contact["point_forces"]) == 2
+    (plain,) = result(solved(""))["contacts"]
+    assert "inside_forces" not in plain
+
+
+def test_from_a_solution_the_line_is_tried_first(pressed: Solution) -> None:
+    again = solve(pressed.model, {"load.force": [0.0, 0.0, -0.8]}, start=pressed)
+    check_contact(again)
+    assert_allclose(again.contacts[0].inside[0].force, 0.8, rtol=1e-8, atol=0)
+    assert again.iterations < 15
+
+
+@pytest.mark.parametrize("lift", [0.15, pytest.param(0.05, marks=pytest.mark.slow)])
+def test_a_load_that_lifts_opens_the_line(lift: float) -> None:
+    """A heavy beam on a rigid plane rises over 3P/4q on either side; each end of what rises presses with P/4.
+
+    EI w'''' = −q with w = w′ = w″ = 0 where it leaves the plane, w′ = 0 and EI w‴ = −P/2 under the load: half the width
+    of what rises is 3P/(4q). The slopes are below 1e-3.
+    """
+    lifted = solved(point_load(0.7, lift))
+    check_contact(lifted)
+    first, second = lifted.contacts
+    half = 3 * lift / (4 * WEIGHT) / LENGTH
+    assert_allclose([first.end, second.start], [0.7 - half, 0.7 + half], rtol=0, atol=2e-6)
+    assert_allclose([first.ends[1], second.ends[0]], lift / 4, rtol=1e-5, atol=0)
+    length, _, _ = free_span()
+    assert_allclose(first.start * LENGTH, length, rtol=0, atol=1e-7)
+    check_balance(lifted, lift)
+    assert lifted.stable
+
+
+@pytest.mark.slow
+def test_a_load_on_the_free_span() -> None:
+    """Shooting of the heavy elastica with a load at 0.48 of the rod, which lies down beyond it."""
+    load = 0.2
+    place = 0.48 * LENGTH
+
+    def rate(s: float, y: np.ndarray, beyond: float) -> list[float]:
+        _, _, theta, kappa = y
+        return [np.cos(theta), np.sin(theta), kappa, -(beyond + WEIGHT * s) * np.cos(theta) / BENDING]
+
+    def missed(unknown: np.ndarray) -> np.ndarray:
+        length, curvature, force = unknown
+        accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
+        first = solve_ivp(rate, (0.0, place), [0.0, 0.0, 0.0, curvature], args=(force,), **accuracy).y[:, -1]
+        end = solve_ivp(rate, (place, length), first, args=(force + load,), **accuracy).y[:, -1]
+        return np.array([end[1] + HEIGHT, end[2], end[3]])
+
+    found = fsolve(missed, [0.61, -1.6, -0.4], xtol=1e-13)
+    assert_allclose(missed(found), 0.0, rtol=0, atol=1e-9)
+    length, _, force = found
+    solution = solved(point_load(0.48, -load), modes=9)
+    check_contact(solution)
+    (line,) = solution.contacts
+    assert line.inside == ()
+    assert_allclose(line.start * LENGTH, length, rtol=0, atol=1e-7)
+    assert_allclose(line.ends[0], force + load + WEIGHT * length, rtol=0, atol=1e-6)
+    check_balance(solution, -load)
+
+
+@pytest.mark.slow
+def test_loads_close_to_each_other_and_to_the_tip() -> None:
+    """Each is borne where it stands; next to lift-off and next to the tip as well."""
+    places = [0.55, 0.62, 0.95]
+    loads = "".join(point_load(at, -0.3 * number, f"load{number}") for number, at in enumerate(places, start=1))
+    solution = solved(loads)
+    check_contact(solution)
+    (line,) = solution.contacts
+    assert [section.at for section in line.inside] == places
+    # The stretch from lift-off to the first is a hundredth of the rod: its forces have fewer digits.
+    assert_allclose([section.force for section in line.inside], [0.3, 0.6, 0.9], rtol=1e-5, atol=0)
+    check_balance(solution, -1.8)
+
+
+@pytest.mark.slow
+def test_a_couple_inside_a_line_lifts_it() -> None:
+    """A table cannot bear a couple: the rod rises on both sides of it, and balance of moments holds there."""
+    couple = '[[loads]]\nname = "twist"\nkind = "point_wrench"\nrod = "rod"\nat = 0.75\nmoment = [0, 2e-3, 0]\n'
+    solution = solved(couple)
+    check_contact(solution)
+    assert any(contact.end < 0.75 for contact in solution.contacts)
+    assert not any(contact.start < 0.75 < contact.end for contact in solution.contacts)
+    check_balance(solution, 0.0)
+
+
+@pytest.mark.slow
+def test_admissible_shapes_have_more_energy(pressed: Solution) -> None:
+    """Shapes that are held by other forces as well, all above the table, are not lower."""
+    generator = np.random.default_rng(3)
+    probes = "".join(point_load(at, 0.0, f"probe{at:.0e}".replace("-", "")) for at in (0.35, 0.62, 0.8))
+    own = solved(point_load(0.7, -0.5) + probes)
+    names = [name for name in own.model.inputs.unpack(own.inputs) if name.startswith("probe")]
+    least = energy(own, own)
+    for _ in range(4):
+        forces = {name: [0.0, 0.0, generator.uniform(0.0, 0.4)] for name in names if name.endswith("force")}
+        other = solve(own.model, forces)
+        check_contact(other, 1e-7)
+        assert energy(other, own) > least
+
+
+def energy(shape: Solution, loads: Solution) -> float:
+    """Potential of a shape under the loads of a solution, without those of contact."""
+    weight, bending = 0.0, 0.0
+    X, weights = np.polynomial.legendre.leggauss(400)
+    X = (X + 1) / 2
+    curvature = shape.strain(X)[:, 1]
+    bending = LENGTH * float(weights / 2 @ curvature**2) * BENDING / 2
+    weight = LENGTH * WEIGHT * float(weights / 2 @ shape.pose(X).position[:, 2])
+    (height,) = shape.pose(np.array([0.7])).position[:, 2]
+    return bending + weight + 0.5 * float(height)
+
+
+@pytest.mark.slow
+def test_a_scene_meets_its_tolerance() -> None:
+    solution = solve_scene(parse_scene(TABLE.replace("1e-7", "1e-6") + point_load(0.7, -0.5)))
+    check_contact(solution, 1e-6)
+    assert solution.error_estimate is not None
+    assert solution.error_estimate < 1e-6
