@@ -9,11 +9,18 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.errors import Problem
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
+
+ROUND = ("sphere", "capsule")
+"""Kinds of obstacles that may be thin."""
+
+THINNEST = 1e-3
+"""Least radius of an obstacle and of a section together, over the length of the rod."""
 
 
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
@@ -27,6 +34,7 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     if slack:
         what = f"exact contact in motion does not go with cables that may go slack: {', '.join(slack)}"
         yield Problem("obstacles", what, remedy)
+    yield from _too_thin(model)
     touching = {rod for rod, _ in pairs(model.scene)}
     if any(obstacle.bodies for obstacle in model.scene.obstacles):
         yield Problem("obstacles", "exact contact in motion is for rods, not for bodies", remedy)
@@ -35,6 +43,20 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
         names = ", ".join(sorted(assembled))
         what = f"exact contact in motion is for rods on their own, not for those of assemblies: {names}"
         yield Problem("obstacles", what, remedy)
+
+
+def _too_thin(model: Model) -> Iterator[Problem]:
+    """Balls and bars about which a rod turns so sharply that steps would be without end."""
+    for rod, obstacle in pairs(model.scene):
+        radius = getattr(obstacle, "radius", None)
+        if obstacle.kind not in ROUND or radius is None:
+            continue
+        properties = model.discrete.rods[rod].properties
+        thinnest = radius + float(section_radius(properties, np.array([0.0, 1.0])).min())
+        least = THINNEST * properties.length
+        if thinnest < least:
+            what = f"with the section of {rod!r} it is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
+            yield Problem(f"obstacles.{obstacle.name}.radius", what, "give a larger radius, or a width, m")
 
 
 def _is_assembled(model: Model, rod: str) -> bool:
