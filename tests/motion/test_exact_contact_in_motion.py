@@ -259,9 +259,10 @@ def test_a_rod_does_not_fall_through_a_bar_thinner_than_its_sections_are_apart()
     assert [event.kind for event in motion.events] == ["impact"]
     positions = motion.section("rod", np.linspace(0.0, 1.0, 4001)).position
     distances = np.linalg.norm((positions - [0.2, 0.0, -0.03])[..., [0, 2]], axis=-1)
-    assert distances.min() > 5e-4 - 0.4e-4
-    # Before the impact it is farther off; after it the bar is in touch.
-    assert_allclose(distances[motion.times > motion.events[0].time].min(axis=1), 5e-4, rtol=0, atol=1e-6)
+    assert distances.min() > 5e-4 - 2e-8
+    # Sections that are looked at here are up to 0.05 mm beside the one that touches.
+    touching = motion.times > motion.events[0].time
+    assert_allclose(distances[touching].min(axis=1), 5e-4, rtol=0, atol=3e-6)
 
 
 @pytest.mark.slow
