@@ -40,6 +40,8 @@ def block_diagonal(blocks: Matrix, pattern: ca.Sparsity) -> Matrix:
     if pattern.nnz() == 0:
         return ca.DM(*shape)
     block_rows, block_columns = (np.asarray(indices) for indices in pattern.get_triplet())
+    # What CasADi knows to be zero it may have left out: zero is an entry like any other here.
+    blocks = ca.project(blocks, ca.repmat(pattern, 1, points))
     # Entry (r, c) of the block of a point stands in the diagonal block (r, c), on the row of that point.
     point = np.repeat(np.arange(points), pattern.nnz())
     rows = np.tile(block_rows, points) * points + point

@@ -9,11 +9,18 @@ import numpy as np
 from cosserat_casadi.equilibrium.contact.gaps import pairs
 from cosserat_casadi.equilibrium.smooth_contact import depths_along
 from cosserat_casadi.errors import Problem
+from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.paths import watched_times
 from cosserat_casadi.scene.simulation import Simulation
+
+ROUND = ("sphere", "capsule")
+"""Kinds of obstacles that may be thin."""
+
+THINNEST = 1e-3
+"""Least radius of an obstacle and of a section together, over the length of the rod."""
 
 
 def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
@@ -27,6 +34,7 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     if slack:
         what = f"exact contact in motion does not go with cables that may go slack: {', '.join(slack)}"
         yield Problem("obstacles", what, remedy)
+    yield from _too_thin(model)
     touching = {rod for rod, _ in pairs(model.scene)}
     if any(obstacle.bodies for obstacle in model.scene.obstacles):
         yield Problem("obstacles", "exact contact in motion is for rods, not for bodies", remedy)
@@ -35,6 +43,20 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
         names = ", ".join(sorted(assembled))
         what = f"exact contact in motion is for rods on their own, not for those of assemblies: {names}"
         yield Problem("obstacles", what, remedy)
+
+
+def _too_thin(model: Model) -> Iterator[Problem]:
+    """Balls and bars about which a rod turns so sharply that steps would be without end."""
+    for rod, obstacle in pairs(model.scene):
+        radius = getattr(obstacle, "radius", None)
+        if obstacle.kind not in ROUND or radius is None:
+            continue
+        properties = model.discrete.rods[rod].properties
+        thinnest = radius + float(section_radius(properties, np.array([0.0, 1.0])).min())
+        least = THINNEST * properties.length
+        if thinnest < least:
+            what = f"with the section of {rod!r} it is {thinnest:.3g} m, below {least:.3g} m: too thin for a motion"
+            yield Problem(f"obstacles.{obstacle.name}.radius", what, "give a larger radius, or a width, m")
 
 
 def _is_assembled(model: Model, rod: str) -> bool:
@@ -61,10 +83,24 @@ def too_deep(history: History, duration: float) -> str:
     )
 
 
-def inside(history: History, duration: float) -> float:
-    """How deep a section is inside an obstacle that has no width at any time, over the length; negative outside."""
+def told_inside(history: History, duration: float, deepest: float) -> str:
+    """A sentence where a section is inside an obstacle that has no width, with the time and the place; else nothing.
+
+    Args:
+        history: the motion.
+        duration: of the motion, s.
+        deepest: depth over the length up to which a section touches.
+    """
     if history.contacts is None:
-        return -np.inf
+        return ""
     times = watched_times(history, duration)
     x, inputs = history.rough_positions(times)
-    return max(history.contacts.deepest(*state) for state in zip(x, inputs, strict=True))
+    found = [history.contacts.deepest(*state) for state in zip(x, inputs, strict=True)]
+    number = int(np.argmax([one.depth for one in found]))
+    worst = found[number]
+    if worst.depth <= deepest:
+        return ""
+    return (
+        f"At t = {times[number]:.6g} s the section X = {worst.place:.4g} of {worst.rod!r} is {worst.depth:.2g} of the "
+        f"length inside {worst.obstacle!r}, deeper than the tolerance: no contact was found there."
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +33,22 @@ class MotionContact:
     rod: str
     at: float
     force: FloatArray
+
+
+class Inside(NamedTuple):
+    """A section, and how deep it is inside an obstacle.
+
+    Attributes:
+        depth: over the length of the rod; negative outside.
+        rod: name of the rod.
+        obstacle: name of the obstacle.
+        place: abscissa X of the section.
+    """
+
+    depth: float
+    rod: str
+    obstacle: str
+    place: float
 
 
 @dataclass(frozen=True)
@@ -101,10 +118,13 @@ class ContactRecord:
                 powers[number] -= force * unit * float(facing.by_inputs(x, inputs.value, gap) @ inputs.rate)
         return powers
 
-    def deepest(self, x: FloatArray, inputs: FloatArray) -> float:
-        """How deep a section is inside an obstacle at a state, over the length of its rod; negative outside."""
-        gaps = [facing.gaps(facing.nodes(x, inputs)).min() for facing in self._facings]
-        return -float(min(gaps))
+    def deepest(self, x: FloatArray, inputs: FloatArray) -> Inside:
+        """The section that is deepest inside an obstacle at a state."""
+        found = []
+        for facing in self._facings:
+            minimum = facing.deepest(facing.nodes(x, inputs))
+            found.append(Inside(-minimum.gap, facing.rod, facing.obstacle.name, minimum.place))
+        return max(found)
 
     @cached_property
     def _facings(self) -> list[Facing]:

@@ -33,6 +33,9 @@ SECTIONS_IN_ELEMENT = 200
 MOST_ITERATIONS = 20
 """Newton iterations for the place where a gap is least."""
 
+MOST_HALVINGS = 40
+"""Halvings of a stretch in which there is such a place, where Newton's method does not find it."""
+
 PLACED = 1e-14
 """Change of a place that counts as none."""
 
@@ -253,6 +256,11 @@ class Facing:
             return float("inf")
         return self._refined(nodes, min(others, key=lambda i: float(gaps[i]))).gap
 
+    def deepest(self, nodes: FloatArray) -> Minimum:
+        """The section whose gap is the least of all, the base included."""
+        gaps = self.gaps(nodes)
+        return self._refined(nodes, int(np.argmin(gaps)))
+
     def gradient(self, x: FloatArray, inputs: FloatArray, gap: Gap) -> FloatArray:
         """Derivative of a gap with the unknowns, shape (n,)."""
         return self.sections.gradient(x, inputs, self._weights(gap)) / self.length
@@ -347,10 +355,29 @@ class Facing:
         beside = float(self.looked_at[index])
         here = self.at(nodes, beside).value
         X = self._stationary(nodes, beside)
-        # A flat gap, as of a straight rod along a plane, has no place of its own.
         if not (0.0 < X < 1.0 and abs(X - beside) <= FAR):
+            X = self._bracketed(nodes, index)
+        # A flat gap, as of a straight rod along a plane, has no place of its own.
+        if not 0.0 < X < 1.0:
             return Minimum(beside, here, 0.0 < beside < 1.0)
         return Minimum(X, self.at(nodes, X).value, True)
+
+    def _bracketed(self, nodes: FloatArray, index: int) -> float:
+        """Where the slope changes its sign between the neighbours of a section that is looked at; else not a number.
+
+        About a bar that is thin beside the distance of the sections Newton's method leads nowhere from beside it.
+        """
+        last = len(self.looked_at) - 1
+        low, high = (float(self.looked_at[i]) for i in (max(index - 1, 0), min(index + 1, last)))
+        if not self.at(nodes, low).slope < 0.0 < self.at(nodes, high).slope:
+            return float("nan")
+        for _ in range(MOST_HALVINGS):
+            middle = (low + high) / 2.0
+            if self.at(nodes, middle).slope < 0.0:
+                low = middle
+            else:
+                high = middle
+        return (low + high) / 2.0
 
     @cached_property
     def _grid(self) -> Grid:

@@ -268,7 +268,8 @@ def integrated(
             restart = switching.restarted(plain, piece, at, phases, guard, interval)
             phases = restart.phases
             if not legs:
-                _check_start(restart.start, pieces[-1].end)
+                touches = model.scene.touches_exactly and len(restart.phases) > 0
+                _check_start(restart.start, pieces[-1].end, touches=touches)
             equations, guards = switching.arranged(plain, piece, phases)
             begin = restart.start.instant
             # What touches an obstacle keeps no momentum.
@@ -311,14 +312,17 @@ def _chatters(legs: Sequence[Leg], duration: float) -> bool:
     return legs[-1].integration.end.time - legs[-1 - MOST_AT_ONCE].integration.end.time < AT_ONCE * duration
 
 
-def _check_start(start: ConsistentStart, duration: float) -> None:
+def _check_start(start: ConsistentStart, duration: float, *, touches: bool) -> None:
     """Refuse a motion whose start contradicts its constraints: nothing is repaired in silence.
 
     Raises:
         SceneError: supports or joints are not closed, or would be torn open at once.
     """
     problems = []
-    if start.position_error > CONSISTENT:
+    if start.position_error > CONSISTENT and touches:
+        what = f"a rod is inside an obstacle by {start.position_error:.2g} (over the length) where the motion starts"
+        problems.append(Problem("simulation.start", what, "start from another shape, or move the obstacle"))
+    elif start.position_error > CONSISTENT:
         what = f"supports or joints are open by {start.position_error:.2g} (over the length) where the motion starts"
         problems.append(Problem("simulation.start", what, "start from an equilibrium"))
     if start.velocity_error * duration > CONSISTENT:

@@ -17,7 +17,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.contact_checks import inside, too_deep, untouchable
+from cosserat_casadi.motion.contact_checks import told_inside, too_deep, untouchable
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.endings import message_of, outcome_of
 from cosserat_casadi.motion.energy_balance import energies_of
@@ -380,12 +380,14 @@ def judged(simulator: Simulator, history: History, error: float, bound: float) -
     """
     outcome = MotionOutcome.COMPLETED
     message = message_of(history, outcome)
-    if unresolved(history, simulator.simulation.duration):
+    duration = simulator.simulation.duration
+    entered = told_inside(history, duration, tolerance_of(history.model, simulator.simulation))
+    if unresolved(history, duration):
         outcome = MotionOutcome.UNRESOLVED
-        message = message_of(history, outcome) + too_deep(history, simulator.simulation.duration)
-    elif inside(history, simulator.simulation.duration) > tolerance_of(history.model, simulator.simulation):
+        message = message_of(history, outcome) + too_deep(history, duration)
+    elif entered:
         outcome = MotionOutcome.CONTACT_UNSETTLED
-        message = "A section is deeper inside an obstacle than the tolerance: no contact was found there."
+        message = entered
     elif not error <= bound:
         outcome = MotionOutcome.UNRESOLVED
         found = f"The estimated error of the paths is {error:.2g} of the length, above {bound:.2g}."

@@ -31,6 +31,16 @@ MOST_HALVINGS = 12
 """Halvings of the time between two of them in which a guard that lies on zero is looked for above it."""
 
 
+STEEPER = 2.0
+"""How much faster than between any two of them a guard is thought to fall, where it may fall and rise between."""
+
+GOLDEN = (3.0 - 5.0**0.5) / 2.0
+"""Share of an interval at which golden sections are looked at."""
+
+MOST_SECTIONS = 40
+"""Golden sections of the time between two of them in which a guard may fall through zero and rise again."""
+
+
 @dataclass(frozen=True)
 class Crossing:
     """Where a guard falls through zero.
@@ -45,16 +55,70 @@ class Crossing:
 
 
 def crossing(step: Step, guards: Guards) -> Crossing | None:
-    """The first time in a step at which a guard falls through zero, by the dense output; None where none does."""
+    """The first time in a step at which a guard falls through zero, by the dense output; None where none does.
+
+    One that falls through zero and rises again between two looks is found where it does so in one dip.
+    """
     times = step.start.time + WATCHED * (step.end.time - step.start.time)
-    before = guards(step.start)
-    for earlier, later in pairwise(times):
-        after = guards(step.at(float(later)))
-        fallen = np.flatnonzero(after < -THROUGH)
-        if len(fallen):
-            found = [_zero(step, guards, int(k), (earlier, before[k]), (later, after[k])) for k in fallen]
+    values = [guards(step.start)]
+    for time in times[1:]:
+        values.append(guards(step.at(float(time))))
+        if np.any(values[-1] < -THROUGH):
+            break
+    # The looks are at even distances.
+    falls = STEEPER * np.abs(np.diff(values, axis=0)).max(axis=0)
+    for number, (before, after) in enumerate(pairwise(values)):
+        earlier, later = float(times[number]), float(times[number + 1])
+        found = []
+        for k in range(len(before)):
+            fallen: tuple[float, float] | None = (later, after[k])
+            if not after[k] < -THROUGH:
+                fallen = None
+                if min(before[k], after[k]) > THROUGH and before[k] + after[k] < falls[k]:
+                    fallen = _dip(step, guards, k, (earlier, later), falls[k] / (later - earlier))
+            if fallen is not None:
+                found.append(_zero(step, guards, k, (earlier, before[k]), fallen))
+        if found:
             return min(found, key=lambda one: one.time)
-        before = after
+    return None
+
+
+def _dip(
+    step: Step, guards: Guards, guard: int, between: tuple[float, float], steepest: float
+) -> tuple[float, float] | None:
+    """A time between two others at which a guard is below zero, with its value; None where its least is not.
+
+    By golden sections: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953).
+
+    Args:
+        step: the step.
+        guards: all of them.
+        guard: number of the guard.
+        between: the times, s.
+        steepest: rate at which it falls at most, 1/s.
+    """
+
+    def value(time: float) -> float:
+        return float(guards(step.at(time))[guard])
+
+    start, end = between
+    inner = [start + GOLDEN * (end - start), end - GOLDEN * (end - start)]
+    values = [value(time) for time in inner]
+    for _ in range(MOST_SECTIONS):
+        lower = int(values[1] < values[0])
+        if values[lower] < -THROUGH:
+            return inner[lower], values[lower]
+        if lower:
+            start = inner[0]
+            inner = [inner[1], end - GOLDEN * (end - start)]
+            values = [values[1], value(inner[1])]
+        else:
+            end = inner[1]
+            inner = [start + GOLDEN * (end - start), inner[0]]
+            values = [value(inner[0]), values[0]]
+        # What is left is too short to come to zero in.
+        if min(values) > steepest * (end - start):
+            return None
     return None
 
 

@@ -11,7 +11,16 @@ import pytest
 
 from cosserat_casadi import ExportError, build, discretise, export, load, load_in_contact, read_scene, solve
 from cosserat_casadi.numerics.outcome import Outcome
-from tests.codegen.contact_libraries import ContactLibrary, assert_same, exported_contact, on_table, over_bar
+from tests.codegen.contact_libraries import (
+    BAR,
+    FLAT,
+    PUSH,
+    ContactLibrary,
+    assert_same,
+    exported_contact,
+    on_table,
+    over_bar,
+)
 from tests.codegen.libraries import C99, QUICK
 from tests.scenes import rod, scene
 
@@ -62,6 +71,14 @@ def test_a_tip_that_touches_and_a_rod_that_lies_down(table: ContactLibrary) -> N
         assert_same(found, wanted, forces=1e-6)
         kinds.append([contact.kind for contact in found.contacts])
     assert kinds == [[], ["point"], ["line"], ["line"], ["point"], []]
+
+
+def test_a_rod_that_barely_enters_between_the_sections_looked_at(bar: ContactLibrary) -> None:
+    """At 0.5267 N the rod comes to the bar, and is inside by 3e-4 of its length for 5 mN more: both sides are seen."""
+    for force, count in ((0.526, 0), (0.5272, 1), (0.529, 1)):
+        found = bar.loaded.solve(down(force))
+        assert found.converged
+        assert len(found.contacts) == count
 
 
 @pytest.mark.parametrize("force", [0.2, 3.0])
@@ -181,6 +198,20 @@ def test_load_names_the_other_function(bar: ContactLibrary) -> None:
         load(bar.folder)
     with pytest.raises(ExportError, match="load any other with load"):
         load_in_contact(Path(__file__).parents[2] / "generated" / "nitinol_wire")
+
+
+@pytest.mark.slow
+def test_a_bar_thinner_than_sections_are_apart_is_met_in_c(tmp_path: Path) -> None:
+    """Of 4 mm, in small turns and in one: the rod neither enters it nor passes through."""
+    thin = {**BAR, "from": [0.51, -0.5, -0.05], "to": [0.51, 0.5, -0.05], "radius": 0.004}
+    wanted = scene(rods=[FLAT], loads=[PUSH], obstacles=[thin], accuracy={"tolerance": 1e-8})
+    library = exported_contact(wanted, tmp_path / "thin", down(8.0)[None], 3, 6)
+    found = library.loaded.solve(down(0.0))
+    for force in np.linspace(0.7, 1.2, 11):
+        found = library.loaded.solve(down(force), found)
+        assert_same(found, solve(library.model, down(force)))
+    assert len(found.contacts) == 1
+    assert len(library.loaded.solve(down(1.2), library.loaded.solve(down(0.0))).contacts) == 1
 
 
 @pytest.mark.slow

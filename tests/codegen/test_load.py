@@ -384,7 +384,7 @@ def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Model, Compil
     model = build(given, discretise(given, 2, 4))
     folder = export(model, tmp_path / "bare")
     assert not (folder / "bare_derivatives.c").exists()
-    assert "derivatives" not in (folder / "README.md").read_text().split("## Build")[0]
+    assert "bare_derivatives" not in (folder / "README.md").read_text().split("## Build")[0]
     return model, load(folder)
 
 

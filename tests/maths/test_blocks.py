@@ -121,3 +121,9 @@ def test_mirror_factors_vs_rounding_of_the_entries():
     fold, half = blocks.mirror_factors(columns, np.array([2, 1, 0]), np.ones(3), np.array([1.0, -1.0]))
     assert half.nnz() == 2
     assert_allclose((fold.T @ half).full(), columns, rtol=0, atol=3e-16)
+
+
+def test_block_diagonal_of_blocks_that_are_known_to_be_zero():
+    pattern = ca.Sparsity.dense(2, 2)
+    found = blocks.block_diagonal(ca.MX(2, 6), pattern)
+    np.testing.assert_allclose(ca.evalf(found).full(), np.zeros((6, 6)), rtol=0, atol=0)

@@ -242,6 +242,39 @@ def test_what_exact_contact_in_motion_does_not_go_with_is_refused() -> None:
         simulate_scene(parse_scene(text))
 
 
+def test_starts_inside_and_bars_too_thin_are_refused_by_what_they_are() -> None:
+    inside = 'kind = "sphere", centre = [0.25, 0, -0.02], radius = 0.03'
+    with pytest.raises(SceneError, match=r"a rod is inside an obstacle by 0\.025"):
+        simulate(moving(rod(inside)))
+    thin = 'kind = "capsule", from = [0.2, -0.1, -0.03], to = [0.2, 0.1, -0.03], radius = 1e-4'
+    with pytest.raises(SceneError, match=r"obstacles\.bar\.radius.*below 0\.0004 m"):
+        simulate(moving(rod(thin)))
+
+
+@pytest.mark.slow
+def test_a_rod_does_not_fall_through_a_bar_thinner_than_its_sections_are_apart() -> None:
+    thin = 'kind = "capsule", from = [0.2, -0.1, -0.03], to = [0.2, 0.1, -0.03], radius = 5e-4'
+    motion = simulate(moving(rod(thin, duration=0.15)))
+    assert motion.converged, motion.message
+    assert [event.kind for event in motion.events] == ["impact"]
+    positions = motion.section("rod", np.linspace(0.0, 1.0, 4001)).position
+    distances = np.linalg.norm((positions - [0.2, 0.0, -0.03])[..., [0, 2]], axis=-1)
+    assert distances.min() > 5e-4 - 2e-8
+    # Sections that are looked at here are up to 0.05 mm beside the one that touches.
+    touching = motion.times > motion.events[0].time
+    assert_allclose(distances[touching].min(axis=1), 5e-4, rtol=0, atol=3e-6)
+
+
+@pytest.mark.slow
+def test_a_base_that_is_moved_into_a_ball_is_told_with_time_and_place() -> None:
+    ball = 'kind = "sphere", centre = [-0.02, 0, -0.06], radius = 0.03'
+    drive = '\n[[motions]]\ninput = "rod.base.position"\namplitude = [0, 0, -0.06]\nfrequency = 2.0\n'
+    motion = simulate(moving(rod(ball, duration=0.2) + drive + 'wave = "one_minus_cosine"\n'))
+    assert motion.outcome is MotionOutcome.CONTACT_UNSETTLED
+    assert "At t = 0.1" in motion.message
+    assert "the section X = 0 of 'rod'" in motion.message
+
+
 def test_files_tell_contacts_and_events(on_ball: Motion, tmp_path: Path) -> None:
     write_motion(on_ball, tmp_path / "motion.json")
     entry = json.loads((tmp_path / "motion.json").read_text())["contact"]

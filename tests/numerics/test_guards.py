@@ -128,3 +128,23 @@ def test_guard_that_stays_changes_nothing() -> None:
     plain = integrate(PENDULUM, begin, 3.0, radau(3), settings)
     assert watched.outcome is StepOutcome.COMPLETED
     assert_allclose(watched.end.x, plain.end.x, rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("height", [0.1249, 0.1251])
+def test_a_guard_that_dips_between_two_looks_is_found(height: float) -> None:
+    """The parabola of a stone culminates at 1/8 above its start, 1e-4 above a ceiling or below it."""
+
+    def below(instant: Instant) -> FloatArray:
+        return np.array([height - instant.x[1]])
+
+    flight = MotionEquations(
+        PENDULUM.differential, lambda t, x, v, a: np.array([a[0], a[1] + 1.0, x[2]]), FLIGHT.jacobians
+    )
+    begin = consistent_start(flight, 0.0, np.zeros(3), np.array([0.0, 0.5, 0.0]), interval=0.02).instant
+    settings = StepSettings(np.full(3, 1e-9), size=0.9)
+    run = integrate(flight, begin, 0.9, radau(3), settings, guards=below)
+    if height > 0.125:
+        assert run.outcome is StepOutcome.COMPLETED
+        return
+    assert run.outcome is StepOutcome.GUARDED
+    assert_allclose(run.end.time, 0.5 - np.sqrt(0.25 - 2 * height), rtol=0, atol=1e-9)

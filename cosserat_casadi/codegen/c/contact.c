@@ -58,7 +58,7 @@ static void move_inputs(const real *from, const real *to, const contact_options 
     done = end;
     info->load_factor = done;
     if (done == 1) {
-      /* Nodes too few for so bent a rod give equations whose solution is not one of the rod. */
+      /* Nodes or modes too few for so bent a rod give equations whose solution is not one of the rod. */
       info->status = index <= 1 ? CONTACT_CONVERGED : CONTACT_UNRESOLVED;
       return;
     }

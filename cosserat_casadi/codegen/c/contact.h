@@ -26,7 +26,6 @@ enum {
   PAIRS = CONTACT_PAIRS,
   LARGEST = CONTACT_LARGEST,      /* unknowns, forces and places of the largest arrangement */
   MOST_TOUCHES = CONTACT_TOUCHES, /* contacts of any arrangement */
-  LOCAL = CONTACT_LOCAL,          /* sections of an element that are held against obstacles */
   TRIES = CONTACT_TRIES,          /* arrangements that are solved for one change of the inputs */
   CANDIDATES = CONTACT_CANDIDATES,
   POSE_SIZE = 7 /* position and quaternion */
@@ -83,8 +82,7 @@ typedef struct {
   const real *local_points; /* these, in an element */
   const real *const *fits;  /* for each strain the matrix from its values there to coefficients, row after row */
   const real *local_nodes;
-  const real *barycentric;   /* weights of the interpolation between nodes */
-  const real *interpolation; /* from the nodes of an element to LOCAL sections of it, row after row */
+  const real *barycentric; /* weights of the interpolation between nodes */
   int is_chebyshev;          /* polynomials of strains; else Legendre's */
   real radius_at_base;
   real radius_at_tip;

@@ -109,39 +109,115 @@ static real pull_of(const arrangement *at, const real *z, int number, real large
   return larger(-least, 0) / largest;
 }
 
+/* Gap of the section at an abscissa; the nodes stand in the workspace. */
+static real gap_of_section(const arrangement *at, const real *z, const pair_entry *pair, real X, workspace *work) {
+  real position[3];
+  position_at(at, z, work->nodes, pair->rod, X, position);
+  return gap_at(pair, position, X, work);
+}
+
+/* Where between two abscissae the gap is least, by golden sections: J. Kiefer, Sequential minimax search for a maximum,
+   Proc. AMS 4 (1953). */
+static real lowest_between(const arrangement *at, const real *z, const pair_entry *pair, real first, real last,
+                           workspace *work) {
+  const real share = 0.38196601125010515;
+  real inner[2] = {first + share * (last - first), last - share * (last - first)};
+  real gaps[2];
+  for (int i = 0; i < 2; i++) gaps[i] = gap_of_section(at, z, pair, inner[i], work);
+  for (int k = 0; k < GOLDEN_SECTIONS; k++) {
+    if (gaps[1] < gaps[0]) {
+      first = inner[0];
+      inner[0] = inner[1];
+      gaps[0] = gaps[1];
+      inner[1] = last - share * (last - first);
+      gaps[1] = gap_of_section(at, z, pair, inner[1], work);
+    } else {
+      last = inner[1];
+      inner[1] = inner[0];
+      gaps[1] = gaps[0];
+      inner[0] = first + share * (last - first);
+      gaps[0] = gap_of_section(at, z, pair, inner[0], work);
+    }
+  }
+  return (inner[0] + inner[1]) / 2;
+}
+
+/* Whether an abscissa is within a line of contact of this rod and obstacle. */
+static int is_on_line(const arrangement *at, const real *z, const pair_entry *pair, real X) {
+  for (int k = 0; k < at->touches; k++) {
+    const touch own = touch_at(at, z, k);
+    if (own.rod != pair->rod || own.obstacle != pair->obstacle || !own.is_line) continue;
+    if (own.start <= X && X < own.end) return 1;
+  }
+  return 0;
+}
+
+/* Distance of an abscissa from the nearest end of its element. */
+static real distance_from_end(const arrangement *at, const real *z, int rod, real X) {
+  const int e = element_at(at, z, rod, X);
+  const real before = X - end_of_element(at, z, rod, e);
+  const real behind = end_of_element(at, z, rod, e + 1) - X;
+  return before > 0 && behind > 0 ? smaller(before, behind) : 0;
+}
+
+/* Step along a rod to the next section that is looked at. A gap changes by no more than X does, but for what the rod
+   stretches and tapers; beside ends of elements, where a rod that lies on starts to enter, steps are shorter. */
+static real step_along(const arrangement *at, const real *z, const pair_entry *pair, real X, real gap) {
+  if (is_on_line(at, z, pair, X)) return LOOKED_ALONG;
+  const real least = smaller(larger(distance_from_end(at, z, pair->rod, X), BESIDE_END), CLOSEST);
+  return smaller(larger(gap / FASTEST, least), FARTHEST);
+}
+
+/* Adds a section to the stretches that are inside obstacles; joins it to the last one where the rod has not left. */
+static int add_inside(penetration *found, int count, int joins, const pair_entry *pair, real X, real depth) {
+  if (joins) {
+    penetration *own = found + count - 1;
+    own->end = X;
+    if (depth > own->depth) {
+      own->depth = depth;
+      own->deepest = X;
+    }
+    return count;
+  }
+  if (count == MOST_FAULTS) return count;
+  const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, -1};
+  found[count] = begun;
+  return count + 1;
+}
+
+/* Finds the stretches of one rod that are inside one obstacle, behind those found before. Returns the number of all. */
+static int find_inside(const arrangement *at, const real *z, const pair_entry *pair, penetration *found, int count,
+                       workspace *work) {
+  real X = 0, before = 0, before_last = 0;
+  real gap_before = HUGE_VAL, gap_before_last = HUGE_VAL;
+  int is_inside = 0;
+  for (;;) {
+    const real gap = gap_of_section(at, z, pair, X, work);
+    /* Between the last three sections the rod may enter for less than a step. */
+    if (gap_before <= gap && gap_before <= gap_before_last && gap_before >= -ACCEPTED &&
+        gap_before < FASTEST * (X - before_last)) {
+      const real lowest = lowest_between(at, z, pair, before_last, X, work);
+      const real least = gap_of_section(at, z, pair, lowest, work);
+      if (least < -ACCEPTED) count = add_inside(found, count, 0, pair, lowest, -least);
+    }
+    if (gap < -ACCEPTED) {
+      count = add_inside(found, count, is_inside, pair, X, -gap);
+      if (count == MOST_FAULTS) return count;
+    }
+    is_inside = gap < -ACCEPTED;
+    if (X == 1) return count;
+    before_last = before;
+    gap_before_last = gap_before;
+    before = X;
+    gap_before = gap;
+    X = smaller(X + step_along(at, z, pair, X, gap), 1);
+  }
+}
+
 /* Finds the stretches that are inside obstacles; the nodes stand in the workspace. Returns their number. */
 static int find_penetrations(const arrangement *at, const real *z, penetration *found, workspace *work) {
   int count = 0;
-  for (int p = 0; p < PAIRS; p++) {
-    const pair_entry *pair = PAIR + p;
-    const int nodes = ROD[pair->rod].intervals + 1;
-    int inside = 0;
-    for (int e = 0; e < at->rods[pair->rod].elements; e++) {
-      const real *positions = work->nodes + 3 * (at->rods[pair->rod].first_node + e * nodes);
-      for (int k = 0; k < LOCAL; k++) {
-        const real X = section_abscissa(at, z, pair->rod, e, k);
-        real position[3];
-        section_position(pair->rod, positions, k, position);
-        const real depth = -gap_at(pair, position, X, work);
-        if (!(depth > ACCEPTED)) {
-          inside = 0;
-          continue;
-        }
-        if (!inside && count == MOST_FAULTS) return count;
-        if (!inside) {
-          const penetration begun = {pair->rod, pair->obstacle, X, X, X, depth, -1};
-          found[count++] = begun;
-          inside = 1;
-        }
-        penetration *own = found + count - 1;
-        own->end = X;
-        if (depth > own->depth) {
-          own->depth = depth;
-          own->deepest = X;
-        }
-      }
-    }
-  }
+  for (int p = 0; p < PAIRS; p++) count = find_inside(at, z, PAIR + p, found, count, work);
   return count;
 }
 
@@ -256,8 +332,9 @@ static int changed(const arrangement *at, const real *z, const change *changes, 
   return 1;
 }
 
-/* What is at fault in an arrangement that is solved; returns the number of changes, zero where it holds. */
-static int find_faults(const arrangement *at, const real *z, change *changes, workspace *work) {
+/* What is at fault in an arrangement that is solved; returns the number of changes, zero where it holds. Tells how deep a
+   line of contact is inside its obstacle. */
+static int find_faults(const arrangement *at, const real *z, change *changes, real *depth_of_lines, workspace *work) {
   penetration found[MOST_FAULTS];
   int is_pulling[TOUCH_ROOM] = {0};
   const real largest = largest_force(at, z);
@@ -276,7 +353,10 @@ static int find_faults(const arrangement *at, const real *z, change *changes, wo
     if (number >= 0) {
       beside = touch_at(at, z, number);
       /* What is inside a stretch of contact is its polynomials' error, and no change of contacts mends it. */
-      if (beside.is_line && beside.start < found[i].deepest && found[i].deepest < beside.end) continue;
+      if (beside.is_line && beside.start < found[i].deepest && found[i].deepest < beside.end) {
+        *depth_of_lines = larger(*depth_of_lines, found[i].depth);
+        continue;
+      }
       if (is_pulling[number]) continue;
     }
     changes[count].touch = number;
@@ -393,8 +473,11 @@ static int settle(const real *inputs, int max_iterations, real *index, workspace
     work->solved[solved].arrangement = number;
     call(at->nodes, z, inputs, work->nodes, index, work);
     change changes[MOST_FAULTS + TOUCH_ROOM];
-    const int faults = find_faults(at, z, changes, work);
+    real depth_of_lines = 0;
+    const int faults = find_faults(at, z, changes, &depth_of_lines, work);
     if (faults == 0) {
+      /* Polynomials that do not follow the obstacle do not resolve the rod. */
+      *index = larger(*index, depth_of_lines / ACCEPTED);
       info->status = CONTACT_CONVERGED;
       return solved;
     }

@@ -131,16 +131,6 @@ static void fit_forces(const arrangement *at, const real *inputs, real *z, works
   }
 }
 
-/* Position of a section of an element, given by its number among LOCAL. */
-static void section_position(int rod, const real *nodes, int number, real *position) {
-  const int count = ROD[rod].intervals + 1;
-  const real *weights = ROD[rod].interpolation + number * count;
-  for (int i = 0; i < 3; i++) position[i] = 0;
-  for (int k = 0; k < count; k++) {
-    for (int i = 0; i < 3; i++) position[i] += weights[k] * nodes[3 * k + i];
-  }
-}
-
 /* Position of the section at an abscissa, from the positions of all nodes. */
 static void position_at(const arrangement *at, const real *z, const real *nodes, int rod, real X, real *position) {
   const rod_entry *own = ROD + rod;
@@ -172,13 +162,6 @@ static real gap_at(const pair_entry *pair, const real *position, real X, workspa
   return (distance - radius) / own->length;
 }
 
-/* Abscissa of a section of an element, given by its number among LOCAL. */
-static real section_abscissa(const arrangement *at, const real *z, int rod, int element, int number) {
-  const real start = end_of_element(at, z, rod, element);
-  const real end = end_of_element(at, z, rod, element + 1);
-  return start + (end - start) * LOCAL_ABSCISSAE[number];
-}
-
 /* Whether the straight way of one section leads through an obstacle that it must not enter. */
 static int leads_through(const pair_entry *pair, real X, const real *start, const real *end, real way, workspace *work) {
   const real before = larger(gap_at(pair, start, X, work), 0);
@@ -196,25 +179,34 @@ static int leads_through(const pair_entry *pair, real X, const real *start, cons
   return 0;
 }
 
+/* How far along the rod no other section can be led through an obstacle either, relative to its length: gaps and ways
+   change by no more than X does, but for what the rod stretches and tapers. */
+static real clear_distance(const pair_entry *pair, real X, const real *start, const real *end, real way, workspace *work) {
+  const real share = way / ROD[pair->rod].length;
+  const real gaps = larger(gap_at(pair, start, X, work), 0) + larger(gap_at(pair, end, X, work), 0);
+  return larger(larger((gaps - share) / 4, DEEP - share / 2) / FASTEST, CLOSEST);
+}
+
 /* Whether no section moves far from one shape to the other, and none through an obstacle. The nodes of both stand in the
-   workspace. */
+   workspace. Each step along the rod is at least CLOSEST. */
 static int is_near(const arrangement *from, const real *old, const arrangement *to, const real *z, workspace *work) {
   for (int rod = 0; rod < RODS; rod++) {
-    const int count = ROD[rod].intervals + 1;
-    for (int e = 0; e < to->rods[rod].elements; e++) {
-      const real *nodes = work->nodes + 3 * (to->rods[rod].first_node + e * count);
-      for (int k = 0; k < LOCAL; k++) {
-        const real X = section_abscissa(to, z, rod, e, k);
-        real start[3], end[3], change[3];
-        position_at(from, old, work->nodes_before, rod, X, start);
-        section_position(rod, nodes, k, end);
-        for (int i = 0; i < 3; i++) change[i] = end[i] - start[i];
-        const real way = norm_of(change, 3);
-        if (!(way <= LONGEST_WAY * ROD[rod].length)) return 0;
-        for (int p = 0; p < PAIRS; p++) {
-          if (PAIR[p].rod == rod && leads_through(PAIR + p, X, start, end, way, work)) return 0;
-        }
+    real X = 0;
+    for (;;) {
+      real start[3], end[3], change[3];
+      position_at(from, old, work->nodes_before, rod, X, start);
+      position_at(to, z, work->nodes, rod, X, end);
+      for (int i = 0; i < 3; i++) change[i] = end[i] - start[i];
+      const real way = norm_of(change, 3);
+      if (!(way <= LONGEST_WAY * ROD[rod].length)) return 0;
+      real step = FARTHEST;
+      for (int p = 0; p < PAIRS; p++) {
+        if (PAIR[p].rod != rod) continue;
+        if (leads_through(PAIR + p, X, start, end, way, work)) return 0;
+        step = smaller(step, clear_distance(PAIR + p, X, start, end, way, work));
       }
+      if (X == 1) break;
+      X = smaller(X + step, 1);
     }
   }
   return 1;

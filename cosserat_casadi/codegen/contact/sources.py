@@ -12,7 +12,7 @@ import numpy as np
 
 from cosserat_casadi.codegen.contact.arrangements import Chosen
 from cosserat_casadi.codegen.contact.kernels import ArrangementKernels, distance_kernels
-from cosserat_casadi.codegen.contact.tables import Tables, described, local_abscissae
+from cosserat_casadi.codegen.contact.tables import Tables, described
 from cosserat_casadi.codegen.kernels import kernel_sources
 from cosserat_casadi.codegen.library import comment, input_words, version_words
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, input_entries
@@ -48,6 +48,24 @@ SINGULAR = 1e-14
 
 MIN_STEP = 1e-4
 """Shortest part of the way of the inputs."""
+
+FASTEST = 1.5
+"""How fast a gap may change along a rod, over that of X: what it stretches and tapers."""
+
+CLOSEST = 1.0 / 800.0
+"""Least step along a rod from section to section that is held against obstacles: of the dense sections of gaps.py."""
+
+BESIDE_END = 1e-4
+"""The same beside an end of an element, where a rod that lies on starts to enter."""
+
+FARTHEST = 1.0 / 32.0
+"""Longest such step."""
+
+LOOKED_ALONG = 1e-2
+"""Such a step along a line of contact, whose depth tells whether polynomials follow the obstacle."""
+
+GOLDEN_SECTIONS = 24
+"""Golden sections to where a gap is least between three sections."""
 
 SHORTER = 0.7
 """Share of a line of contact that stays where a rod curls up, as in settle.py."""
@@ -121,7 +139,6 @@ def _words(chosen: Chosen, names: Names, tables: Tables, generated: dict[str, st
         "columns": max(forces, 1),
         "largest": tables.largest,
         "nodes_of_all": tables.nodes_of_all,
-        "local": len(local_abscissae()),
         "tries": tries,
         "candidates": CANDIDATES,
         "tables": tables.text(),
@@ -154,6 +171,12 @@ def _limits(chosen: Chosen) -> dict[str, Any]:
         "stride": passage.STRIDE,
         "most_looks": passage.MOST_LOOKS,
         "deep": passage.DEEP,
+        "fastest": FASTEST,
+        "closest": CLOSEST,
+        "beside_end": BESIDE_END,
+        "farthest": FARTHEST,
+        "looked_along": LOOKED_ALONG,
+        "golden_sections": GOLDEN_SECTIONS,
         "near": alternatives.NEAR,
         "at_tip": settle.AT_TIP,
         "lies_from": alternatives.LIES_FROM,

@@ -19,19 +19,7 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.unknowns import BlockKind
 from cosserat_casadi.rod.strain import DiscreteRod
 
-PER_ELEMENT = 32
-"""Intervals between the sections of an element that are held against obstacles."""
-
-CLOSE = np.geomspace(1e-4, 2e-2, 8)
-"""Distances of further sections from either end of an element, where a rod that lies on starts to enter."""
-
 POLYNOMIALS = {"legendre": chebyshev.legendre_polynomials, "chebyshev": chebyshev.chebyshev_polynomials}
-
-
-def local_abscissae() -> FloatArray:
-    """Sections of an element that are held against obstacles, from 0 to 1."""
-    even = np.linspace(0.0, 1.0, PER_ELEMENT + 1)
-    return np.unique(np.concatenate([even, CLOSE, 1.0 - CLOSE]))
 
 
 @dataclass(frozen=True)
@@ -83,7 +71,6 @@ class Tables:
     def text(self) -> str:
         """All tables."""
         parts = [
-            f"static const real LOCAL_ABSCISSAE[LOCAL] = {{{numbers(local_abscissae().tolist())}}};",
             *(self._rod(number, name) for number, name in enumerate(self.rods)),
             self._rod_table(),
             self._pair_table(),
@@ -117,7 +104,6 @@ class Tables:
             f"static const real *const FITS_{number}[] = {{{fits}}};",
             _reals(f"LOCAL_NODES_{number}", chebyshev.nodes(intervals)),
             _reals(f"BARYCENTRIC_{number}", chebyshev.barycentric_weights(intervals)),
-            _reals(f"INTERPOLATION_{number}", chebyshev.interpolation_matrix(intervals, local_abscissae()).ravel()),
         ]
         return "\n".join(lines)
 
@@ -136,7 +122,6 @@ class Tables:
                 "fits": f"FITS_{number}",
                 "local_nodes": f"LOCAL_NODES_{number}",
                 "barycentric": f"BARYCENTRIC_{number}",
-                "interpolation": f"INTERPOLATION_{number}",
                 "is_chebyshev": int(rod.properties.basis == "chebyshev"),
                 "radius_at_base": repr(radii[0]),
                 "radius_at_tip": repr(radii[1]),
