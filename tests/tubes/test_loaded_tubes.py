@@ -137,7 +137,7 @@ def shot(found: TubeSolution) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     ("text", "inputs"),
     [
-        (TWO + PUSH, {}),
+        pytest.param(TWO + PUSH, {}, marks=pytest.mark.slow),
         pytest.param(weighed(THREE) + PUSH + POKE + WEIGHT + WIND, {}, marks=pytest.mark.slow),
         (weighed(THREE) + PUSH + POKE + WEIGHT, {"outer.translation": 0.05, "innermost.translation": 0.12}),
     ],
@@ -189,8 +189,8 @@ def wrench(**keys: object) -> str:
     "load",
     [
         wrench(force=[0.5, -0.3, -1.2]),
-        wrench(force=[0.5, -0.3, -1.2], frame='"body"'),
-        wrench(moment=[0.04, 0.03, 0.06]),
+        pytest.param(wrench(force=[0.5, -0.3, -1.2], frame='"body"'), marks=pytest.mark.slow),
+        pytest.param(wrench(moment=[0.04, 0.03, 0.06]), marks=pytest.mark.slow),
         wrench(moment=[0.04, 0.03, 0.06], force=[0.2, 0.1, 0.3], frame='"body"'),
         WEIGHT + wrench(force=[0.0, 0.6, 0.0]),
     ],
