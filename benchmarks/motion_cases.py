@@ -1,16 +1,20 @@
-"""Table of docs/hard-cases.md on motion: every case beside its independent reference, and the orders of the steps.
+"""Table of docs/hard-cases.md on motion: every case beside its independent reference, its cost, orders of steps.
 
-Takes minutes. The cases of the reference folder are left out where that is not beside this checkout.
+Takes minutes, up to LIMIT for a case. The cases of the reference folder are left out where that is not beside this
+checkout. Their costs are of the processor: other work on the machine lengthens them less than it lengthens the clock's.
+With ``--cost`` those cases alone, at COMMON, are printed, and nothing is written.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -18,8 +22,9 @@ import typer
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from cosserat_casadi import Motion, build, read_scene, scene_from_dict, simulate_scene, solve  # noqa: E402
+from cosserat_casadi import Motion, Scene, build, read_scene, scene_from_dict, simulate_scene, solve  # noqa: E402
 from cosserat_casadi.maths.typing import FloatArray  # noqa: E402
+from cosserat_casadi.motion.trajectory import MotionProgress  # noqa: E402
 from cosserat_casadi.numerics.collocation import Collocation, gauss, radau  # noqa: E402
 from tests.conftest import case_files  # noqa: E402
 from tests.motion import transients  # noqa: E402
@@ -42,6 +47,25 @@ CHAINS = {
 }
 """Name, reference and tolerance of the reference cases."""
 
+COMMON = 1e-4
+"""Tolerance at which every one of them is timed, beside its own."""
+
+LIMIT = 600.0
+"""Processor time after which a case is stopped, s."""
+
+
+@dataclass(frozen=True)
+class Timed:
+    """A motion and what it took.
+
+    Attributes:
+        motion: that was computed.
+        seconds: processor time of choosing modes and steps, building and integrating.
+    """
+
+    motion: Motion
+    seconds: float
+
 
 @dataclass(frozen=True)
 class Row:
@@ -55,6 +79,8 @@ class Row:
         uncertainty: of the reference, over the length.
         estimate: error that the motion claims, over the length.
         steps: that were taken.
+        seconds: processor time.
+        remark: why the tolerance is not met; empty where it is.
     """
 
     case: str
@@ -64,26 +90,31 @@ class Row:
     uncertainty: float
     estimate: float
     steps: int
+    seconds: float
+    remark: str = ""
 
     @property
     def line(self) -> str:
         """The row of the table."""
         numbers = [self.tolerance, self.distance, self.uncertainty, self.estimate]
-        cells = [self.case, self.reference, *(f"{number:.0e}" for number in numbers), str(self.steps)]
+        digits = [f"{number:.0e}" for number in numbers]
+        if self.remark:
+            digits[0] = f"{digits[0]}, {self.remark}"
+        cells = [self.case, self.reference, *digits, str(self.steps), f"{self.seconds:.1f}"]
         return f"| {' | '.join(cells)} |"
 
 
-def row_of(motion: Motion, case: str, reference: str, distances: FloatArray, uncertainty: float) -> Row:
+def row_of(timed: Timed, case: str, reference: str, distances: FloatArray, uncertainty: float) -> Row:
     """A case at its tolerance.
 
     Args:
-        motion: that was computed.
+        timed: motion that was computed.
         case: what moves.
         reference: where the numbers come from.
         distances: of the tip from its reference, shape (T,), m.
         uncertainty: of the reference, m.
     """
-    assert motion.converged, motion.message
+    motion = timed.motion
     length = motion.model.scene.rods[0].length
     simulation = motion.model.scene.simulation
     assert simulation is not None
@@ -96,25 +127,68 @@ def row_of(motion: Motion, case: str, reference: str, distances: FloatArray, unc
         uncertainty=uncertainty / length,
         estimate=motion.error_estimate,
         steps=motion.statistics.steps,
+        seconds=timed.seconds,
+        remark="" if motion.converged else motion.outcome.label.replace("_", " "),
     )
 
 
 def chains() -> Iterator[Row]:
-    """The reference cases."""
+    """The reference cases, each at its own tolerance and at the common one."""
+    for stem, (_, _, tolerance) in CHAINS.items():
+        for one in sorted({tolerance, COMMON}, reverse=True):
+            yield from chain(stem, one)
+
+
+def chains_at_common() -> Iterator[Row]:
+    """The reference cases, at the common tolerance."""
+    for stem in CHAINS:
+        yield from chain(stem, COMMON)
+
+
+def chain(stem: str, tolerance: float) -> Iterator[Row]:
+    """A reference case at a tolerance; nothing where its file is missing, or where no motion came to its end."""
+    case, reference, _ = CHAINS[stem]
     for path in case_files("dynamics"):
-        if path.stem not in CHAINS:
+        if path.stem != stem:
             continue
-        case, reference, tolerance = CHAINS[path.stem]
         found = json.loads(path.with_suffix(".json").read_text())
         times = json.dumps(found["expected"]["times"])
-        motion = simulate_scene(read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}")))
-        distances = np.linalg.norm(motion.tip().position - np.array(found["expected"]["tip"]), axis=1)
-        uncertainty = UNDERSTATED.get(path.stem, 1.0) * found["uncertainty"]
-        yield row_of(motion, case, reference, distances, uncertainty)
+        scene = read_scene(path, (f"simulation.tolerance={tolerance}", f"simulation.times={times}"))
+        try:
+            timed = timed_motion(scene)
+        except KeyboardInterrupt:
+            print(f"{case}, {tolerance:.0e}: stopped after {LIMIT:.0f} s of the processor", flush=True)
+            return
+        tip = timed.motion.tip().position
+        if len(tip) != len(found["expected"]["tip"]):
+            print(f"{case}, {tolerance:.0e}: {timed.motion.message}", flush=True)
+            return
+        distances = np.linalg.norm(tip - np.array(found["expected"]["tip"]), axis=1)
+        uncertainty = UNDERSTATED.get(stem, 1.0) * found["uncertainty"]
+        yield row_of(timed, case, reference, distances, uncertainty)
 
 
-def simulated(scene: dict[str, Any]) -> Motion:
-    return simulate_scene(scene_from_dict(scene))
+def timed_motion(scene: Scene) -> Timed:
+    """The motion of a scene and the processor time of this process that it takes.
+
+    Raises:
+        KeyboardInterrupt: it was stopped before any motion was computed to its end.
+    """
+    began = time.process_time()
+    motion = simulate_scene(scene, progress=partial(_stop_late, began))
+    return Timed(motion, time.process_time() - began)
+
+
+def _stop_late(began: float, _: MotionProgress) -> None:
+    if time.process_time() - began > LIMIT:
+        raise KeyboardInterrupt
+
+
+def simulated(scene: dict[str, Any]) -> Timed:
+    """The motion of a scene that has to reach its tolerance."""
+    timed = timed_motion(scene_from_dict(scene))
+    assert timed.motion.converged, timed.motion.message
+    return timed
 
 
 def in_plane(motion: Motion, rod: str | None = None) -> FloatArray:
@@ -125,35 +199,35 @@ def in_plane(motion: Motion, rod: str | None = None) -> FloatArray:
 def literature() -> Iterator[Row]:
     """Motions of the literature and of independent programs."""
     for tolerance in (1e-3, 1e-5, 1e-7):
-        motion = simulated(transients.line_load(tolerance=tolerance))
-        distances = np.linalg.norm(in_plane(motion) - transients.LINE_LOAD_TIP, axis=1)
-        yield row_of(motion, "cantilever, line load 10 sin⁴(πt/2)", GALERKIN, distances, 1e-8)
+        timed = simulated(transients.line_load(tolerance=tolerance))
+        distances = np.linalg.norm(in_plane(timed.motion) - transients.LINE_LOAD_TIP, axis=1)
+        yield row_of(timed, "cantilever, line load 10 sin⁴(πt/2)", GALERKIN, distances, 1e-8)
 
-    motion = simulated(transients.sudden_weight(tolerance=1e-4))
-    distances = np.linalg.norm(in_plane(motion) - transients.SUDDEN_WEIGHT_TIP, axis=1)
-    yield row_of(motion, "the same, weight of 10 at once", GALERKIN, distances, 3e-5)
+    timed = simulated(transients.sudden_weight(tolerance=1e-4))
+    distances = np.linalg.norm(in_plane(timed.motion) - transients.SUDDEN_WEIGHT_TIP, axis=1)
+    yield row_of(timed, "the same, weight of 10 at once", GALERKIN, distances, 3e-5)
 
     scene = transients.spin_up(0.025, tolerance=1e-5)
     scene["accuracy"] = {"modes": 6, "nodes": 16}
-    motion = simulated(scene)
-    angle = transients.spin_angle(motion.times)
+    timed = simulated(scene)
+    angle = transients.spin_angle(timed.motion.times)
     along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     across = np.stack([-np.sin(angle), np.cos(angle)], axis=1)
     in_base = transients.SPIN_TIP + np.array([transients.SPIN_LENGTH, 0.0])
     wanted = in_base[:, :1] * along + in_base[:, 1:] * across
-    distances = np.linalg.norm(in_plane(motion) - wanted, axis=1)
-    yield row_of(motion, "spin-up (Kane, Ryan, Banerjee)", GALERKIN, distances, 2e-5)
+    distances = np.linalg.norm(in_plane(timed.motion) - wanted, axis=1)
+    yield row_of(timed, "spin-up (Kane, Ryan, Banerjee)", GALERKIN, distances, 2e-5)
 
-    motion = simulated(transients.flying_in_plane(tolerance=1e-3))
-    distances = np.linalg.norm(in_plane(motion) - transients.FLYING_LOWER, axis=1)
-    yield row_of(motion, "flying rod in a plane (Simo, Vu-Quoc)", "independent Reissner rod", distances, 0.02)
+    timed = simulated(transients.flying_in_plane(tolerance=1e-3))
+    distances = np.linalg.norm(in_plane(timed.motion) - transients.FLYING_LOWER, axis=1)
+    yield row_of(timed, "flying rod in a plane (Simo, Vu-Quoc)", "independent Reissner rod", distances, 0.02)
 
-    motion = simulated(transients.right_angle(tolerance=1e-3))
-    height = motion.tip("second").position[:, 2]
-    found = [height[np.abs(motion.times - time) < 1.0] for time, _ in transients.RIGHT_ANGLE_TIP]
+    timed = simulated(transients.right_angle(tolerance=1e-3))
+    height = timed.motion.tip("second").position[:, 2]
+    found = [height[np.abs(timed.motion.times - time) < 1.0] for time, _ in transients.RIGHT_ANGLE_TIP]
     values = np.array([value for _, value in transients.RIGHT_ANGLE_TIP])
     extremes = np.array([part[np.argmax(np.abs(part))] for part in found])
-    yield row_of(motion, "right-angle cantilever, extremes", "published curves", np.abs(extremes - values), 0.1)
+    yield row_of(timed, "right-angle cantilever, extremes", "published curves", np.abs(extremes - values), 0.1)
 
 
 def order_rows() -> Iterator[str]:
@@ -191,10 +265,17 @@ def _rates(found: list[list[FloatArray]], exact: list[FloatArray]) -> FloatArray
     return np.asarray(orders(errors)[-1])
 
 
-def main() -> None:
+def main(
+    cost: Annotated[bool, typer.Option(help="reference cases at COMMON alone; nothing is written")] = False,
+) -> None:
     """Run all cases, write the tables."""
-    lines = ["| motion | reference | tolerance | distance | of the reference | estimate | steps |"]
-    lines.append("|---|---|---|---|---|---|---|")
+    lines = ["| motion | reference | tolerance | distance | of the reference | estimate | steps | processor, s |"]
+    lines.append("|---|---|---|---|---|---|---|---|")
+    print("\n".join(lines), flush=True)
+    if cost:
+        for row in chains_at_common():
+            print(row.line, flush=True)
+        return
     for rows in (literature(), chains()):
         for row in rows:
             lines.append(row.line)

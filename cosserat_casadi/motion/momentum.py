@@ -25,14 +25,11 @@ from cosserat_casadi.scene import Scene
 MOMENTA = 6
 """Entries of momentum and angular momentum."""
 
-MOST_CORRECTIONS = 8
-"""Most corrections of the velocities after one step."""
+CORRECTIONS = 2
+"""Corrections of the velocities after one step: momentum is linear in them, so that the second is one of rounding."""
 
 ROUNDING = 8.0 * float(np.finfo(np.float64).eps)
 """Momentum, relative to the largest entry, that is rounding and not missing."""
-
-CONTRACTING = 0.1
-"""What a correction may leave of the momentum that was missing before the derivatives it is made by count as old."""
 
 
 def flies_free(model: Model) -> bool:
@@ -77,29 +74,23 @@ class MomentumKeeper:
                 model.discrete.unknowns.of_kind(BlockKind.POSE), model.discrete.frames.values(), strict=True
             )
         ]
-        momentum, self._rate = _functions(model)
+        momentum, rate = _functions(model)
+        self._rate = RepeatedCall(rate)
         self._momentum = RepeatedCall(momentum)
         self._momenta = momentum.map(MOMENTA)
-        self._inverse: FloatArray | None = None
 
     def settled(self, step: Step, piece: Piece) -> Instant:
         """The end of a step, in a piece of the inputs, with the momentum that it has to have."""
         wanted = self._momentum_of(step.start, piece) + self._impulse(step, piece)
         rounding = ROUNDING * np.abs(wanted).max()
-        before = 0.0
         end = step.end
         motions = self.rigid_motions(end.x)
-        for _ in range(MOST_CORRECTIONS):
+        # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
+        inverse = np.linalg.pinv(self._momenta_of(motions, end, piece))
+        for _ in range(CORRECTIONS):
             missing = wanted - self._momentum_of(end, piece)
-            largest = float(np.abs(missing).max())
-            if largest <= rounding:
+            if np.abs(missing).max() <= rounding:
                 break
-            inverse: FloatArray | None = self._inverse
-            if inverse is None or largest > CONTRACTING * before > 0.0:
-                # Not every rigid motion has momentum: a straight rod without rotary inertia may spin about its axis.
-                inverse = np.asarray(np.linalg.pinv(self._momenta_of(motions, end, piece)), dtype=np.float64)
-                self._inverse = inverse
-            before = largest
             end = replace(end, v=end.v + motions @ (inverse @ missing))
         return end
 
@@ -110,7 +101,7 @@ class MomentumKeeper:
         stages = stages_of(step.method, step.differential, step.start, step.size, step.unknowns)
         rates = []
         for time, x, v, a in zip(stages.times, stages.x, stages.v, stages.a, strict=True):
-            rates.append(self._rate(x, v, a, *piece.at(float(time))).full()[:, 0])
+            rates.append(self._rate(x, v, a, *piece.at(float(time))))
         return np.asarray(step.size * (step.method.weights @ np.stack(rates)))
 
     def _momentum_of(self, instant: Instant, piece: Piece) -> FloatArray:

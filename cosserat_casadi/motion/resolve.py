@@ -19,8 +19,11 @@ from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
 from cosserat_casadi.motion.history import History
+from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
+    LEFT_BY_TIGHTER,
+    TIGHTER,
     Simulator,
     Tell,
     TimedHistory,
@@ -276,7 +279,31 @@ def _timed(search: _Search) -> TimedHistory:
     level = search.last
     if not np.isfinite(search.step_tolerance):
         return TimedHistory(level.history, search.time_error)
-    return level.simulator.tightened(level.history, search.step_tolerance, TIME_SHARE * search.tolerance)
+    allowed = TIME_SHARE * search.tolerance
+    if flies_free(level.simulator.model):
+        told = _told_by_coarser(level, search.step_tolerance)
+        if told.error <= allowed or told.history.outcome is StepOutcome.INTERRUPTED:
+            return told
+    return level.simulator.tightened(level.history, search.step_tolerance, allowed)
+
+
+def _told_by_coarser(level: _Level, step_tolerance: float) -> TimedHistory:
+    """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
+
+    The steps of what flies free are so exact, see :data:`simulate.CLEAR`, that this is mostly enough.
+
+    Args:
+        level: the motion.
+        step_tolerance: tolerance of a step, over the length, that it was computed with.
+    """
+    simulator = level.simulator
+    coarse = simulator.controlled(TIGHTER * step_tolerance)
+    if coarse.outcome is StepOutcome.INTERRUPTED:
+        return TimedHistory(coarse, float("nan"))
+    error = float("inf")
+    if coarse.completed:
+        error = LEFT_BY_TIGHTER * path_distance(simulator.paths(coarse), level.paths)
+    return TimedHistory(level.history, error, step_tolerance, step_tolerance)
 
 
 def _simulator(search: _Search, model: Model, stage: str) -> Simulator:

@@ -40,6 +40,12 @@ ON_GUARD = 1e-13
 FEW_ITERATIONS = 4
 """Iterations of a step up to which its Jacobian serves the next step too: to save more of them costs as much."""
 
+FEW_CARRIED_ITERATIONS = 10
+"""The same of a Jacobian that is carried along with what flies free.
+
+Its stages are solved from first iterates that are far off, which costs iterations with a new Jacobian too.
+"""
+
 SMALL_ERROR = 0.1
 """Error over tolerance of a step that was not as long as its error allows: Newton's method found no longer one.
 
@@ -238,7 +244,8 @@ class StepRun:
             step = replace(step, end=self.settled(step))
         self.steps.append(step)
         self.fresh = False
-        if solution.iterations > FEW_ITERATIONS:
+        few = FEW_ITERATIONS if self.equations.mean_frames is None else FEW_CARRIED_ITERATIONS
+        if solution.iterations > few:
             self.renew_jacobian()
 
     def stopped_by_guard(self) -> bool:

@@ -6,6 +6,7 @@ See docs/contact.md, "Paths", and transitions.py for how one leads to another.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,7 @@ import numpy.typing as npt
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations, Grids
 from cosserat_casadi.equilibrium.contact.settle import Settling
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE, solve_contact
-from cosserat_casadi.equilibrium.contact.state import TIP, Touch, state_in, without_contacts
+from cosserat_casadi.equilibrium.contact.state import TIP, Touch, load_sections, state_in, without_contacts
 from cosserat_casadi.equilibrium.contact.verdict import judged
 from cosserat_casadi.equilibrium.solution import Pose, SectionForce, Solution
 from cosserat_casadi.equilibrium.stability import stability_of
@@ -34,6 +35,9 @@ MOST_CHANGES = 100
 
 AT_ONCE = 1e-9
 """Load factor and places within which two changes in a row have led nowhere."""
+
+AT_SECTION = 1e-4
+"""Distance of a place of contact from a section with a load at which a path that ends has been stopped by it."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,22 @@ class ContactPath(EquilibriumPath):
     def _pose(self, index: int, X: float, rod: str) -> Pose:
         arrangement: Arrangement = self.arrangements[self.arrangement[index]]
         return arrangement.poses(self.x[index], float(self.factor[index]), np.array([X]), rod)
+
+    @property
+    def stopped_at(self) -> str:
+        """A sentence on a place that has come to where a load or another rod acts on its rod; empty where none has."""
+        if self.outcome is not PathOutcome.LOAD_STALLED or not len(self.factor):
+            return ""
+        arrangement = self.arrangements[int(self.arrangement[-1])]
+        sections = load_sections(arrangement.scene)
+        for touch in arrangement.state(self.x[-1]).touches:
+            for place, section in product(touch.moving, sections.get(touch.rod, ())):
+                if abs(place - section) < AT_SECTION:
+                    return (
+                        f" The contact of {touch.rod!r} with {touch.obstacle!r} has come to X = {section:.6g}, where a "
+                        "load or another rod acts: a place is not followed past there. A solve beyond finds it anew."
+                    )
+        return ""
 
 
 @dataclass

@@ -200,7 +200,8 @@ def follow_path(
         path = follow_contact_path(
             model, name, followed.base, followed.change, branch=branch, settings=settings, progress=progress
         )
-        return replace(path, value=followed.value(), message=_sentence(path.outcome, path.factor))
+        message = _sentence(path.outcome, path.factor) + path.stopped_at
+        return replace(path, value=followed.value(), message=message)
     values_at_zero = model.inputs.unpack(followed.base)
     start = solve(model, values_at_zero)
     if not start.converged:

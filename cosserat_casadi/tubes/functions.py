@@ -99,6 +99,12 @@ class TubeFunctions(ABC):
         """What is zero in equilibrium, as many as the unknowns."""
 
     @property
+    def _jacobian(self) -> Matrix:
+        """Derivative of the residual with x, square."""
+        x, _, _ = self._arguments
+        return ca.jacobian(self._residual, x)
+
+    @property
     @abstractmethod
     def _whole(self) -> March:
         """States with the frame of the centre line and the energy."""
@@ -117,9 +123,7 @@ class TubeFunctions(ABC):
     @cached_property
     def jacobian(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ derivative of the residual with x, square, and the residual."""
-        x, _, _ = self._arguments
-        jacobian = ca.jacobian(self._residual, x)
-        return self._function("jacobian", {"jacobian": jacobian, "residual": self._residual})
+        return self._function("jacobian", {"jacobian": self._jacobian, "residual": self._residual})
 
     @cached_property
     def input_jacobian(self) -> ca.Function:

@@ -90,14 +90,18 @@ class LoadedSection:
     weight: Matrix | None
     potential: bool
 
+    def force_at(self, place: Matrix) -> Matrix:
+        """Force in the section at a distance from the plate, world axes, 3×1, N."""
+        if self.weight is None:
+            return self.force
+        return self.force - place * self.weight
+
     def moved(self, state: LoadedState, length: Matrix) -> LoadedState:
         """Along a length the torques turn the tubes, and the tangent moves the position and the lever of the force."""
         rates = state.torques / self.torsion
         energy = state.energy + length * ca.dot(state.torques, rates) / 2
         way = length * rotate(state.pose.quaternion, TANGENT)
-        force = self.force
-        if self.weight is not None:
-            force = force - (state.place + length / 2) * self.weight
+        force = self.force_at(state.place + length / 2)
         if self.potential:
             energy = energy - ca.dot(force, way)
         return replace(
@@ -169,23 +173,44 @@ def loaded_step(size: int, *, spread: bool, potential: bool) -> ca.Function:
     state = ca.SX.sym("state", 2 * size + 12)
     before = ca.SX.sym("before")
     length = ca.SX.sym("length")
+    stacked = ca.SX.sym("section", section_width(size, spread=spread))
+    section = section_of(stacked, size, spread=spread, potential=potential)
+    begun = LoadedState.of(state)
+    return composed(
+        "loaded_step",
+        ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked]),
+        ca.Function("last", [state, length, stacked], [section.loaded(begun, length / 2).stacked]),
+    )
+
+
+def section_width(size: int, *, spread: bool) -> int:
+    """Entries of a stacked section of a number of tubes."""
+    return 2 * size + (8 if spread else 5)
+
+
+def section_of(stacked: Matrix, size: int, *, spread: bool, potential: bool) -> LoadedSection:
+    """The section of stacked entries: see `loaded_step`."""
     cuts = [0, size, 2 * size, 2 * size + 1, 2 * size + 2, 2 * size + 5]
     if spread:
         cuts.append(2 * size + 8)
-    stacked = ca.SX.sym("section", cuts[-1])
     torsion, moments, bending, own, force, *weight = ca.vertsplit(stacked, cuts)
-    section = LoadedSection(torsion, moments, bending, own, force, weight[0] if spread else None, potential)
-    begun = LoadedState.of(state)
-    stage = ca.Function("stage", [state, before, length, stacked], [section.stage(begun, before, length).stacked])
-    last = ca.Function("last", [state, length, stacked], [section.loaded(begun, length / 2).stacked])
+    return LoadedSection(torsion, moments, bending, own, force, weight[0] if spread else None, potential)
 
-    # One stage is written once, and serves all of a step.
+
+def composed(name: str, stage: ca.Function, last: ca.Function) -> ca.Function:
+    """(state, length, section) ↦ state: a step of order eight, in which one stage is written once and serves all.
+
+    Args:
+        name: of the function.
+        stage: (state, length of the stage before, length, section) ↦ state, as `LoadedSection.stage`.
+        last: (state, length of the last stage, section) ↦ state: what the last stage leaves to the next.
+    """
     whole = ca.MX.sym("length")
-    start = ca.MX.sym("state", 2 * size + 12)
-    here = ca.MX.sym("section", cuts[-1])
+    start = ca.MX.sym("state", stage.size1_in(0))
+    here = ca.MX.sym("section", stage.size1_in(3))
     shares = ca.DM(SHARES).T
     shares_before = ca.horzcat(0, shares[:-1])
     stages = stage.mapaccum("stages", len(SHARES))
     passed = stages(start, whole * shares_before, whole * shares, ca.repmat(here, 1, len(SHARES)))
     after = last(passed[:, -1], whole * shares[-1], here)
-    return ca.Function("loaded_step", [start, whole, here], [after])
+    return ca.Function(name, [start, whole, here], [after])

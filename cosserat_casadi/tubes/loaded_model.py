@@ -6,6 +6,7 @@ frame at the base plate must be that of the world. See docs/tubes.md.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,10 +14,11 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi.maths.pose import Pose
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, rotate
+from cosserat_casadi.maths.rotation import hat, quaternion_conjugate, quaternion_product, rotate
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.tubes.functions import March, TubeFunctions
 from cosserat_casadi.tubes.loaded_flow import LoadedState, loaded_step
+from cosserat_casadi.tubes.loaded_tangent import VECTOR, LoadedTangent, tangent_step
 from cosserat_casadi.tubes.loads import COMPONENTS, TubeLoad
 from cosserat_casadi.tubes.model import TubeModel
 from cosserat_casadi.tubes.variations import Variations, of_loaded
@@ -69,33 +71,29 @@ class LoadedTubeModel(TubeFunctions):
     def varied(self, x: FloatArray, inputs: FloatArray) -> Variations:
         """How the tubes and the tangent turn along the robot; all loads have an energy."""
         stations, along, of_steps = self.variations(x, inputs, 1.0)
-        return of_loaded(self.size, x, stations.full(), along.full(), of_steps.full())
+        return of_loaded(self.size, stations.full(), along.full(), of_steps.full())
 
     @cached_property
     def variations(self) -> ca.Function:
         """(x, inputs, load_factor) ↦ stations and how they change, of loads that have an energy.
 
-        Stacked states at the ends of all steps from the tip to the plate, (2 n + 12)×k; their derivatives with x,
-        ((2 n + 12) k)×(n + 4); and, for each step, those of the state at its end with the torques and the moment at its
-        start, (2 n + 12)×((n + 3) (k − 1)).
+        Stacked states at the ends of all steps from the tip to the plate, (2 n + 12)×k; their changes, stacked as those
+        of `LoadedTangent`, with the angles at the tips and a turn of the frame there, (2 n + 9)×((n + 3) k); and, for
+        each step, those at its end with the torques and the moment at its start, (2 n + 9)×((n + 3) (k − 1)).
         """
-        size = self.size
-        x, _, _ = self._arguments
-        stations = self._whole.stations
-        # Angles, torques, pose and energy, moment, place.
-        parts = [ca.MX.sym(f"part{i}", width) for i, width in enumerate((size, size, 8, COMPONENTS, 1))]
-        length = ca.MX.sym("length")
-        section = ca.MX.sym("section", self._stacked_sections.size1())
-        after = self._step(ca.vertcat(*parts), length, section)
-        from_momenta = [ca.jacobian(after, parts[1]), ca.jacobian(after, parts[3])]
-        one_step = ca.Function("one_step", [*parts, length, section], [ca.horzcat(*from_momenta)])
-        every_step = one_step.map(self._lengths.size2())
-        cuts = [0, size, 2 * size, 2 * size + 8, 2 * size + 11, 2 * size + 12]
-        starts = ca.vertsplit(stations[:, :-1], cuts)
+        stations = self._varied.stations
+        width = self._width
+        momenta = np.zeros((2 * self.size + 3 * VECTOR, self.size + VECTOR))
+        momenta[self.size : 2 * self.size, : self.size] = np.eye(self.size)
+        momenta[2 * self.size + VECTOR : 2 * self.size + 2 * VECTOR, self.size :] = np.eye(VECTOR)
+        count = self._lengths.size2()
+        starts = ca.vertcat(stations[:width, :-1], ca.repmat(ca.vec(ca.DM(momenta)), 1, count))
+        ends = self._tangent_step.map(count)(starts, self._lengths, self._stacked_sections)
+        height = 2 * self.size + 3 * VECTOR
         outputs = {
-            "stations": stations,
-            "along": ca.jacobian(ca.vec(stations), x),
-            "of_steps": every_step(*starts, self._lengths, self._stacked_sections),
+            "stations": stations[:width, :],
+            "along": ca.reshape(stations[width:, :], height, -1),
+            "of_steps": ca.reshape(ends[width:, :], height, -1),
         }
         return self._function("variations", outputs)
 
@@ -157,8 +155,11 @@ class LoadedTubeModel(TubeFunctions):
             place=self._places[0],
         )
 
-    def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
-        """What is borne beyond the start of a piece, where tubes may end."""
+    def _borne(self, piece: int) -> Iterator[tuple[TubeLoad, ca.MX, int]]:
+        """The loads that the tubes bear whose tips are at the start of a piece, in their own axes, and the tube.
+
+        Those of other tubes are zero: which tubes end there is found as the function is evaluated.
+        """
         _, inputs, _ = self._arguments
         for index, (tip, _) in enumerate(self._ends):
             ends_here = self._places[piece] == tip
@@ -171,9 +172,72 @@ class LoadedTubeModel(TubeFunctions):
                     continue
                 start = self.robot.load_start(number)
                 value = share * inputs[start : start + COMPONENTS]
-                borne = ca.if_else(ends_here, value, 0.0)
-                state, forces = _with_load(load, borne, index, tip, state, forces)
+                yield load, ca.if_else(ends_here, value, 0.0), index
+
+    def _picked_up(self, piece: int, state: LoadedState, forces: _Forces) -> tuple[LoadedState, _Forces]:
+        """What is borne beyond the start of a piece, where tubes may end."""
+        for load, borne, index in self._borne(piece):
+            tip, _ = self._ends[index]
+            state, forces = _with_load(load, borne, index, tip, state, forces)
         return state, forces
+
+    # How it changes with the unknowns
+
+    @property
+    def _width(self) -> int:
+        """Entries of a stacked state."""
+        return 2 * self.size + 12
+
+    @property
+    def _tangent_step(self) -> ca.Function:
+        """A step of the state and its changes with the angles at the tips and a turn of the frame there."""
+        follower = any(load.follower and not load.is_moment for load in self.robot.loads)
+        return tangent_step(self.size, self.size + VECTOR, spread=self._spread, follower=follower)
+
+    @cached_property
+    def _varied(self) -> March:
+        """States without the energy of loads, each with its changes behind it, column after column."""
+        steps = self._tangent_step.mapaccum("steps", self.steps)
+        lengths = ca.horzsplit(self._lengths, self.steps)
+        sections = ca.horzsplit(self._stacked_sections, self.steps)
+        height = 2 * self.size + 3 * VECTOR
+        at_tip = np.zeros((height, self.size + VECTOR))
+        at_tip[: self.size, : self.size] = np.eye(self.size)
+        at_tip[2 * self.size : 2 * self.size + VECTOR, self.size :] = np.eye(VECTOR)
+        ends = [ca.vertcat(self._tip.stacked, ca.vec(ca.DM(at_tip)))]
+        stations = list(ends)
+        for piece, (length, section) in enumerate(zip(lengths, sections, strict=True)):
+            state = LoadedState.of(ends[-1][: self._width])
+            tangent = LoadedTangent.of(ca.reshape(ends[-1][self._width :], height, -1))
+            forces = _Forces(ca.MX.zeros(3), ca.MX.zeros(3))
+            for load, borne, index in self._borne(piece):
+                if load.spread:
+                    continue
+                tangent = tangent.picked_up(load, _in_world(load, borne, index, state), index, state)
+                tip, _ = self._ends[index]
+                state, forces = _with_load(load, borne, index, tip, state, forces)
+            passed = steps(ca.vertcat(state.stacked, ca.vec(tangent.stacked)), length, section)
+            ends.append(passed[:, -1])
+            stations.append(passed)
+        return March(ends, ca.horzcat(*stations))
+
+    @cached_property
+    def _jacobian(self) -> Matrix:
+        """Derivative of the residual with x, from the changes at the plate, (n + 4)×(n + 4)."""
+        x, _, _ = self._arguments
+        end = self._varied.ends[-1]
+        quaternion = LoadedState.of(end[: self._width]).pose.quaternion
+        plate = LoadedTangent.of(ca.reshape(end[self._width :], 2 * self.size + 3 * VECTOR, -1))
+        missed = plate.angles - ca.repmat(self._compliance, 1, self.size + VECTOR) * plate.torques
+        # δQ = ½ (0, θ) ⊗ Q.
+        turned = (quaternion[0] * plate.turn - hat(quaternion[1:]) @ plate.turn) / 2
+        # The turn at the tip with the quaternion there, which need not have the norm one: θ = 2 δq ⊗ q̄ / |q|².
+        tip = x[self.size :]
+        turns = 2 / ca.sumsqr(tip) * ca.horzcat(-tip[1:], tip[0] * ca.DM.eye(VECTOR) + hat(tip[1:]))
+        rows = ca.vertcat(missed, turned)
+        by_x = ca.horzcat(rows[:, : self.size], rows[:, self.size :] @ turns)
+        norm = ca.horzcat(ca.DM.zeros(1, self.size), tip.T)
+        return ca.vertcat(by_x[: self.size, :], norm, by_x[self.size :, :])
 
     @cached_property
     def _residual(self) -> Matrix:
@@ -203,14 +267,19 @@ def _with_load(
     """
     if load.spread:
         return state, _Forces(forces.force + tip * value, forces.weight + value)
-    frame = state.pose.quaternion
-    if load.follower:
-        half = state.angles[tube] / 2
-        frame = quaternion_product(frame, ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
-        value = rotate(frame, value)
+    in_world = _in_world(load, value, tube, state)
     if not load.is_moment:
-        return state, replace(forces, force=forces.force + value)
+        return state, replace(forces, force=forces.force + in_world)
     # About the tangent it twists the tube alone.
-    twist = rotate(quaternion_conjugate(frame), value)[2]
+    twist = rotate(quaternion_conjugate(state.pose.quaternion), in_world)[2]
     torques: Matrix = state.torques + twist * ca.DM(np.eye(len(load.shares))[:, tube])
-    return replace(state, moment=state.moment + value, torques=torques), forces
+    return replace(state, moment=state.moment + in_world, torques=torques), forces
+
+
+def _in_world(load: TubeLoad, value: ca.MX, tube: int, state: LoadedState) -> Matrix:
+    """A force or moment at a tube's tip in world axes, 3×1, where the load gives it in its own."""
+    if not load.follower:
+        return value
+    half = state.angles[tube] / 2
+    frame = quaternion_product(state.pose.quaternion, ca.vertcat(ca.cos(half), 0, 0, ca.sin(half)))
+    return rotate(frame, value)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cosserat_casadi.maths.rotation import quaternion_conjugate, quaternion_product, quaternion_to_matrix
+from cosserat_casadi.maths.rotation import quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray
 
 DIRECTIONS = 2
@@ -52,28 +52,29 @@ def of_angles(size: int, along: FloatArray, of_steps: FloatArray) -> Variations:
     )
 
 
-def of_loaded(size: int, x: FloatArray, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> Variations:
+def of_loaded(size: int, stations: FloatArray, along: FloatArray, of_steps: FloatArray) -> Variations:
     """Variations of a robot under loads that have an energy.
 
     Args:
         size: number n of tubes.
-        x: unknowns, shape (n + 4,).
         stations: stacked states, shape (2 n + 12, k).
-        along: their derivatives with x, shape ((2 n + 12) k, n + 4).
+        along: their changes, stacked as those of `LoadedTangent`, with the angles at the tips and a turn of the frame
+            there, shape (2 n + 9, (n + 3) k).
         of_steps: those at the end of each step with the torques and the moment at its start, shape
-            (2 n + 12, (n + 3) (k − 1)).
+            (2 n + 9, (n + 3) (k − 1)).
     """
-    width = len(stations)
-    freedoms = size + DIRECTIONS
-    quaternions = stations[2 * size + 3 : 2 * size + 7]
-    frames = [quaternion_to_matrix(quaternion) for quaternion in quaternions.T]
-    changes = along.reshape(-1, width, size + 4) @ _of_tip(size, x)
-    configuration = [_configuration(size, *pair) for pair in zip(changes, quaternions.T, strict=True)]
-    steps = of_steps.reshape(width, -1, size + 3).transpose(1, 0, 2)
+    height = len(along)
+    frames = [quaternion_to_matrix(quaternion) for quaternion in stations[2 * size + 3 : 2 * size + 7].T]
+    # Of the turns at the tip those count that change the direction of the tangent.
+    of_tip = np.eye(size + 3, size + DIRECTIONS)
+    of_tip[size:, size:] = frames[0][:, :DIRECTIONS]
+    changes = along.reshape(height, -1, size + 3).transpose(1, 0, 2) @ of_tip
+    configuration = [_configuration(size, *pair) for pair in zip(changes, frames, strict=True)]
+    steps = of_steps.reshape(height, -1, size + 3).transpose(1, 0, 2)
     responses = []
-    for step, frame, end in zip(steps, frames[:-1], quaternions.T[1:], strict=True):
+    for step, frame, end in zip(steps, frames[:-1], frames[1:], strict=True):
         # A torque is a moment about the tangent too.
-        conjugate = np.zeros((size + 3, freedoms))
+        conjugate = np.zeros((size + 3, size + DIRECTIONS))
         conjugate[:size, :size] = np.eye(size)
         conjugate[size:, :size] = frame[:, 2:]
         conjugate[size:, size:] = frame[:, :DIRECTIONS]
@@ -82,29 +83,16 @@ def of_loaded(size: int, x: FloatArray, stations: FloatArray, along: FloatArray,
     return Variations(np.array(configuration), torques, np.array(responses))
 
 
-def _of_tip(size: int, x: FloatArray) -> FloatArray:
-    """Changes of x with the angles at the tips and the direction of the tangent there, shape (n + 4, n + 2)."""
-    changes = np.zeros((size + 4, size + DIRECTIONS))
-    changes[:size, :size] = np.eye(size)
-    for direction in range(DIRECTIONS):
-        turn = np.zeros(4)
-        turn[1 + direction] = 0.5
-        changes[size:, size + direction] = quaternion_product(x[size:], turn)
-    return changes
-
-
-def _configuration(size: int, changes: FloatArray, quaternion: FloatArray) -> FloatArray:
-    """Changes of the configuration where those of a stacked state are given.
+def _configuration(size: int, changes: FloatArray, frame: FloatArray) -> FloatArray:
+    """Changes of the configuration where those of a state are given.
 
     Args:
         size: number n of tubes.
-        changes: shape (2 n + 12, m).
-        quaternion: of the frame there, shape (4,).
+        changes: stacked as those of `LoadedTangent`, shape (2 n + 9, m).
+        frame: rotation of the frame there, shape (3, 3).
 
     Returns:
         Turns of the tubes about the tangent, then of the tangent about the axes across, shape (n + 2, m), rad.
     """
-    back = quaternion_conjugate(quaternion)
-    columns = changes[2 * size + 3 : 2 * size + 7].T
-    turns = np.array([2 * quaternion_product(back, column)[1:] for column in columns]).T
+    turns = frame.T @ changes[2 * size : 2 * size + 3]
     return np.concatenate([changes[:size] + turns[2], turns[:DIRECTIONS]])

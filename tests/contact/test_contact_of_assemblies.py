@@ -356,7 +356,7 @@ def test_a_nearly_rigid_rod_presses_as_statics_by_hand_says(bending: float) -> N
     assert_allclose(pressed.body().position[0] - [1, 0, 0], slide / (3 * bending), rtol=0, atol=0.2 / bending**2)
 
 
-@pytest.mark.parametrize(("share", "stable"), [(0.98, True), (1.02, False)])
+@pytest.mark.parametrize(("share", "stable"), [pytest.param(0.98, True, marks=pytest.mark.slow), (1.02, False)])
 def test_a_ball_on_top_of_a_dome_rolls_off_at_the_load_that_theory_says(share: float, stable: bool) -> None:
     """Aside by v it sinks by v²/(2 (R + ρ)), and the rod pulls it back with 3 EI v/L³: it is stable below that load.
 
@@ -526,6 +526,28 @@ def test_a_point_slides_back_over_the_joint() -> None:
     assert [event.kind for event in path.events] == ["slide_over_joint", "lift_off"]
     back = path.events[0].contact
     assert back is not None and back.rod == "rod"
+
+
+@pytest.mark.slow
+def test_a_path_ends_where_a_point_comes_to_a_rod_on_its_rod_and_says_so() -> None:
+    """A solve beyond finds the contact on the other side, where the rod alone has it: the twig bears nothing."""
+    twig = """
+[[rods]]
+name = "twig"
+length = 0.1
+strain = "planar"
+stiffness = { bending_y = 0.5 }
+base = { rod = "rod", at = 0.46, quaternion = [0.8, 0.6, 0, 0] }
+"""
+    model = build(parse_scene(HEAD + ROD + twig + PUSH + BAR + 'rods = ["rod"]\n'))
+    path = follow_path(model, "push.force", [0.0, 0.0, -1.0])
+    assert not path.converged
+    assert path.factor[-1] < 1.0
+    assert "'rod' with 'bar' has come to X = 0.46, where a load or another rod acts" in path.message
+    beyond = solve(model)
+    assert beyond.converged
+    (contact,) = beyond.contacts
+    assert contact.start > 0.465
 
 
 # Results
