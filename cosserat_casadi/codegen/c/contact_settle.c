@@ -195,7 +195,7 @@ static int find_inside(const arrangement *at, const real *z, const pair_entry *p
     const real gap = gap_of_section(at, z, pair, X, work);
     /* Between the last three sections the rod may enter for less than a step. */
     if (gap_before <= gap && gap_before <= gap_before_last && gap_before >= -ACCEPTED &&
-        gap_before < FASTEST * (X - before_last)) {
+        gap_before < FASTEST * (X - before_last) && !is_on_line(at, z, pair, before)) {
       const real lowest = lowest_between(at, z, pair, before_last, X, work);
       const real least = gap_of_section(at, z, pair, lowest, work);
       if (least < -ACCEPTED) count = add_inside(found, count, 0, pair, lowest, -least);

@@ -183,6 +183,8 @@ static int leads_through(const pair_entry *pair, real X, const real *start, cons
    change by no more than X does, but for what the rod stretches and tapers. */
 static real clear_distance(const pair_entry *pair, real X, const real *start, const real *end, real way, workspace *work) {
   const real share = way / ROD[pair->rod].length;
+  /* Where sections hardly move those beside them do not move by twice what counts as deep either. */
+  if (share <= DEEP / 2) return FARTHEST;
   const real gaps = larger(gap_at(pair, start, X, work), 0) + larger(gap_at(pair, end, X, work), 0);
   return larger(larger((gaps - share) / 4, DEEP - share / 2) / FASTEST, CLOSEST);
 }
