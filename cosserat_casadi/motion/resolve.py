@@ -70,7 +70,7 @@ LAST = 3
 
 
 @dataclass(frozen=True)
-class _Level:
+class Level:
     """A motion on one set of modes.
 
     Attributes:
@@ -108,12 +108,12 @@ class _Search:
     start: Solution | None
     tell: Tell | None
     tolerance: float
-    levels: list[_Level] = field(default_factory=list)
+    levels: list[Level] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
 
     @property
-    def last(self) -> _Level:
+    def last(self) -> Level:
         """The finest motion so far."""
         return self.levels[-1]
 
@@ -197,7 +197,7 @@ def _with_fixed(search: _Search) -> Motion:
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
-    level = _Level(simulator, timed.history, simulator.paths(timed.history))
+    level = Level(simulator, timed.history, simulator.paths(timed.history))
     search.levels.append(level)
 
     finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
@@ -236,7 +236,7 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(_Level(simulator, history, found, rung, distance))
+        search.levels.append(Level(simulator, history, found, rung, distance))
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)
@@ -281,13 +281,13 @@ def _timed(search: _Search) -> TimedHistory:
         return TimedHistory(level.history, search.time_error)
     allowed = TIME_SHARE * search.tolerance
     if flies_free(level.simulator.model):
-        told = _told_by_coarser(level, search.step_tolerance)
+        told = told_by_coarser(level, search.step_tolerance)
         if told.error <= allowed or told.history.outcome is StepOutcome.INTERRUPTED:
             return told
     return level.simulator.tightened(level.history, search.step_tolerance, allowed)
 
 
-def _told_by_coarser(level: _Level, step_tolerance: float) -> TimedHistory:
+def told_by_coarser(level: Level, step_tolerance: float) -> TimedHistory:
     """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
 
     The steps of what flies free are so exact, see :data:`simulate.CLEAR`, that this is mostly enough.
@@ -338,7 +338,7 @@ def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
     return chosen
 
 
-def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
+def _felt(level: Level, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     model = level.simulator.model
     times = watched_times(level.history, duration)
@@ -355,7 +355,7 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
     return felt
 
 
-def _judged(search: _Search, level: _Level, error: float) -> Motion:
+def _judged(search: _Search, level: Level, error: float) -> Motion:
     """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
     bound = search.tolerance
     if search.scene.accuracy.fixed or search.simulation.step is not None:
