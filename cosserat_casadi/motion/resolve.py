@@ -22,8 +22,6 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
-    LEFT_BY_TIGHTER,
-    TIGHTER,
     Simulator,
     Tell,
     TimedHistory,
@@ -67,6 +65,12 @@ FELT = 0.02
 
 LAST = 3
 """One of so many coefficients counts as one of the last."""
+
+COARSER = 3.0
+"""Factor between the tolerances of a step of a free rod's motion and of the coarser one that tells its error."""
+
+LEFT_BY_FINER = 1.0
+"""Error of the finer of the two over their distance: it is 0.7 where errors go with the power SLOPE of tolerances."""
 
 
 @dataclass(frozen=True)
@@ -297,12 +301,12 @@ def told_by_coarser(level: Level, step_tolerance: float) -> TimedHistory:
         step_tolerance: tolerance of a step, over the length, that it was computed with.
     """
     simulator = level.simulator
-    coarse = simulator.controlled(TIGHTER * step_tolerance)
+    coarse = simulator.controlled(COARSER * step_tolerance)
     if coarse.outcome is StepOutcome.INTERRUPTED:
         return TimedHistory(coarse, float("nan"))
     error = float("inf")
     if coarse.completed:
-        error = LEFT_BY_TIGHTER * path_distance(simulator.paths(coarse), level.paths)
+        error = LEFT_BY_FINER * path_distance(simulator.paths(coarse), level.paths)
     return TimedHistory(level.history, error, step_tolerance, step_tolerance)
 
 
