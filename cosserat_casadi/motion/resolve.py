@@ -22,8 +22,6 @@ from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.paths import path_distance, watched_times
 from cosserat_casadi.motion.simulate import (
-    LEFT_BY_TIGHTER,
-    TIGHTER,
     Simulator,
     Tell,
     TimedHistory,
@@ -68,9 +66,15 @@ FELT = 0.02
 LAST = 3
 """One of so many coefficients counts as one of the last."""
 
+COARSER = 3.0
+"""Factor between the tolerances of a step of a free rod's motion and of the coarser one that tells its error."""
+
+LEFT_BY_FINER = 1.0
+"""Error of the finer of the two over their distance: it is 0.7 where errors go with the power SLOPE of tolerances."""
+
 
 @dataclass(frozen=True)
-class _Level:
+class Level:
     """A motion on one set of modes.
 
     Attributes:
@@ -108,12 +112,12 @@ class _Search:
     start: Solution | None
     tell: Tell | None
     tolerance: float
-    levels: list[_Level] = field(default_factory=list)
+    levels: list[Level] = field(default_factory=list)
     step_tolerance: float = float("nan")
     time_error: float = float("nan")
 
     @property
-    def last(self) -> _Level:
+    def last(self) -> Level:
         """The finest motion so far."""
         return self.levels[-1]
 
@@ -197,7 +201,7 @@ def _with_fixed(search: _Search) -> Motion:
     timed = simulator.to_tolerance(TIME_SHARE * search.tolerance, first=search.tolerance)
     if not timed.history.completed:
         return ended_early(simulator, timed.history)
-    level = _Level(simulator, timed.history, simulator.paths(timed.history))
+    level = Level(simulator, timed.history, simulator.paths(timed.history))
     search.levels.append(level)
 
     finer = {name: _finer(discretisation) for name, discretisation in model.discretisation.items()}
@@ -236,7 +240,7 @@ def _with_tolerance(search: _Search) -> Motion:
             return ended_early(simulator, history)
         found = simulator.paths(history)
         distance = path_distance(search.last.paths, found) if search.levels else float("inf")
-        search.levels.append(_Level(simulator, history, found, rung, distance))
+        search.levels.append(Level(simulator, history, found, rung, distance))
         if search.space_error <= SPACE_SHARE * search.tolerance:
             break
         rung = search.climb(len(ladder) - 1)
@@ -281,13 +285,13 @@ def _timed(search: _Search) -> TimedHistory:
         return TimedHistory(level.history, search.time_error)
     allowed = TIME_SHARE * search.tolerance
     if flies_free(level.simulator.model):
-        told = _told_by_coarser(level, search.step_tolerance)
+        told = told_by_coarser(level, search.step_tolerance)
         if told.error <= allowed or told.history.outcome is StepOutcome.INTERRUPTED:
             return told
     return level.simulator.tightened(level.history, search.step_tolerance, allowed)
 
 
-def _told_by_coarser(level: _Level, step_tolerance: float) -> TimedHistory:
+def told_by_coarser(level: Level, step_tolerance: float) -> TimedHistory:
     """The motion of a level with the error of its steps by a coarser motion, which costs less than a more exact one.
 
     The steps of what flies free are so exact, see :data:`simulate.CLEAR`, that this is mostly enough.
@@ -297,12 +301,12 @@ def _told_by_coarser(level: _Level, step_tolerance: float) -> TimedHistory:
         step_tolerance: tolerance of a step, over the length, that it was computed with.
     """
     simulator = level.simulator
-    coarse = simulator.controlled(TIGHTER * step_tolerance)
+    coarse = simulator.controlled(COARSER * step_tolerance)
     if coarse.outcome is StepOutcome.INTERRUPTED:
         return TimedHistory(coarse, float("nan"))
     error = float("inf")
     if coarse.completed:
-        error = LEFT_BY_TIGHTER * path_distance(simulator.paths(coarse), level.paths)
+        error = LEFT_BY_FINER * path_distance(simulator.paths(coarse), level.paths)
     return TimedHistory(level.history, error, step_tolerance, step_tolerance)
 
 
@@ -338,7 +342,7 @@ def _next_modes(search: _Search, modes: int) -> dict[str, Discretisation]:
     return chosen
 
 
-def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
+def _felt(level: Level, duration: float) -> dict[str, list[FloatArray]]:
     """Largest displacement over the length by the coefficients of each degree, of every strain of every rod."""
     model = level.simulator.model
     times = watched_times(level.history, duration)
@@ -355,7 +359,7 @@ def _felt(level: _Level, duration: float) -> dict[str, list[FloatArray]]:
     return felt
 
 
-def _judged(search: _Search, level: _Level, error: float) -> Motion:
+def _judged(search: _Search, level: Level, error: float) -> Motion:
     """The motion of a level that was computed to its end, with its error; what the user fixed need but resolve it."""
     bound = search.tolerance
     if search.scene.accuracy.fixed or search.simulation.step is not None:
