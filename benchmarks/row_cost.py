@@ -86,6 +86,7 @@ CASES: tuple[tuple[str, Callable[[], Model], dict[str, bool]], ...] = (
     ("… rows side by side", wire, {"lanes": True}),
     ("with a tendon and pre-curvature", curved, {}),
     ("… radius, modulus, pre-curvature, offset as parameters", lambda: curved(parameters=NUMBERS), {}),
+    ("… and rows side by side", lambda: curved(parameters=NUMBERS), {"lanes": True}),
     ("robot of two sections, tensions", robot, {}),
     ("… rows side by side", robot, {"lanes": True}),
 )

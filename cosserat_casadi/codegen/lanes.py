@@ -18,9 +18,10 @@ from cosserat_casadi.model.build import Model
 EQUATIONS = ("residual", "jacobian", "rate", "tangent", "resolution_index")
 """Words in the names of the kernels that solve a row."""
 
-STRAIGHT_IN_LANES = 40_000
-"""Instructions up to which a kernel in lanes is straight-line code. It has no memory to go through as loops have, and
-what makes it slow, its length, four rows share; compilers take 15 s for as much as this."""
+STRAIGHT_IN_LANES = 60_000
+"""Instructions of a kernel up to which rows are solved side by side. Its code is without loops, which has no memory to
+go through: what makes it slow, its length, four rows share. Loops in lanes are slower than rows one after the other,
+whose Jacobians have their columns in lanes (``benchmarks/row_cost.py``)."""
 
 NUMBER = r"-?(?:\d+\.?\d*(?:e[+-]?\d+)?|INFINITY|NAN)"
 
@@ -73,15 +74,14 @@ def in_lanes(model: Model, names: Names, shown: Sequence[Shown], results: int) -
         shown: where in a row of results there are results of kernels.
         results: numbers in a row of results.
     """
-    # An assembly is eliminated rod after rod, and parameters change the start: neither has a form for lanes.
-    if assembled(model, names) is not None or model.parameters.size:
+    # An assembly is eliminated rod after rod, which has no form for lanes.
+    if assembled(model, names) is not None:
         return None
-    wanted = [*map(names.kernel, EQUATIONS), *(place.kernel for place in shown)]
-    functions = [
-        kernel(model, entry.function, entry.kernel, STRAIGHT_IN_LANES)
-        for entry in functions_in_c(model, names)
-        if entry.kernel in wanted
-    ]
+    wanted = {*map(names.kernel, EQUATIONS), *(place.kernel for place in shown)}
+    entries = [entry for entry in functions_in_c(model, names) if entry.kernel in wanted]
+    functions = [kernel(model, entry.function, entry.kernel, STRAIGHT_IN_LANES) for entry in entries]
+    if not all(function.is_a("SXFunction") for function in functions):
+        return None
     stem = f"{names.name}_lanes"
     generated = kernel_sources(functions, names, stem)
     source = generated[f"{stem}.c"]
@@ -91,9 +91,9 @@ def in_lanes(model: Model, names: Names, shown: Sequence[Shown], results: int) -
     words = {
         "name": names.name,
         "kernels": _with_lanes(source),
-        "functions": "".join(f"KERNEL({name})\n" for name in wanted),
-        "prototypes": "".join(f"KERNEL_IN_LANES({name});\n" for name in wanted),
-        "calls": "".join(render("results_in_lanes.c.in", vars(place)) for place in shown),
+        "functions": "".join(f"KERNEL({entry.kernel})\n" for entry in entries),
+        "prototypes": "".join(f"KERNEL_IN_LANES({entry.kernel});\n" for entry in entries),
+        **_parameter_words(model, names, shown),
         "sizes": _sizes(generated[f"{stem}.h"]),
         "kernel_reals": largest_room(generated, "W") + 1,
         "kernel_integers": largest_room(generated, "IW") + 1,
@@ -103,6 +103,20 @@ def in_lanes(model: Model, names: Names, shown: Sequence[Shown], results: int) -
         f"{names.name}_side_by_side.c": render("side_by_side.c.in", words),
         f"{stem}.c": render("lanes.c.in", words),
         **{file: resource("c", file) for file in LANES},
+    }
+
+
+def _parameter_words(model: Model, names: Names, shown: Sequence[Shown]) -> dict[str, str]:
+    """What depends on whether the scene names parameters, which stand behind the inputs and change the start."""
+    has_parameters = model.parameters.size > 0
+    tangent = "solved_tangent_in_lanes.c.in" if has_parameters else "tangent_in_lanes.c.in"
+    parameters = f", room->inputs + {names.macro}_INPUTS * LANES" if has_parameters else ""
+    calls = [render("results_in_lanes.c.in", {**vars(place), "parameters": parameters}) for place in shown]
+    return {
+        "tangent": render(tangent, {"name": names.name}),
+        "calls": "".join(calls),
+        "parameters_in_source": ", const real *parameters" if has_parameters else "",
+        "parameters_of_row": f", inputs + {names.macro}_INPUTS" if has_parameters else "",
     }
 
 

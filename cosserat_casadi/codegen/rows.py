@@ -97,16 +97,19 @@ class RowLibrary:
         given = np.ascontiguousarray(inputs, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != self.inputs:
             raise ValueError(f"inputs must have shape (count, {self.inputs}), got {given.shape}")
-        arguments = [pointer(given)]
+        tables = [given]
         if self.parameters:
             wanted = (len(given), self.parameters)
             p = np.ascontiguousarray(np.empty((0, 0)) if parameters is None else parameters, dtype=np.float64)
             if p.shape != wanted:
                 raise ValueError(f"parameters must have shape {wanted}, got {p.shape}")
-            arguments.append(pointer(p))
+            tables.append(p)
+        if self.in_lanes:
+            # Rows side by side take inputs and parameters in one table.
+            tables = [np.hstack(tables)]
         results = np.empty((len(given), self.results))
         function = f"{NAME}_rows_in_lanes" if self.in_lanes else f"{NAME}_rows"
-        if loaded(NAME, self.files)[function](len(given), *arguments, pointer(results)):
+        if loaded(NAME, self.files)[function](len(given), *map(pointer, tables), pointer(results)):
             raise MemoryError("there is no memory for the solver's workspace")
         return results
 

@@ -105,7 +105,8 @@ def in_parts(statements: Sequence[Statement]) -> tuple[list[list[Statement]], di
         the parts, with statements that store what others read in ``passed``, and the places of those values there.
     """
     count = max(-(-len(statements) // LONGEST), 1)
-    size = -(-len(statements) // count)
+    # A Jacobian that reads no columns has no statements for them.
+    size = max(-(-len(statements) // count), 1)
     parts = [statements[first : first + size] for first in range(0, len(statements), size)]
     passed: dict[int, int] = {}
     before: set[int] = set()

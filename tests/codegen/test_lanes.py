@@ -9,17 +9,20 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import Scene, build
+from cosserat_casadi import Model, Scene, build
 from cosserat_casadi.codegen import compiler, lanes, rows
 from cosserat_casadi.codegen.names import model_names
 from cosserat_casadi.codegen.rows import RowLibrary, row_library
 from cosserat_casadi.maths.typing import FloatArray
 from tests.codegen.libraries import ARMS, HAND, LOAD, WRISTS
-from tests.scenes import push, scene
+from tests.scenes import push, rod, scene
 
 CONVERGED, NOT_FINITE = 0, 2
 
 SMALL = {"modes": 2, "nodes": 3}
+
+BUDGET = 32_000
+"""Bytes of the equations in lanes of a small planar rod with two parameters."""
 
 TENDON = {"name": "pull", "kind": "tendon", "rod": "rod", "tension": 0.6, "offset": [0.02, 0.01]}
 
@@ -43,10 +46,10 @@ def side_by_side(asked: Scene) -> RowLibrary:
     return library
 
 
-def assert_same(library: RowLibrary, inputs: FloatArray) -> FloatArray:
+def assert_same(library: RowLibrary, inputs: FloatArray, parameters: FloatArray | None = None) -> FloatArray:
     """Compare with the rows one after the other, by the same compiled object."""
-    found = library.solve(inputs)
-    expected = replace(library, in_lanes=False).solve(inputs)
+    found = library.solve(inputs, parameters)
+    expected = replace(library, in_lanes=False).solve(inputs, parameters)
     # The order of sums is the same too, but for a residual that is nothing but rounding.
     assert_array_equal(found[:, :2], expected[:, :2])
     assert_allclose(found[:, 2:], expected[:, 2:], rtol=1e-12, atol=1e-12)
@@ -82,14 +85,51 @@ def test_rows_that_fail_leave_their_neighbours_alone(planar: RowLibrary) -> None
     assert_array_equal(found[sound], planar.solve(inputs[sound]))
 
 
-def test_tendons_and_loops_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lanes, "STRAIGHT_IN_LANES", 500)
+def test_tendons_are_the_same() -> None:
     library = side_by_side(scene(push(), accuracy=SMALL, actuators=[TENDON]))
-    assert "for (" in dict(library.files)["sweep_lanes.c"]
     inputs = np.column_stack([pushes(14, 0.5), np.linspace(0.0, 4.0, 14)])
     found = assert_same(library, inputs)
     assert_array_equal(found[:, 0], CONVERGED)
     assert np.ptp(found[:, -1]) > 1e-3
+
+
+def with_parameters() -> Scene:
+    """A planar rod whose length and pre-curvature differ from row to row."""
+    bent = rod("planar", intrinsic={"curvature": [0.0, 0.4, 0.0]})
+    named = ["rod.length", "rod.intrinsic.curvature.y"]
+    return scene(push(), rods=[bent], accuracy=SMALL, parameters=named)
+
+
+def drawn_parameters(model: Model, count: int) -> FloatArray:
+    own = model.parameters.pack()
+    return own * np.random.default_rng(5).uniform(0.8, 1.2, (count, len(own)))
+
+
+def test_rows_of_parameters_are_the_same() -> None:
+    model = build(with_parameters())
+    library = row_library(model, lanes=True)
+    assert library.in_lanes
+    inputs = pushes(30, 2.0)
+    parameters = drawn_parameters(model, 30)
+    found = assert_same(library, inputs, parameters)
+    assert_array_equal(found[:, 0], CONVERGED)
+    assert np.ptp(found[:, 3]) > 1e-3
+    # One row of parameters that are no numbers, and loads that grow in steps.
+    parameters[4, 0] = np.nan
+    inputs[11:] *= 1000
+    found = assert_same(library, inputs, parameters)
+    assert found[4, 0] == NOT_FINITE
+    assert found[:, 1].max() > 20
+
+
+def test_code_of_rows_of_parameters_stays_small() -> None:
+    files = dict(row_library(build(with_parameters()), lanes=True).files)
+    assert len(files["sweep_lanes.c"]) <= BUDGET
+
+
+def test_kernels_too_long_for_lanes_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lanes, "STRAIGHT_IN_LANES", 500)
+    assert not row_library(build(scene(push(), accuracy=SMALL, actuators=[TENDON])), lanes=True).in_lanes
 
 
 def test_a_compiler_without_vectors_solves_row_after_row(planar: RowLibrary, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -101,16 +141,8 @@ def test_a_compiler_without_vectors_solves_row_after_row(planar: RowLibrary, mon
     rows._library.cache_clear()
 
 
-@pytest.mark.parametrize(
-    "asked",
-    [
-        scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}),
-        scene(push(), strain="planar", accuracy=SMALL, parameters=["rod.length"]),
-    ],
-    ids=["assembly", "parameters"],
-)
-def test_scenes_without_a_form_for_lanes_are_known(asked: Scene) -> None:
-    model = build(asked)
+def test_assemblies_have_no_form_for_lanes() -> None:
+    model = build(scene(LOAD, rods=ARMS, bodies=[HAND], joints=WRISTS, accuracy={"modes": 1, "nodes": 2}))
     assert lanes.in_lanes(model, model_names("sweep", model), [], 3) is None
 
 

@@ -1,4 +1,4 @@
-/* Many rows of inputs at once, each solved from the unloaded scene as solver.c does it: rows wait for evaluations of the
+/* Many rows of inputs, with parameters behind them, at once, each solved from the unloaded scene as solver.c does it: rows wait for evaluations of the
    equations, and those that wait for the same are evaluated side by side. What a row does with what it has waited for
    are the functions of solver.c. A row that leaves the common way (inputs that are not finite, a path that breaks off) is
    solved by itself.
@@ -49,6 +49,7 @@ typedef struct {
   real load_factor_rate[LANES];
   real factors[N * N * LANES];
   real results[WIDEST * LANES];
+  real tangents[N * LANES];
   int pivots[N * LANES];
   int regular[LANES];
   int finite[LANES];

@@ -24,6 +24,9 @@ int processor_has_lanes(void);
    its entries were finite. */
 void factorise_in_lanes(int size, double singular, double *matrices, int *pivots, int *regular, int *finite);
 
+/* Brings right sides into the order of the pivots. */
+void permute_in_lanes(int size, const int *pivots, double *right_sides);
+
 /* Solves with such factors, in place; the right sides are in the order of the pivots. */
 void substitute_in_lanes(int size, const double *factors, double *right_sides);
 

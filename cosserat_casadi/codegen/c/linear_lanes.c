@@ -75,6 +75,18 @@ void factorise_in_lanes(int size, double singular, double *matrices, int *pivots
   }
 }
 
+void permute_in_lanes(int size, const int *pivots, double *right_sides) {
+  for (int k = 0; k < size; k++) {
+    for (int lane = 0; lane < LANES; lane++) {
+      double *right_side = right_sides + lane;
+      const int pivot = pivots[k * LANES + lane] * LANES;
+      const double kept = right_side[pivot];
+      right_side[pivot] = right_side[k * LANES];
+      right_side[k * LANES] = kept;
+    }
+  }
+}
+
 void substitute_in_lanes(int size, const double *factors, double *right_sides) {
   const lanes *a = (const lanes *)factors;
   lanes *b = (lanes *)right_sides;
