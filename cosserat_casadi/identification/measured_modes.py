@@ -20,9 +20,9 @@ from cosserat_casadi.errors import SceneError
 from cosserat_casadi.identification.cases import Datum
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checks import immovable
 from cosserat_casadi.motion.eigenproblem import ComplexArray, eigenpairs
 from cosserat_casadi.motion.modes import small_motions
-from cosserat_casadi.motion.simulate import immovable
 from cosserat_casadi.motion.small_motions import SmallMotions
 from cosserat_casadi.scene.measurements import ModeMeasurement
 

@@ -21,10 +21,11 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.identification.equilibria import split
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
+from cosserat_casadi.motion.checks import immovable
 from cosserat_casadi.motion.displacement import displacements
 from cosserat_casadi.motion.history import History, integrated
 from cosserat_casadi.motion.moving_inputs import MovingInputs
-from cosserat_casadi.motion.simulate import EXACT, STAGES, immovable
+from cosserat_casadi.motion.simulate import EXACT, STAGES
 from cosserat_casadi.motion.slack_cables import SlackCables
 from cosserat_casadi.numerics.collocation import Collocation, radau
 from cosserat_casadi.numerics.integration import StepSettings

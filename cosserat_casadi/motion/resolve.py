@@ -18,6 +18,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import discretise, nodes_for
+from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.motion.history import History
 from cosserat_casadi.motion.momentum import flies_free
 from cosserat_casadi.motion.paths import path_distance, watched_times
@@ -25,7 +26,6 @@ from cosserat_casadi.motion.simulate import (
     Simulator,
     Tell,
     TimedHistory,
-    check_simulation,
     ended_early,
     judged,
     motion_of,

@@ -23,7 +23,7 @@ from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.model.function_table import PARAMETERS
 from cosserat_casadi.model.obstacle_checks import refuse_obstacles
-from cosserat_casadi.motion.simulate import immovable
+from cosserat_casadi.motion.checks import immovable
 from cosserat_casadi.numerics.collocation import Collocation, radau
 
 STAGES = 2

@@ -18,7 +18,7 @@ from cosserat_casadi.codegen.compiler import find_compiler
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.price import price, price_of_motion
-from cosserat_casadi.motion.simulate import check_simulation
+from cosserat_casadi.motion.checks import check_simulation
 from cosserat_casadi.scene import Scene, read_scene
 from cosserat_casadi.scene.reading import written_tables
 from cosserat_casadi.scene.varying import VaryingValue, varying_values
