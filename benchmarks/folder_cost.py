@@ -121,7 +121,8 @@ def main(
             continue
         if found:
             append(FILE, found)
-    text = table(HEAD, [cells(row) for row in read(FILE)])
+    rows = sorted(read(FILE), key=lambda row: row["example"])
+    text = table(HEAD, [cells(row) for row in rows])
     print(text)
     if write:
         put(PAGE, BEGIN, END, text)

@@ -34,6 +34,9 @@ PARTED = ("path_residual", "path_jacobian")
 RATE = "path_rate"
 """A function of an assembly with an entry for each unknown, as the residual has."""
 
+MOST_IN_COLUMNS = 60_000
+"""Statements up to which a Jacobian is written by columns: compilers take more than a minute for 90 000."""
+
 STRAIGHT_BESIDE = {"tip_jacobian": 6000}
 """Instructions up to which functions are straight-line code where that is not :data:`STRAIGHT`. Loops are as fast for a
 tip's Jacobian from there on, and compilers take half as long for them."""
@@ -80,7 +83,9 @@ def _written(model: Model, entry: FunctionInC) -> Kernel:
         if entry.spec.name == "path_jacobian":
             form = in_columns(model, entry.kernel)
             if form is not None:
-                return columns_in_fours(form, _signature(entry))
+                columned = columns_in_fours(form, _signature(entry))
+                if columned.n_instructions() <= MOST_IN_COLUMNS:
+                    return columned
         elif entry.spec.name == "path_residual" and not _literal(model):
             straight = scalar(entry.function, entry.kernel)
             # Without calls of intervals there is nothing to make together.
