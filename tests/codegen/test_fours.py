@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from cosserat_casadi import Discretisation, Model, build, export, scene_from_dict
+from cosserat_casadi import Discretisation, Model, build, export, load, scene_from_dict
+from cosserat_casadi.codegen import kernels
 from cosserat_casadi.codegen.columns import LANES, in_columns
 from cosserat_casadi.codegen.fours import columns_in_fours, in_fours
 from cosserat_casadi.codegen.kernels import scalar
@@ -136,3 +137,24 @@ def test_lanes_that_are_left_over_are_not_read(wire: Path) -> None:
     assert form.stride == 2 * LANES
     assert_array_equal(form.turns[:, 7], 0)
     assert "wire_k_jacobian_columns_0" in (wire / "wire_kernels_in_fours.h").read_text()
+
+
+def test_a_jacobian_of_too_many_statements_is_loops_with_the_same_solution(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = model_of("kirchhoff", "follower at the tip")
+    solutions = []
+    instructions = []
+    for name, most in (("columns", kernels.MOST_IN_COLUMNS), ("loops", 100)):
+        monkeypatch.setattr(kernels, "MOST_IN_COLUMNS", most)
+        monkeypatch.setattr(kernels, "STRAIGHT", 100)
+        folder = export(model, tmp_path / name, "rod")
+        (jacobian,) = [
+            entry
+            for entry in json.loads((folder / "manifest.json").read_text())["functions"]
+            if entry["name"] == "rod_k_jacobian"
+        ]
+        instructions.append(jacobian["instructions"])
+        solutions.append(load(folder).solve().x)
+    assert instructions[1] < instructions[0]
+    assert_allclose(solutions[1], solutions[0], rtol=0, atol=1e-12)
