@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distance_from
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -211,14 +211,20 @@ class Facing:
         """The gap at a section, a little beyond the ends of the rod too."""
         rows = self._rows(X)
         tangent = rows.first @ nodes
-        distance, gradient, hessian = (part.full() for part in surface(self.obstacle)(rows.value @ nodes))
-        normal = gradient[:, 0]
+        distance = distance_along(self.obstacle, rows.value @ nodes, tangent, rows.second @ nodes)
         taper = self._radii[1] - self._radii[0]
-        gap = float(distance[0, 0]) - self._radii[0] - X * taper
-        slope = float(normal @ tangent) - taper
-        bend = float(tangent @ hessian @ tangent + normal @ (rows.second @ nodes))
+        gap = distance.value - self._radii[0] - X * taper
+        slope = distance.slope - taper
         length = self.length
-        return Gap(gap / length, slope / length, bend / length, rows, normal, hessian, tangent)
+        return Gap(
+            gap / length,
+            slope / length,
+            distance.bend / length,
+            rows,
+            distance.normal,
+            distance.curvature,
+            tangent,
+        )
 
     def place(self, nodes: FloatArray, near: float) -> float:
         """Abscissa next to another where the gap is least; not beyond the ends by more than a little."""

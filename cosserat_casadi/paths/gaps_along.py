@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distance_from
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -81,12 +81,10 @@ class GapsAlong:
         position = weights @ self.positions[element]
         first = weights @ self.tangents[element]
         second = weights @ self.bends[element]
-        distance, gradient, hessian = (part.full() for part in surface(self.obstacle)(position))
-        normal = gradient[:, 0]
-        gap = float(distance[0, 0]) - float(self._radius(np.array(X)))
-        slope = float(normal @ first) - float(self.radii[1] - self.radii[0])
-        curvature = float(first @ hessian @ first + normal @ second)
-        return gap / self.length, slope / self.length, curvature / self.length
+        distance = distance_along(self.obstacle, position, first, second)
+        gap = distance.value - float(self._radius(np.array(X)))
+        slope = distance.slope - float(self.radii[1] - self.radii[0])
+        return gap / self.length, slope / self.length, distance.bend / self.length
 
     def _radius(self, X: FloatArray) -> FloatArray:
         base, tip = self.radii

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.obstacles.registry import SURFACES
 
 
@@ -22,3 +24,39 @@ def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
     """Point ↦ distance from an obstacle, its gradient and its second derivative."""
     function: ca.Function = SURFACES[obstacle.kind].function(obstacle)
     return function
+
+
+class DistanceAlong(NamedTuple):
+    """Distance of a curve from an obstacle at one of its points, and what its derivatives are made of.
+
+    Attributes:
+        value: the distance, m.
+        slope: its derivative with the parameter of the curve, m.
+        bend: its second derivative, m.
+        normal: of the obstacle, shape (3,).
+        curvature: second derivative of the distance with the point, shape (3, 3), 1/m.
+    """
+
+    value: float
+    slope: float
+    bend: float
+    normal: FloatArray
+    curvature: FloatArray
+
+
+def distance_along(
+    obstacle: scenes.ObstacleRecord, position: FloatArray, first: FloatArray, second: FloatArray
+) -> DistanceAlong:
+    """Distance of a curve r from an obstacle at one of its points: d, n·r′ and r′·∇²d r′ + n·r″.
+
+    Args:
+        obstacle: the obstacle.
+        position: the point, shape (3,), m.
+        first: derivative of the curve with its parameter, shape (3,), m.
+        second: second derivative, shape (3,), m.
+    """
+    distance, gradient, curvature = (part.full() for part in surface(obstacle)(position))
+    normal = gradient[:, 0]
+    slope = float(normal @ first)
+    bend = float(first @ curvature @ first + normal @ second)
+    return DistanceAlong(float(distance[0, 0]), slope, bend, normal, curvature)

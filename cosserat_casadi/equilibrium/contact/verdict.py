@@ -16,7 +16,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
 from cosserat_casadi.equilibrium.contact.settle import Found
 from cosserat_casadi.equilibrium.contact.state import Touch
-from cosserat_casadi.equilibrium.contact.surfaces import surface
+from cosserat_casadi.equilibrium.contact.surfaces import distance_along
 from cosserat_casadi.equilibrium.judge import stability_note
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.equilibrium.stability import admissible_eigenvalues, restricted, stability_of, variations
@@ -148,7 +148,7 @@ def _eigenvalues(found: Found) -> FloatArray:
 
 
 def _gap_curvature(found: Found, touch: Touch) -> float:
-    """Second derivative of the gap with X at a point of contact, over the length: r′·∇²d r′ + n·r″."""
+    """Second derivative of the gap with X at a point of contact, over the length."""
     X = np.array([touch.start])
     pose = found.solution.pose(X, touch.rod)
     strain = found.solution.strain(X, touch.rod)[0]
@@ -156,5 +156,5 @@ def _gap_curvature(found: Found, touch: Touch) -> float:
     tangent = length * pose.rotation[0] @ strain[3:]
     # The rate of the extension is along the tangent, on which the normal stands.
     bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])
-    _, normal, second = (part.full() for part in surface(found.placed.obstacle(touch.obstacle))(pose.position[0]))
-    return float(tangent @ second @ tangent + normal[:, 0] @ bend) / length
+    distance = distance_along(found.placed.obstacle(touch.obstacle), pose.position[0], tangent, bend)
+    return distance.bend / length
