@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distance_from
+from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.grid import Grid
@@ -204,8 +204,7 @@ class Facing:
     def gaps(self, nodes: FloatArray) -> FloatArray:
         """Gaps at the sections looked at, over the length, shape (k,)."""
         positions = self._looking @ nodes
-        distances = distance_from(self.obstacle).map(len(positions))(positions.T).full()[0]
-        return np.asarray(distances - self._looked_radii) / self.length
+        return np.asarray(distances(self.obstacle, positions) - self._looked_radii) / self.length
 
     def at(self, nodes: FloatArray, X: float) -> Gap:
         """The gap at a section, a little beyond the ends of the rod too."""

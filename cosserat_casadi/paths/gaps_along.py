@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distance_from
+from cosserat_casadi.equilibrium.contact.surfaces import distance_along, distances
 from cosserat_casadi.maths import chebyshev
 from cosserat_casadi.maths.typing import FloatArray
 
@@ -55,16 +55,15 @@ class GapsAlong:
         """Distances there, shape (E, k)."""
         X = self.abscissae(local)
         positions = chebyshev.interpolation_matrix(self._intervals, local) @ self.positions
-        distances = distance_from(self.obstacle).map(X.size)(positions.reshape(-1, 3).T).full()[0]
-        return np.asarray((distances.reshape(X.shape) - self._radius(X)) / self.length)
+        found = distances(self.obstacle, positions.reshape(-1, 3)).reshape(X.shape)
+        return np.asarray((found - self._radius(X)) / self.length)
 
     def distances(self, X: FloatArray) -> FloatArray:
         """Distances at abscissae X, shape (k,)."""
         elements, local = self._located(X)
         weights = chebyshev.interpolation_matrix(self._intervals, local)
         positions = np.einsum("kn,knj->kj", weights, self.positions[elements])
-        distances = distance_from(self.obstacle).map(len(X))(positions.T).full()[0]
-        return np.asarray((distances - self._radius(X)) / self.length)
+        return np.asarray((distances(self.obstacle, positions) - self._radius(X)) / self.length)
 
     def _located(self, X: FloatArray) -> tuple[npt.NDArray[np.int64], FloatArray]:
         """The element of each abscissa, and the place in it, in [0, 1]; an end is of the element that it ends."""

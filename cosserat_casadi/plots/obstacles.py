@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cosserat_casadi.equilibrium.contact.gaps import touching_points
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from
+from cosserat_casadi.equilibrium.contact.surfaces import distances
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -63,8 +63,7 @@ def _draw_cut(canvas: Canvas, obstacle: ObstacleRecord, shown: FloatArray) -> No
     points[:, :, up] = rows[:, None]
     points[:, :, across] = across_at
     world = points.reshape(-1, 3) @ canvas.view_axes
-    distance = distance_from(obstacle).map(len(world))(world.T)
-    values = distance.full().reshape(RESOLUTION, RESOLUTION)
+    values = distances(obstacle, world).reshape(RESOLUTION, RESOLUTION)
     if not np.any(values < 0.0):
         return
     inside = [min(float(values.min()), -1e-12), 0.0]

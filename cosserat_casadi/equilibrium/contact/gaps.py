@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.surfaces import distance_from, surface
+from cosserat_casadi.equilibrium.contact.surfaces import distances, surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.typing import FloatArray
@@ -44,8 +44,7 @@ def section_gaps(
     obstacle: scenes.ObstacleRecord, properties: RodProperties, positions: FloatArray, X: FloatArray
 ) -> FloatArray:
     """Distances of a rod's sections at abscissae X from an obstacle, shape (k,), m, for positions of shape (k, 3)."""
-    distances = distance_from(obstacle).map(len(X))(positions.T)
-    return np.asarray(distances.full()[0] - section_radius(properties, X))
+    return np.asarray(distances(obstacle, positions) - section_radius(properties, X))
 
 
 def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRecord) -> float:
@@ -57,8 +56,7 @@ def body_gap(solution: Solution, body: scenes.Body, obstacle: scenes.ObstacleRec
 
 def ball_gaps(obstacle: scenes.ObstacleRecord, radius: float, positions: FloatArray) -> FloatArray:
     """Distances of a ball at positions (k, 3) from an obstacle, shape (k,), m."""
-    distances = distance_from(obstacle).map(len(positions))(positions.T)
-    return np.asarray(distances.full()[0] - radius)
+    return np.asarray(distances(obstacle, positions) - radius)
 
 
 def ball_radius(body: scenes.Body) -> float:

@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import casadi as ca
+import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
@@ -24,6 +25,12 @@ def surface(obstacle: scenes.ObstacleRecord) -> ca.Function:
     """Point ↦ distance from an obstacle, its gradient and its second derivative."""
     function: ca.Function = SURFACES[obstacle.kind].function(obstacle)
     return function
+
+
+def distances(obstacle: scenes.ObstacleRecord, positions: FloatArray) -> FloatArray:
+    """Distances of points of shape (k, 3) from an obstacle, shape (k,), m."""
+    found = distance_from(obstacle).map(len(positions))(positions.T)
+    return np.asarray(found.full()[0])
 
 
 class DistanceAlong(NamedTuple):
