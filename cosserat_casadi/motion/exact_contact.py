@@ -18,11 +18,11 @@ import numpy as np
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.motion.contact_sections import Facing, facings
-from cosserat_casadi.motion.moving_inputs import Piece
+from cosserat_casadi.motion.moving_inputs import InputState, Piece
 from cosserat_casadi.motion.restart import ContactEvent, Restart
 from cosserat_casadi.motion.touching import Follower, Touch, Touches, with_touches
 from cosserat_casadi.numerics.complementarity import active_constraints
-from cosserat_casadi.numerics.consistent_start import consistent_start, impact
+from cosserat_casadi.numerics.consistent_start import ConsistentStart, consistent_start, impact
 from cosserat_casadi.numerics.guards import Guards
 from cosserat_casadi.numerics.motion_equations import Instant, MotionEquations
 
@@ -43,6 +43,9 @@ PUSH = 1e-10
 
 FORCE, END, BEND, GAP = range(4)
 """What a guard is of: a force, a place at the end of the rod, the bend of a gap, the gaps of what does not touch."""
+
+TINY = float(np.finfo(np.float64).tiny)
+"""Least number to divide by."""
 
 
 @dataclass(frozen=True)
@@ -122,37 +125,51 @@ class ExactContacts:
             interval: time after it in which the inputs are smooth, s.
         """
         size = self.model.size
-        inputs = piece.at(at.time).value
-        x = at.x[:size]
-        before = Instant(at.time, x, at.v[:size], at.a[:size])
-        places, gaps = Follower(self.facings, phases).gaps(x, inputs)
+        before = Instant(at.time, at.x[:size], at.v[:size], at.a[:size])
+        stretch = _Stretch(self, plain, piece, before, interval)
+        known = self._known(phases, guard, before, stretch.inputs.value)
+        if known.lying is not None:
+            return stretch.stopped((), self._lies_down(known.lying, at.time))
+        return self._struck(stretch, known)
+
+    def _known(self, phases: Touches, guard: int | None, before: Instant, inputs: FloatArray) -> _Known:
+        """What a guard that came to zero makes of contacts that there were.
+
+        Args:
+            phases: these contacts.
+            guard: number of the guard; None for a start, or another piece of the inputs.
+            before: state before the event.
+            inputs: at its time.
+        """
+        places, gaps = Follower(self.facings, phases).gaps(before.x, inputs)
         held = [touch._replace(place=place) for touch, place in zip(phases, places, strict=True)]
-        events: list[ContactEvent] = []
-        left: list[Touch] = []
         kind, number = _guarded(guard, len(phases))
         if kind == FORCE:
-            left = [held.pop(number)]
-            events.append(self._event("lift_off", at.time, left[0]))
-        flat = kind == BEND
+            left = held.pop(number)
+            return _Known(tuple(held), (left,), (self._event("lift_off", before.time, left),))
+        if kind == BEND:
+            return _Known(tuple(held), lying=held[number])
         if kind == END:
             # An end that is left where the gap is flat leaves no section for another.
-            flat = not held[number].slides and gaps[number].bend <= FLATTEST
-            held[number] = _past_end(held[number])
-            events.append(
-                self._event("slide_from_end" if held[number].slides else "slide_to_end", at.time, held[number])
-            )
-        if flat:
-            start = consistent_start(plain, at.time, x, before.v, interval)
-            return Restart(start, (), stalled=self._lies_down(held[number], at.time))
-        touching = self._touching(x, inputs, (*held, *left))
-        new = touching[len(held) + len(left) :]
-        stretch = _Stretch(self, plain, piece, before, interval)
+            is_flat = not held[number].slides and gaps[number].bend <= FLATTEST
+            moved = _past_end(held[number])
+            held[number] = moved
+            if is_flat:
+                return _Known(tuple(held), lying=moved)
+            name = "slide_from_end" if moved.slides else "slide_to_end"
+            return _Known(tuple(held), events=(self._event(name, before.time, moved),))
+        return _Known(tuple(held))
+
+    def _struck(self, stretch: _Stretch, known: _Known) -> Restart:
+        """How a motion goes on after what touches anew has struck."""
+        before = stretch.before
+        touching = self._touching(before.x, stretch.inputs.value, (*known.held, *known.left))
+        new = touching[len(known.held) + len(known.left) :]
         after = stretch.after_impact(touching)
         if after is None:
-            # Nothing is decided: the motion ends here, as it was.
-            start = consistent_start(plain, at.time, x, before.v, interval)
-            return Restart(start, (), events=tuple(events), stalled=self._undecided(touching, at.time))
+            return stretch.stopped(known.events, self._undecided(touching, before.time))
         v, impulses, remaining = after
+        events = list(known.events)
         lost = 0.0
         for touch, speed in zip(touching, stretch.rates(touching, before.v), strict=True):
             facing = self.facings[touch.facing]
@@ -161,18 +178,15 @@ class ExactContacts:
             energy = max(0.0, float(-0.5 * impulse * speed * facing.length))
             lost += energy
             if touch in new and impulse > 0.0:
-                events.append(self._event("impact", at.time, touch, energy, impulse))
+                events.append(self._event("impact", before.time, touch, energy, impulse))
         work = stretch.kinetic(v) - stretch.kinetic(before.v) + lost if stretch.driven else 0.0
-        candidates = tuple(touch for touch in remaining if touch not in left)
+        candidates = tuple(touch for touch in remaining if touch not in known.left)
         stalled = None
         pressing = stretch.pressing(candidates, v)
         if pressing is None:
-            stalled = self._undecided(candidates, at.time)
+            stalled = self._undecided(candidates, before.time)
             pressing = ()
-        start = consistent_start(
-            self.equations(plain, piece, pressing), at.time, _padded(x, pressing), _padded(v, pressing), interval
-        )
-        return Restart(start, pressing, lost, work, tuple(events), stalled)
+        return Restart(stretch.start(v, pressing), pressing, lost, work, tuple(events), stalled)
 
     def _touching(self, x: FloatArray, inputs: FloatArray, known: Sequence[Touch]) -> Touches:
         """Known contacts, and all others that touch at a state."""
@@ -204,6 +218,23 @@ class ExactContacts:
 
 
 @dataclass(frozen=True)
+class _Known:
+    """Contacts that there were before an event.
+
+    Attributes:
+        held: those that go on, where they are at the event.
+        left: the one that lifts off, if one does.
+        events: of them.
+        lying: the one whose rod begins to lie down; None where none does.
+    """
+
+    held: Touches
+    left: Touches = ()
+    events: tuple[ContactEvent, ...] = ()
+    lying: Touch | None = None
+
+
+@dataclass(frozen=True)
 class _Stretch:
     """The beginning of a stretch of a motion.
 
@@ -222,9 +253,29 @@ class _Stretch:
     interval: float
 
     @property
+    def inputs(self) -> InputState:
+        """Inputs at the event, with their rates and accelerations."""
+        return self.piece.at(self.before.time)
+
+    @property
     def driven(self) -> bool:
         """Whether inputs move at the event: a base that does takes part in an impact."""
-        return bool(np.any(self.piece.at(self.before.time).rate))
+        return bool(np.any(self.inputs.rate))
+
+    def stopped(self, events: tuple[ContactEvent, ...], stalled: str) -> Restart:
+        """The end of a motion, with everything as it was, because nothing is decided.
+
+        Args:
+            events: changes of contact until then.
+            stalled: why.
+        """
+        return Restart(self.start(self.before.v, ()), (), events=events, stalled=stalled)
+
+    def start(self, v: FloatArray, pressing: Touches) -> ConsistentStart:
+        """Accelerations and forces at some velocities while some sections press."""
+        equations = self.contacts.equations(self.plain, self.piece, pressing)
+        x = _padded(self.before.x, pressing)
+        return consistent_start(equations, self.before.time, x, _padded(v, pressing), self.interval)
 
     def after_impact(self, touching: Touches) -> tuple[FloatArray, dict[Touch, float], Touches] | None:
         """Velocities after an impact, its impulses, and what still touches; None where nothing settles it.
@@ -238,7 +289,6 @@ class _Stretch:
             return self.before.v, {}, ()
         speeds = self.rates(touching, self.before.v)
         still = STILL * max(float(np.abs(speeds).max()), 1.0 / self.interval)
-
         if speeds.min() >= -still:
             return self.before.v, dict.fromkeys(touching, 0.0), self._staying(touching, speeds, still)
 
@@ -270,14 +320,12 @@ class _Stretch:
         if not candidates:
             return ()
         size = self.plain.size
-        turning = self._follower(candidates).rates(self.before.x, v, self._inputs)[1]
+        turning = self._follower(candidates).rates(self.before.x, v, self.inputs)[1]
         by_unknowns = self._gradients(candidates)
 
         def solve(chosen: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:
             pressed = tuple(candidates[k] for k in chosen)
-            own = self.contacts.equations(self.plain, self.piece, pressed)
-            x = _padded(self.before.x, pressed)
-            start = consistent_start(own, self.before.time, x, _padded(v, pressed), self.interval)
+            start = self.start(v, pressed)
             opening = by_unknowns @ start.instant.a[:size] + turning
             opening[list(chosen)] = 0.0
             forces = start.instant.x[size:]
@@ -291,7 +339,7 @@ class _Stretch:
 
     def kinetic(self, v: FloatArray) -> float:
         """Kinetic energy, J."""
-        value, rate, *_ = self.piece.at(self.before.time)
+        value, rate, *_ = self.inputs
         kinetic, *_ = self.contacts.model.energies(self.before.x, v, value, rate)
         return float(kinetic)
 
@@ -308,22 +356,13 @@ class _Stretch:
 
     def rates(self, touches: Touches, v: FloatArray) -> FloatArray:
         """Rates of the gaps of some sections, shape (m,), 1/s."""
-        return self._follower(touches).rates(self.before.x, v, self._inputs)[0]
+        return self._follower(touches).rates(self.before.x, v, self.inputs)[0]
 
     def _gradients(self, touches: Touches) -> FloatArray:
-        return np.array(self._follower(touches).state(self.before.x, self._inputs[0]).gradients)
+        return np.array(self._follower(touches).state(self.before.x, self.inputs.value).gradients)
 
     def _follower(self, touches: Touches) -> Follower:
         return Follower(self.contacts.facings, touches)
-
-    @property
-    def _inputs(self) -> Sequence[FloatArray]:
-        """Inputs with their rates and accelerations."""
-        return self.piece.at(self.before.time)
-
-
-TINY = float(np.finfo(np.float64).tiny)
-"""Least number to divide by."""
 
 
 def _padded(values: FloatArray, touches: Touches) -> FloatArray:
