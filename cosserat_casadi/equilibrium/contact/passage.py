@@ -61,9 +61,7 @@ def ball_is_inside_between(
         deepest: depth on the way up to which it is not inside.
     """
     way = float(np.linalg.norm(end - start))
-    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
-    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None]
-    gaps = ball_gaps(obstacle, radius, start + shares * (end - start))
+    gaps = ball_gaps(obstacle, radius, start + _shares(way, length)[:, None] * (end - start))
     return bool(gaps.min() < -deepest * length)
 
 
@@ -90,9 +88,19 @@ def is_inside_between(
     doubtful = ways > np.maximum(gaps_at_start, 0.0) + np.maximum(gaps_at_end, 0.0)
     if not doubtful.any():
         return False
-    looks = int(np.clip(ways[doubtful].max() / (STRIDE * properties.length), 1, MOST_LOOKS))
-    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None, None]
-    positions = start[doubtful] + shares * (end - start)[doubtful]
+    shares = _shares(float(ways[doubtful].max()), properties.length)
+    positions = start[doubtful] + shares[:, None, None] * (end - start)[doubtful]
     X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
     gaps = section_gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
     return bool(gaps.min() < -deepest * properties.length)
+
+
+def _shares(way: float, length: float) -> FloatArray:
+    """Shares of a way, without its ends, at which is looked, shape (looks,).
+
+    Args:
+        way: its length, m.
+        length: what it is relative to, m.
+    """
+    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
+    return np.linspace(0.0, 1.0, looks + 2)[1:-1]
