@@ -10,14 +10,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 
-import numpy as np
-
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.passage import DEEP, SECTIONS, is_inside_between
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.passage import DEEP, LookedAt, is_inside_between
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.outcome import Outcome
 
 
 @dataclass(frozen=True)
@@ -47,15 +43,14 @@ class SmoothBarriers:
         """
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._positions(rod, before, inputs[0])
-            end = self._positions(rod, after, inputs[1])
+            start = self._looked_at[rod].positions(before, inputs[0])
+            end = self._looked_at[rod].positions(after, inputs[1])
             assert obstacle.width is not None
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
         return False
 
-    def _positions(self, rod: str, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        outcome = Outcome.CONVERGED
-        shape = Solution(self.model, inputs, x, outcome, outcome.value, residual_norm=0.0, iterations=0)
-        return np.asarray(shape.pose(SECTIONS, rod).position)
+    @cached_property
+    def _looked_at(self) -> dict[str, LookedAt]:
+        return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}

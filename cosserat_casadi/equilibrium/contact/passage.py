@@ -6,12 +6,16 @@ obstacle, in an equilibrium that the rods could not have come to.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_gaps, ball_radius, body_pairs, pairs, section_gaps
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
 
 SECTIONS = DENSE
@@ -25,6 +29,34 @@ MOST_LOOKS = 400
 
 DEEP = 1e-3
 """Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
+
+
+@dataclass(frozen=True)
+class LookedAt:
+    """The sections of a rod that are looked at, of shapes that are asked for one after the other.
+
+    Attributes:
+        model: of the scene.
+        rod: name of the rod.
+    """
+
+    model: Model
+    rod: str
+
+    def positions(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Positions at the abscissae SECTIONS, shape (k, 3), m.
+
+        Args:
+            x: unknowns, shape (model.size,).
+            inputs: stacked inputs, shape (model.inputs.size,).
+        """
+        at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
+        return np.asarray(self._interpolation @ at_nodes.T)
+
+    @cached_property
+    def _interpolation(self) -> FloatArray:
+        """What takes values at the nodes to the sections, shape (k, nodes)."""
+        return self.model.discrete.rods[self.rod].grid.interpolation_matrix(SECTIONS)
 
 
 def passes_through(before: Solution, after: Solution) -> bool:
