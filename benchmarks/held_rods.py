@@ -27,6 +27,7 @@ def main(
     count: Annotated[int, typer.Option(help="Scenes.")] = 500,
     first: Annotated[int, typer.Option(help="Seed of the first.")] = 0,
     fixed: Annotated[bool, typer.Option("--fixed", help="Modes and nodes of a user too.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Processes; by default one for each core.")] = None,
 ) -> None:
     """Count the scenes that differ; exit code 1 if one does."""
     accuracies: list[Accuracy] = [{"tolerance": tolerance} for tolerance in TOLERANCES]
@@ -34,7 +35,7 @@ def main(
         accuracies = FIXED + accuracies
     seeds = range(first, first + count)
     different = []
-    with ProcessPoolExecutor() as pool:
+    with ProcessPoolExecutor(workers) as pool:
         verdicts = pool.map(partial(all_alike, accuracies=accuracies), seeds)
         shown = track(verdicts, "Scenes", count, disable=not sys.stdout.isatty())
         for seed, same in zip(seeds, shown, strict=True):
