@@ -244,6 +244,12 @@ class System:
         pose = self.body(body)
         return pose.rotation.T @ (positions - ca.repmat(pose.position, 1, positions.shape[1]))
 
+    def turned_to(self, body: str | None, vectors: Matrix) -> Matrix:
+        """World vectors, 3×k, in the axes of a body; as they are where that is None, the world."""
+        if body is None:
+            return vectors
+        return self.body(body).rotation.T @ vectors
+
     def poses(self, placed: PlacedConstraint) -> Poses:
         """The poses that a constraint reads."""
         section = self.section(placed.rod, placed.node)

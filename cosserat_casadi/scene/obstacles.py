@@ -151,9 +151,6 @@ def _misplaced_on_body(given: Table) -> Iterator[Fault]:
     if "damping" in given:
         problem = "contact with an obstacle on a body is not damped"
         yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
-    if "width" not in given:
-        problem = "missing: contact with an obstacle on a body is found where it is smooth"
-        yield Fault(("width",), problem, SMOOTH_FORM)
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:

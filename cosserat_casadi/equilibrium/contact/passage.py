@@ -9,7 +9,15 @@ from __future__ import annotations
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_gaps, ball_radius, body_pairs, pairs, section_gaps
+from cosserat_casadi.equilibrium.contact.gaps import (
+    DENSE,
+    ball_gaps,
+    ball_radius,
+    body_pairs,
+    pairs,
+    section_gaps,
+    seen_sections,
+)
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.rod.properties import RodProperties
@@ -30,8 +38,8 @@ DEEP = 1e-3
 def passes_through(before: Solution, after: Solution) -> bool:
     """Whether a section or a body is inside an obstacle on the straight way from one shape to the other."""
     for rod, obstacle in pairs(after.model.scene):
-        start = before.pose(SECTIONS, rod).position
-        end = after.pose(SECTIONS, rod).position
+        start = seen_sections(before, rod, obstacle, SECTIONS)
+        end = seen_sections(after, rod, obstacle, SECTIONS)
         if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end):
             return True
     for body, obstacle in body_pairs(after.model.scene):
@@ -79,7 +87,7 @@ def is_inside_between(
     Args:
         obstacle: the obstacle.
         properties: of the rod.
-        start: positions at the abscissae SECTIONS, shape (k, 3), m.
+        start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m.
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside.
     """
