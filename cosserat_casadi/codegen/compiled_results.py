@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from cosserat_casadi.codegen.status import OUTCOMES
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.outcome import Outcome
 
+Fields = Sequence[tuple[str, type[Any]]]
+"""Names and types of the members of a struct."""
+
 
 class Info(ctypes.Structure):
     """The struct in C that says how a solve ended."""
 
-    _fields_ = (
+    _fields_: ClassVar[Fields] = (
         ("status", ctypes.c_int),
         ("iterations", ctypes.c_int),
         ("jacobians", ctypes.c_int),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from cosserat_casadi.codegen.motion_status import STATUSES
 from cosserat_casadi.codegen.names import Names
@@ -16,24 +16,24 @@ CONTACT_OUTCOMES = tuple(Outcome)
 
 
 def status_words(names: Names) -> dict[str, str]:
-    """What the templates say of statuses: all of it follows from the outcomes."""
-    symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in OUTCOMES}
-    return {
-        "status_lines": _enumerators({symbol: outcome.value for outcome, symbol in symbols.items()}),
-        "status_names": "\n".join(f"#define SOLVER_{outcome.name} {symbols[outcome]}" for outcome in OUTCOMES),
-        "text_cases": _cases({symbols[outcome]: outcome.value for outcome in OUTCOMES}),
-        "label_cases": _cases({symbols[outcome]: outcome.label for outcome in OUTCOMES}),
-    }
+    """What the templates of the solver say of statuses."""
+    return _outcome_words(names, OUTCOMES, "SOLVER")
 
 
 def contact_status_words(names: Names) -> dict[str, str]:
     """What the templates of exact contact say of statuses."""
-    symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in CONTACT_OUTCOMES}
+    return _outcome_words(names, CONTACT_OUTCOMES, "CONTACT")
+
+
+def _outcome_words(names: Names, outcomes: Sequence[Outcome], prefix: str) -> dict[str, str]:
+    """Statuses of outcomes, which sources that are alike in all folders call by a prefix of their own."""
+    symbols = {outcome: f"{names.macro}_{outcome.name}" for outcome in outcomes}
+    defined = [f"#define {prefix}_{outcome.name} {symbol}" for outcome, symbol in symbols.items()]
     return {
         "status_lines": _enumerators({symbol: outcome.value for outcome, symbol in symbols.items()}),
-        "status_names": "\n".join(f"#define CONTACT_{outcome.name} {symbols[outcome]}" for outcome in CONTACT_OUTCOMES),
-        "text_cases": _cases({symbols[outcome]: outcome.value for outcome in CONTACT_OUTCOMES}),
-        "label_cases": _cases({symbols[outcome]: outcome.label for outcome in CONTACT_OUTCOMES}),
+        "status_names": "\n".join(defined),
+        "text_cases": _cases({symbol: outcome.value for outcome, symbol in symbols.items()}),
+        "label_cases": _cases({symbol: outcome.label for outcome, symbol in symbols.items()}),
     }
 
 

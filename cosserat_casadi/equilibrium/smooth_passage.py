@@ -11,12 +11,9 @@ from functools import cached_property
 from math import isfinite
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import seen_sections
-from cosserat_casadi.equilibrium.contact.passage import DEEP, SECTIONS, is_inside_between
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.passage import DEEP, LookedAt, is_inside_between
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.numerics.outcome import Outcome
 
 
 @dataclass(frozen=True)
@@ -46,16 +43,14 @@ class SmoothBarriers:
         """
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._positions(rod, obstacle, before, inputs[0])
-            end = self._positions(rod, obstacle, after, inputs[1])
+            start = self._looked_at[rod].positions(obstacle, before, inputs[0])
+            end = self._looked_at[rod].positions(obstacle, after, inputs[1])
             assert obstacle.width is not None
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):
                 return True
         return False
 
-    def _positions(self, rod: str, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Positions of the sections that are looked at, as the obstacle sees them, shape (k, 3), m."""
-        outcome = Outcome.CONVERGED
-        shape = Solution(self.model, inputs, x, outcome, outcome.value, residual_norm=0.0, iterations=0)
-        return seen_sections(shape, rod, obstacle, SECTIONS)
+    @cached_property
+    def _looked_at(self) -> dict[str, LookedAt]:
+        return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cosserat_casadi.codegen.compiled_results import Info
 from cosserat_casadi.codegen.compiler import Progress, find_compiler, shared_object
 from cosserat_casadi.codegen.contact.sources import VERBATIM
 from cosserat_casadi.codegen.manifest import ARRANGEMENTS, MANIFEST, is_in_contact, read_manifest
@@ -28,15 +29,10 @@ from cosserat_casadi.numerics.outcome import Outcome
 POSE_SIZE = 7
 
 
-class ContactInfo(ctypes.Structure):
-    """The struct in C that says how a call ended."""
+class ContactInfo(Info):
+    """The struct in C that says how a call ended: what there is of every solve, then what there is of contact."""
 
     _fields_ = (
-        ("status", ctypes.c_int),
-        ("iterations", ctypes.c_int),
-        ("jacobians", ctypes.c_int),
-        ("residual_norm", ctypes.c_double),
-        ("load_factor", ctypes.c_double),
         ("arrangement", ctypes.c_int),
         ("tries", ctypes.c_int),
         ("parts", ctypes.c_int),

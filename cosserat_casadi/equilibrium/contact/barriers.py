@@ -12,8 +12,7 @@ from math import isfinite
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_radius, body_gap, body_pairs, gap_along, pairs
-from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions
-from cosserat_casadi.equilibrium.contact.passage import SECTIONS, ball_is_inside_between, is_inside_between
+from cosserat_casadi.equilibrium.contact.passage import LookedAt, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
@@ -59,8 +58,8 @@ class Barriers:
         """Whether a rod or a body comes near the middle of one on the way between two shapes, given by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._positions(rod, obstacle, before)
-            end = self._positions(rod, obstacle, after)
+            start = self._looked_at[rod].positions(obstacle, before, self.inputs)
+            end = self._looked_at[rod].positions(obstacle, after, self.inputs)
             if is_inside_between(obstacle, properties, start, end, self._deepest(rod, obstacle)):
                 return True
         for body, obstacle in self.watched_bodies:
@@ -85,15 +84,8 @@ class Barriers:
         return rods_sink or bodies_sink
 
     @cached_property
-    def _interpolation(self) -> dict[str, FloatArray]:
-        """For each rod that is watched what takes values at its nodes to the sections that are looked at."""
-        rods = self.model.discrete.rods
-        return {rod: rods[rod].grid.interpolation_matrix(SECTIONS) for rod, _ in self.watched}
-
-    def _positions(self, rod: str, obstacle: scenes.ObstacleRecord, x: FloatArray) -> FloatArray:
-        """Positions of the sections that are looked at, as the obstacle sees them, shape (k, 3), m."""
-        at_nodes = self.model.fields[rod](x, self.inputs)[0].full()
-        return seen_positions(self._shape(x), obstacle, self._interpolation[rod] @ at_nodes.T)
+    def _looked_at(self) -> dict[str, LookedAt]:
+        return {rod: LookedAt(self.model, rod) for rod, _ in self.watched}
 
     def _deepest(self, rod: str, obstacle: scenes.ObstacleRecord) -> float:
         """Depth that is admitted, relative to the length of the rod."""

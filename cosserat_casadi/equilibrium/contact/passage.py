@@ -6,6 +6,9 @@ obstacle, in an equilibrium that the rods could not have come to.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from cosserat_casadi import scene as scenes
@@ -18,8 +21,10 @@ from cosserat_casadi.equilibrium.contact.gaps import (
     section_gaps,
     seen_sections,
 )
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
+from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.typing import FloatArray
+from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
 
 SECTIONS = DENSE
@@ -33,6 +38,39 @@ MOST_LOOKS = 400
 
 DEEP = 1e-3
 """Depth on the way, relative to the length, that is more than the chord of a rod that slides along an obstacle."""
+
+
+@dataclass(frozen=True)
+class LookedAt:
+    """The sections of a rod that are looked at, of shapes that are asked for one after the other.
+
+    Attributes:
+        model: of the scene.
+        rod: name of the rod.
+    """
+
+    model: Model
+    rod: str
+
+    def positions(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Positions at the abscissae SECTIONS, in the axes that an obstacle is given in, shape (k, 3), m.
+
+        Args:
+            obstacle: what sees them.
+            x: unknowns, shape (model.size,).
+            inputs: stacked inputs, shape (model.inputs.size,).
+        """
+        at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
+        in_world = np.asarray(self._interpolation @ at_nodes.T)
+        if obstacle.body is None:
+            return in_world
+        position, quaternion, rotation = (part.full() for part in self.model.body[obstacle.body](x, inputs))
+        return in_axes_of(Pose(position.T, rotation[None], quaternion.T), in_world)
+
+    @cached_property
+    def _interpolation(self) -> FloatArray:
+        """What takes values at the nodes to the sections, shape (k, nodes)."""
+        return self.model.discrete.rods[self.rod].grid.interpolation_matrix(SECTIONS)
 
 
 def passes_through(before: Solution, after: Solution) -> bool:
@@ -69,9 +107,7 @@ def ball_is_inside_between(
         deepest: depth on the way up to which it is not inside.
     """
     way = float(np.linalg.norm(end - start))
-    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
-    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None]
-    gaps = ball_gaps(obstacle, radius, start + shares * (end - start))
+    gaps = ball_gaps(obstacle, radius, start + _shares(way, length)[:, None] * (end - start))
     return bool(gaps.min() < -deepest * length)
 
 
@@ -98,9 +134,19 @@ def is_inside_between(
     doubtful = ways > np.maximum(gaps_at_start, 0.0) + np.maximum(gaps_at_end, 0.0)
     if not doubtful.any():
         return False
-    looks = int(np.clip(ways[doubtful].max() / (STRIDE * properties.length), 1, MOST_LOOKS))
-    shares = np.linspace(0.0, 1.0, looks + 2)[1:-1, None, None]
-    positions = start[doubtful] + shares * (end - start)[doubtful]
+    shares = _shares(float(ways[doubtful].max()), properties.length)
+    positions = start[doubtful] + shares[:, None, None] * (end - start)[doubtful]
     X = np.broadcast_to(SECTIONS[doubtful], positions.shape[:2])
     gaps = section_gaps(obstacle, properties, positions.reshape(-1, 3), X.ravel())
     return bool(gaps.min() < -deepest * properties.length)
+
+
+def _shares(way: float, length: float) -> FloatArray:
+    """Shares of a way, without its ends, at which is looked, shape (looks,).
+
+    Args:
+        way: its length, m.
+        length: what it is relative to, m.
+    """
+    looks = int(np.clip(way / (STRIDE * length), 1, MOST_LOOKS))
+    return np.linspace(0.0, 1.0, looks + 2)[1:-1]
