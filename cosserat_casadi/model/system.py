@@ -232,6 +232,23 @@ class System:
         """World pose of a floating frame."""
         return self.frame_poses[name].pose
 
+    def body(self, name: str) -> Pose:
+        """World pose of a body."""
+        return self.frame(FrameName("body", name))
+
+    def seen_from(self, body: str | None, positions: Matrix) -> Matrix:
+        """World positions, 3×k in m, in the axes of a body; as they are where that is None, the world."""
+        if body is None:
+            return positions
+        pose = self.body(body)
+        return pose.rotation.T @ (positions - ca.repmat(pose.position, 1, positions.shape[1]))
+
+    def turned_to(self, body: str | None, vectors: Matrix) -> Matrix:
+        """World vectors, 3×k, in the axes of a body; as they are where that is None, the world."""
+        if body is None:
+            return vectors
+        return self.body(body).rotation.T @ vectors
+
     def poses(self, placed: PlacedConstraint) -> Poses:
         """The poses that a constraint reads."""
         section = self.section(placed.rod, placed.node)
@@ -359,7 +376,8 @@ class System:
     def _rod_loads(self, rod: str) -> RodLoads:
         base = RodBase(self.base(rod).position, self._base_R_world(rod))
         ratio = ratio_of(self.discrete, rod, self.arguments)
-        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, self.motions.get(rod))
+        motion = self.motions.get(rod)
+        return RodLoads(self.discrete, rod, base, self.arguments.inputs, ratio, motion, self.body)
 
     def _rod(self, name: str) -> InverseGeometricModel:
         """Balance of a rod under its loads, the wrenches of its constraints, its actuators and its cables."""

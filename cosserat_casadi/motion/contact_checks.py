@@ -38,6 +38,12 @@ def untouchable(model: Model, simulation: Simulation) -> Iterator[Problem]:
     touching = {rod for rod, _ in pairs(model.scene)}
     if any(obstacle.bodies for obstacle in model.scene.obstacles):
         yield Problem("obstacles", "exact contact in motion is for rods, not for bodies", remedy)
+    moving = [obstacle.name for obstacle in model.scene.obstacles if obstacle.body is not None]
+    if moving:
+        what = (
+            f"exact contact in motion is with obstacles that stand still, not with those on bodies: {', '.join(moving)}"
+        )
+        yield Problem("obstacles", what, remedy)
     assembled = [rod for rod in touching if _is_assembled(model, rod)]
     if assembled:
         names = ", ".join(sorted(assembled))

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
@@ -141,8 +142,23 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
         if motion.model.discrete.unloaded.floating_base(name) is None:
             canvas.markers(lines[-1, :1], **CLAMP)
     draw_supports(canvas, motion.model.scene)
-    draw_surfaces(canvas, motion.model.scene.obstacles, shapes.points)
+    _draw_obstacles(canvas, motion, shapes, rows)
     _mark_contacts(canvas, motion, rows)
+
+
+def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: list[int]) -> None:
+    """Draw obstacles, those on bodies in each of the shapes that are drawn."""
+    obstacles = motion.model.scene.obstacles
+    draw_surfaces(canvas, [one for one in obstacles if one.body is None], shapes.points, {})
+    moving = [one for one in obstacles if one.body is not None]
+    for order, row in enumerate(rows):
+        share = PALEST + (1 - PALEST) * (order + 1) / len(rows)
+        bodies = {}
+        for name in {str(one.body) for one in moving}:
+            poses = motion.body(name)
+            at_row = poses.quaternion[[row]]
+            bodies[name] = Pose(poses.position[[row]], rotations(at_row), at_row)
+        draw_surfaces(canvas, moving, shapes.points, bodies, strength=share, named=row == rows[-1])
 
 
 def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:

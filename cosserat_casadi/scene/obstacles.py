@@ -49,11 +49,18 @@ class ObstacleRecord(Entry):
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
     """
 
-    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "body": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
+    body: str | None = Field(
+        None,
+        description="name of the body that it is fixed to and moves with, in whose axes it is given; it stands still "
+        "in the world when left out",
+    )
     rods: Names | None = Field(
-        None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named"
+        None,
+        description="names of the rods that may not enter it; all rods when neither rods nor bodies are named; with "
+        "body they must be named",
     )
     bodies: Names | None = Field(
         None,
@@ -98,7 +105,8 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """What says how a smooth contact pushes asks for its width."""
+        """What says how a smooth contact pushes asks for its width; one on a body for the rods that it concerns."""
+        yield from _misplaced_on_body(given)
         if "width" in given:
             return
         for key in SMOOTH_KEYS[1:]:
@@ -127,6 +135,22 @@ class ObstacleRecord(Entry):
             yield from _not_round(name, rod)
             if exact:
                 yield from _without_exact_contact(name, rod)
+
+
+def _misplaced_on_body(given: Table) -> Iterator[Fault]:
+    """What an obstacle that moves with a body does not go with."""
+    if "body" not in given:
+        return
+    if "rods" not in given:
+        # The rods that hold the body end at it, or in it: none is meant that is not named.
+        problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
+        yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
+    if "bodies" in given:
+        problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
+        yield Fault(("bodies",), problem, "leave bodies out, or leave body out")
+    if "damping" in given:
+        problem = "contact with an obstacle on a body is not damped"
+        yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -192,9 +216,10 @@ rods = ["finger"]
 """
 
     kind: Literal["plane"] = Field(description="half of space")
-    point: Vector = Field(description="a point of the plane in world axes, m")
+    point: Vector = Field(description="a point of the plane in world axes, or those of its body, m")
     normal: Direction = Field(
-        description="direction out of the obstacle in world axes, without unit; its length does not matter"
+        description="direction out of the obstacle in world axes, or those of its body, without unit; its length does "
+        "not matter"
     )
 
 
@@ -232,7 +257,7 @@ rods = ["finger"]
 """
 
     kind: Literal["sphere"] = Field(description="ball")
-    centre: Vector = Field(description="its centre in world axes, m")
+    centre: Vector = Field(description="its centre in world axes, or those of its body, m")
 
 
 @OBSTACLES.register
@@ -250,8 +275,8 @@ rods = ["finger"]
 """
 
     kind: Literal["capsule"] = Field(description="round bar")
-    start: Vector = Field(alias="from", description="start of its axis in world axes, m")
-    end: Vector = Field(alias="to", description="end of its axis in world axes, m")
+    start: Vector = Field(alias="from", description="start of its axis in world axes, or those of its body, m")
+    end: Vector = Field(alias="to", description="end of its axis in world axes, or those of its body, m")
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -287,7 +312,8 @@ rods = ["finger"]
 
     kind: Literal["lumen"] = Field(description="inside of a tube")
     points: Annotated[tuple[Vector, ...], NotEmpty()] = Field(
-        description="points that its line passes, a natural cubic spline over the distance between them, m"
+        description="points that its line passes in world axes, or those of its body, a natural cubic spline over the "
+        "distance between them, m"
     )
     radius: Radii = Field(description="its radius, one or one for each point, m")
 
