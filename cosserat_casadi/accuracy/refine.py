@@ -48,6 +48,7 @@ from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model, build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.rods import rod_properties
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.continuation import ContinuationSettings
@@ -106,9 +107,11 @@ def solve_scene(
         report: told the discretisation being solved.
 
     Raises:
-        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
+        SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
+            would have to hold a free rod.
     """
     refuse_tubes(scene)
+    refuse_held_by_contact(scene)
     if stable:
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))

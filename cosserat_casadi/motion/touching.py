@@ -1,7 +1,7 @@
 """Contacts in force during a stretch of a motion: their unknown forces, and what they add to the equations of motion.
 
-A contact is the stretch of a rod about the section where its gap to an obstacle is least. That least gap is a function
-of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
+A contact is a body, or the stretch of a rod about the section where its gap to an obstacle is least. That least gap is
+a function of the unknowns; while the contact lasts it is zero, and a force along its gradient, unknown, keeps it so.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cosserat_casadi.maths.typing import FloatArray
-from cosserat_casadi.motion.contact_sections import Facing, Gap
+from cosserat_casadi.motion.facing import Facing, Gap
 from cosserat_casadi.motion.moving_inputs import Piece
 from cosserat_casadi.numerics.motion_equations import MotionEquations
 
@@ -24,7 +24,7 @@ class Touch(NamedTuple):
     Attributes:
         facing: number of the rod and obstacle among those that may touch.
         place: abscissa X of the section that touches, where the contact was last looked at.
-        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod.
+        slides: whether it is the section whose gap is least, wherever that is; else it is an end of the rod, or a body.
     """
 
     facing: int
@@ -44,11 +44,13 @@ class State:
         places: abscissae, one for each.
         gaps: their gaps, over the length of their rods.
         gradients: derivatives of the gaps with the unknowns, shape (n,) each.
+        pushes: what a unit of each force does in the balances of the unknowns, shape (n,) each.
     """
 
     places: list[float]
     gaps: list[Gap]
     gradients: list[FloatArray]
+    pushes: list[FloatArray]
 
 
 class Follower:
@@ -85,7 +87,8 @@ class Follower:
         """The contacts, with gradients."""
         places, gaps = self.gaps(x, inputs)
         gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
-        return State(places, gaps, gradients)
+        pushes = [facing.shares * gradient for facing, gradient in zip(self.facings, gradients, strict=True)]
+        return State(places, gaps, gradients, pushes)
 
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².
@@ -105,7 +108,9 @@ class Follower:
 
 
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
-    """Equations of motion with the forces of contacts as further unknowns, in EI/ℓ², and their gaps as further rows.
+    """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
+
+    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it.
 
     Args:
         plain: those of the model.
@@ -119,8 +124,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         state = follower.state(x[:size], piece.at(t).value)
         rows = plain.residual(t, x[:size], v[:size], a[:size])
-        for force, gradient in zip(x[size:], state.gradients, strict=True):
-            rows = rows - force * gradient
+        for force, push in zip(x[size:], state.pushes, strict=True):
+            rows = rows - force * push
         return np.concatenate([rows, [gap.value for gap in state.gaps]])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -132,8 +137,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
             facing = follower.facings[number]
             gap = state.gaps[number]
             curvature = facing.hessian(x[:size], inputs, gap, slides=touch.slides)
-            stiffness[:size, :size] -= x[row] * curvature
-            stiffness[:size, row] = -state.gradients[number]
+            stiffness[:size, :size] -= x[row] * facing.shares[:, None] * curvature
+            stiffness[:size, row] = -state.pushes[number]
             stiffness[row, :size] = state.gradients[number]
         return stiffness, damping, mass
 
