@@ -98,11 +98,6 @@ class Facing(ABC):
         """Work of a unit of force along a unit of the gap, J."""
         return self.force_unit * self.length
 
-    @cached_property
-    def shares(self) -> FloatArray:
-        """This energy over that which each balance of the model is divided by, shape (n,)."""
-        return self.energy_unit / self.model.discrete.unknowns.units
-
     def nodes(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
         """World positions of the points, shape (M, 3), m."""
         return self.points.positions(x, inputs).reshape(-1, 3)

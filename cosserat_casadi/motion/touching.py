@@ -44,13 +44,11 @@ class State:
         places: abscissae, one for each.
         gaps: their gaps, over the length of their rods.
         gradients: derivatives of the gaps with the unknowns, shape (n,) each.
-        pushes: what a unit of each force does in the balances of the unknowns, shape (n,) each.
     """
 
     places: list[float]
     gaps: list[Gap]
     gradients: list[FloatArray]
-    pushes: list[FloatArray]
 
 
 class Follower:
@@ -87,8 +85,7 @@ class Follower:
         """The contacts, with gradients."""
         places, gaps = self.gaps(x, inputs)
         gradients = [facing.gradient(x, inputs, gap) for facing, gap in zip(self.facings, gaps, strict=True)]
-        pushes = [facing.shares * gradient for facing, gradient in zip(self.facings, gradients, strict=True)]
-        return State(places, gaps, gradients, pushes)
+        return State(places, gaps, gradients)
 
     def rates(self, x: FloatArray, v: FloatArray, inputs: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Rates of the gaps, 1/s, and second derivatives without accelerations of the unknowns, shape (m,) each, 1/s².
@@ -110,7 +107,9 @@ class Follower:
 def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> MotionEquations:
     """Equations of motion with the forces of contacts as further unknowns, and their gaps as further rows.
 
-    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it.
+    A force is in EI/ℓ² of its rod; of a body, of the stiffest and the longest rod that holds it. In whatever assembly
+    they are, gaps depend on the strains and on the base of their rod alone, or on the pose of their body: it does to
+    these balances, which are in units of the same energy, what its gap gains from these unknowns.
 
     Args:
         plain: those of the model.
@@ -124,8 +123,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
     def residual(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> FloatArray:
         state = follower.state(x[:size], piece.at(t).value)
         rows = plain.residual(t, x[:size], v[:size], a[:size])
-        for force, push in zip(x[size:], state.pushes, strict=True):
-            rows = rows - force * push
+        for force, gradient in zip(x[size:], state.gradients, strict=True):
+            rows = rows - force * gradient
         return np.concatenate([rows, [gap.value for gap in state.gaps]])
 
     def jacobians(t: float, x: FloatArray, v: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -137,8 +136,8 @@ def with_touches(plain: MotionEquations, follower: Follower, piece: Piece) -> Mo
             facing = follower.facings[number]
             gap = state.gaps[number]
             curvature = facing.hessian(x[:size], inputs, gap, slides=touch.slides)
-            stiffness[:size, :size] -= x[row] * facing.shares[:, None] * curvature
-            stiffness[:size, row] = -state.pushes[number]
+            stiffness[:size, :size] -= x[row] * curvature
+            stiffness[:size, row] = -state.gradients[number]
             stiffness[row, :size] = state.gradients[number]
         return stiffness, damping, mass
 

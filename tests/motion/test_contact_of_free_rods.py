@@ -176,3 +176,19 @@ def test_events_and_tips_converge_with_the_tolerance() -> None:
     assert errors[1] < 1e-6
     times = [abs(one.events[-1].time - exact.events[-1].time) for one in found]
     assert times[1] < 0.1 * times[0] + 1e-10
+
+
+def test_a_contact_that_leaves_an_end_goes_on_inside_the_rod() -> None:
+    """Steps leave the rate of its gap a little off zero, which is no lift-off."""
+    stuff = """
+material = { youngs_modulus = 1e9, poisson_ratio = 0.4, density = 1200.0 }
+section = { shape = "circle", radius = 5e-3 }
+"""
+    text = FREE.format(modes=3, along=0.0, duration=0.2, strain="planar", stuff=stuff, tangent="1, 0, 0.3")
+    scene = parse_scene(text + FLOOR.replace("-0.05", "-0.1"))
+    motion = simulate(build(scene.with_motion_inputs(), moving=True))
+    assert motion.converged, motion.message
+    kinds = [event.kind for event in motion.events]
+    assert kinds[:5] == ["impact", "lift_off", "impact", "slide_from_end", "lift_off"]
+    assert motion.events[3].place == 1.0
+    assert 0.6 < motion.events[4].place < 0.7
