@@ -42,6 +42,7 @@ from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.solve import NONE_STABLE, check_potential, noted_unstable
 from cosserat_casadi.model.build import build
 from cosserat_casadi.model.discretise import DEFAULT_MODES, discretise, nodes_for
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.numerics.outcome import Outcome
 from cosserat_casadi.numerics.progress import Progress, Report
@@ -91,9 +92,11 @@ def solve_scene(
         report: told the discretisation being solved.
 
     Raises:
-        SceneError: a value is refused, or a stable equilibrium is wanted under loads without a potential.
+        SceneError: a value is refused, a stable equilibrium is wanted under loads without a potential, or contact alone
+            would have to hold a free rod.
     """
     refuse_tubes(scene)
+    refuse_held_by_contact(scene)
     if stable:
         # Refused before anything is solved; whether there is a potential does not depend on the discretisation.
         coarsest = build(scene, discretise(scene, 1, 2))

@@ -22,6 +22,7 @@ from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.files import check_writable
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import build
+from cosserat_casadi.model.obstacle_checks import refuse_held_by_contact
 from cosserat_casadi.model.tube_checks import refuse_tubes
 from cosserat_casadi.scene import Scene
 from cosserat_casadi.scene.writing import scene_text
@@ -137,6 +138,7 @@ def plan_sweep(
         problems.append(Problem("--samples", f"must be at least 1, got {samples}"))
     try:
         refuse_tubes(scene)
+        refuse_held_by_contact(scene)
         plan = Plan(scene, table, variants_of(scene, table), output, samples, stability)
     except SceneError as error:
         problems += error.problems
