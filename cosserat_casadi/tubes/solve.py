@@ -55,16 +55,39 @@ def solve_tubes(scene: scenes.Scene, values: Values = None) -> TubeSolution:
         SceneError: the scene has no tubes, or an input is unknown or out of its range.
     """
     robot = robot_of(scene)
-    at = robot.packed(values)
+    return solve_inputs(TubeModels(robot), robot.packed(values))
+
+
+class TubeModels:
+    """Models of a robot by their number of steps, each made once."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.robot = robot
+        self._made: dict[int, TubeFunctions] = {}
+
+    def of(self, steps: int) -> TubeFunctions:
+        """The model with a number of steps."""
+        if steps not in self._made:
+            self._made[steps] = model_of(self.robot, steps)
+        return self._made[steps]
+
+
+def solve_inputs(models: TubeModels, at: FloatArray) -> TubeSolution:
+    """As :func:`solve_tubes`, for one set of inputs after the other.
+
+    Args:
+        models: of the robot.
+        at: all inputs, in their range.
+    """
     steps = FEWEST_STEPS
-    found = solve_at(model_of(robot, steps), at)
+    found = solve_at(models.of(steps), at)
     while True:
         steps *= 2
-        finer = solve_at(model_of(robot, steps), at)
+        finer = solve_at(models.of(steps), at)
         error = None
         if found.converged and finer.converged:
             error = tip_error(found, finer)
-        resolved = error is not None and error <= robot.tolerance
+        resolved = error is not None and error <= models.robot.tolerance
         lost = steps >= ENOUGH_STEPS and not found.converged and not finer.converged
         if resolved or lost or steps >= MOST_STEPS:
             return judged(finer, error)
@@ -92,7 +115,7 @@ def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
         start=model.robot.rotations(inputs).copy(),
     )
     end = follow(path)
-    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
 
 
 def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
@@ -108,13 +131,14 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
         start=start,
     )
     end = follow(path)
+    iterations = curved.iterations + end.iterations
     if end.outcome is Outcome.CONVERGED:
-        return solution_at(model, inputs, end.x, found=True)
+        return solution_at(model, inputs, end.x, found=True, iterations=iterations)
     # Where the robot snaps under its loads the way goes on beyond the folds.
     traced = trace(Curve(path, DETERMINANT, LOADING))
     if traced.outcome is PathOutcome.CONVERGED:
-        return solution_at(model, inputs, traced.points[-1].x, found=True)
-    return solution_at(model, inputs, end.x, found=False)
+        return solution_at(model, inputs, traced.points[-1].x, found=True, iterations=iterations)
+    return solution_at(model, inputs, end.x, found=False, iterations=iterations)
 
 
 def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -> TubeSolution:
@@ -124,10 +148,12 @@ def solution_near(model: TubeFunctions, inputs: FloatArray, start: FloatArray) -
         jacobian=lambda x: model.jacobian(x, inputs, 1.0)[0].full(),
     )
     end = newton(equations, start, NewtonSettings())
-    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED)
+    return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
 
 
-def solution_at(model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool) -> TubeSolution:
+def solution_at(
+    model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, found: bool, iterations: int = 0
+) -> TubeSolution:
     """Where a search of a model has ended, with the angle that the tubes miss their drives by; its error not estimated.
 
     Args:
@@ -135,10 +161,11 @@ def solution_at(model: TubeFunctions, inputs: FloatArray, x: FloatArray, *, foun
         inputs: of the robot.
         x: its unknowns.
         found: whether they are an equilibrium.
+        iterations: Newton steps of the search.
     """
     outcome = TubeOutcome.NOT_FOUND
     if found:
         outcome = TubeOutcome.CONVERGED
     residual = model.residual(x, inputs, 1.0).full()
     missed = float(np.abs(residual).max())
-    return TubeSolution(model, inputs, x, outcome, missed, None)
+    return TubeSolution(model, inputs, x, outcome, missed, None, iterations)
