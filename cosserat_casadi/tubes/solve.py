@@ -9,7 +9,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.numerics.arclength import ArcSettings, Curve
-from cosserat_casadi.numerics.continuation import Path, follow
+from cosserat_casadi.numerics.continuation import ContinuationResult, Path, PathPoint, follow
 from cosserat_casadi.numerics.events import DETERMINANT
 from cosserat_casadi.numerics.newton import Equations, NewtonSettings, newton
 from cosserat_casadi.numerics.outcome import Outcome
@@ -114,8 +114,31 @@ def solve_at(model: TubeFunctions, inputs: FloatArray) -> TubeSolution:
         # Straight tubes do not twist.
         start=model.robot.rotations(inputs).copy(),
     )
-    end = follow(path)
+    end = _followed(path)
     return solution_at(model, inputs, end.x, found=end.outcome is Outcome.CONVERGED, iterations=end.iterations)
+
+
+def _followed(path: Path) -> ContinuationResult:
+    """The end of a path, which passes no place where branches come close to each other from one to another.
+
+    Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step
+    comes to any of the three. The determinant has one sign along a branch. A path that cannot keep it is followed as it
+    goes: where tubes are opposed exactly, by symmetry, it leads to what is not stable.
+    """
+    rough = follow(path)
+    if rough.outcome is Outcome.CONVERGED and _sign(path, (rough.x, 1.0)) == _sign(path, (path.start, 0.0)):
+        return rough
+    careful = follow(replace(path, admits=lambda before, after: _sign(path, before) == _sign(path, after)))
+    if careful.outcome is not Outcome.CONVERGED:
+        return rough
+    return careful
+
+
+def _sign(path: Path, point: PathPoint) -> float:
+    """Sign of the determinant at a point of a path."""
+    jacobian = path.jacobian(*point)
+    assert isinstance(jacobian, np.ndarray)
+    return float(np.linalg.slogdet(jacobian)[0])
 
 
 def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution) -> TubeSolution:
@@ -130,7 +153,7 @@ def loaded_from(model: LoadedTubeModel, inputs: FloatArray, curved: TubeSolution
         rate=lambda x, t: np.ravel(model.input_rate(x, model.robot.with_loads(inputs, t), 1.0, change).full()),
         start=start,
     )
-    end = follow(path)
+    end = _followed(path)
     iterations = curved.iterations + end.iterations
     if end.outcome is Outcome.CONVERGED:
         return solution_at(model, inputs, end.x, found=True, iterations=iterations)

@@ -229,6 +229,23 @@ def test_an_unstable_equilibrium_has_a_negative_determinant(robot: Robot) -> Non
     assert not robot.in_python(opposed).stable
 
 
+@pytest.mark.parametrize("turn", [3.0, 3.1, 3.14])
+@pytest.mark.parametrize("reach", [0.14, 0.16, 0.24])
+def test_nearly_opposed_tubes_bend_to_the_side_they_are_turned_to(robot: Robot, turn: float, reach: float) -> None:
+    """The branch from straight tubes is the one that a robot is on which was turned there from aligned ones."""
+    inputs = {"inner.rotation": turn, "inner.translation": reach}
+    turned_there = robot.compiled.solve([0.0, 0.13, 0.0, reach])
+    for rotation in np.linspace(0.0, turn, 60)[1:]:
+        turned_there = robot.compiled.track([0.0, 0.13, rotation, reach], turned_there, derivatives=False)
+        assert turned_there.converged
+    found = robot.compiled.solve([0.0, 0.13, turn, reach])
+    assert_allclose(found.x, turned_there.x, rtol=0, atol=1e-8)
+    assert found.determinant > 0.0
+    in_python = solve_tubes(robot.scene, inputs)
+    assert in_python.stable
+    assert_allclose(in_python.x - in_python.robot.rotations(in_python.inputs), found.x, rtol=0, atol=1e-5)
+
+
 def test_too_few_steps_are_told(robot: Robot) -> None:
     """Two steps a piece are enough for some inputs only: those within tolerance of many steps, and not all of them."""
     tubes = robot.solution.robot

@@ -32,10 +32,53 @@ real tubes_determinant(const real *x, const real *inputs, solver_workspace *work
   return determinant_of(factors);
 }
 
+/* Where tubes are nearly opposed a robot may bend to either side, or stay between, which is not stable: a long step comes to
+   any of the three. Steps from straight tubes that keep the sign of the determinant, none of which twists the tubes by more
+   than SAME_BRANCH. Zero, and x as it was, where they do not lead to the inputs: tubes that are opposed exactly stay so. */
+static int solve_with_care(const real *inputs, real *x, workspace *work, solver_info *info) {
+  static const newton_limits limits = {
+      .max_iterations = MAX_ITERATIONS, .max_jacobians = MAX_ITERATIONS, .max_halvings = 0, .inexact = 0, .reuse_jacobian = 0};
+  path_point *point = work->points;
+  updated_jacobian *jacobian = work->updated_jacobians;
+  real *trial = work->points[1].x;
+  real step = (real)0.25;
+  memset(point, 0, sizeof *point);
+  for (int k = 0; k < MAX_STEPS && point->t < 1 && step >= MIN_STEP; k++) {
+    const real end = point->t + step > 1 ? 1 : point->t + step;
+    const loads at = {inputs, end};
+    memcpy(trial, point->x, sizeof point->x);
+    residual_at(trial, &at, work->points[1].residual, work);
+    const newton_result result = newton(&at, &limits, trial, work->points[1].residual, jacobian, work);
+    count_work(info, &result);
+    const int is_near = result.status == SOLVER_CONVERGED && shape_distance(trial, point->x) <= SAME_BRANCH;
+    if (!is_near || !linearise(trial, &at, &jacobian->factors, work) || !(determinant_of(&jacobian->factors) > 0)) {
+      step /= 2;
+      continue;
+    }
+    memcpy(point->x, trial, sizeof point->x);
+    point->t = end;
+    info->residual_norm = result.residual_norm;
+    step *= 2;
+  }
+  if (point->t < 1) return 0;
+  memcpy(x, point->x, sizeof point->x);
+  info->status = SOLVER_CONVERGED;
+  info->load_factor = 1;
+  return 1;
+}
+
 solver_status tubes_solve(const real *inputs, real *x, solver_workspace *work, solver_info *info) {
+  solver_info found = no_result();
   if (!in_range(inputs)) return out_of_range(info);
-  const solver_status end = solver_solve(inputs, x, work, info);
-  if (info && end == SOLVER_CONVERGED) info->determinant = tubes_determinant(x, inputs, work);
+  const int is_cold = !all_finite(x, N) || is_zero(x);
+  solver_status end = solver_solve(inputs, x, work, &found);
+  const int is_resolved = end != SOLVER_UNRESOLVED && end != SOLVER_NOT_FINITE;
+  if (end == SOLVER_CONVERGED) found.determinant = tubes_determinant(x, inputs, work);
+  if (is_cold && is_resolved && !(found.determinant > 0) && solve_with_care(inputs, x, work, &found)) {
+    end = finish(x, inputs, &found, &found, work);
+    found.determinant = tubes_determinant(x, inputs, work);
+  }
+  if (info) *info = found;
   return end;
 }
 
