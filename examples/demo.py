@@ -39,6 +39,7 @@ SCENES = (
     "rod_over_bar",
     "wire_in_vessel",
     "robot_leans_on_wall",
+    "finger_on_finger",
     "felt_loads",
     "concentric_tubes",
     "loaded_tubes",

@@ -43,8 +43,8 @@ class SmoothBarriers:
         """
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._looked_at[rod].positions(before, inputs[0])
-            end = self._looked_at[rod].positions(after, inputs[1])
+            start = self._looked_at[rod].positions(obstacle, before, inputs[0])
+            end = self._looked_at[rod].positions(obstacle, after, inputs[1])
             assert obstacle.width is not None
             allowed = DEEP + obstacle.width / properties.length
             if is_inside_between(obstacle, properties, start, end, allowed):

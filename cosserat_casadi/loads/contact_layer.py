@@ -56,6 +56,11 @@ class ContactLayerLoad(Load[ContactLayer]):
         """The origin of the body, about which it is a ball."""
         return BodyPoint() if load.body == body.name else None
 
+    def seen_from(self, load: ContactLayer) -> str | None:
+        """The body that the obstacle is fixed to."""
+        body: str | None = load.obstacle.body
+        return body
+
     def energy(self, load: ContactLayer, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """The energy k (w − g)₊⁴ / (12 w²), J/m, or J of a body."""
         width = load.obstacle.width

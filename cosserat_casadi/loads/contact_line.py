@@ -43,6 +43,11 @@ class ContactLineLoad(Load[ContactLine]):
         start, end = load.span
         return start, end
 
+    def seen_from(self, load: ContactLine) -> str | None:
+        """The body that the obstacle is fixed to."""
+        body: str | None = load.obstacle.body
+        return body
+
     def energy(self, load: ContactLine, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−λ d(r), J/m."""
         force = ca.mtimes(values["force"], section.data)

@@ -47,6 +47,11 @@ class ContactPointLoad(Load[ContactPoint]):
         """The origin of the body, about which it is a ball."""
         return BodyPoint() if load.body == body.name else None
 
+    def seen_from(self, load: ContactPoint) -> str | None:
+        """The body that the obstacle is fixed to."""
+        body: str | None = load.obstacle.body
+        return body
+
     def energy(self, load: ContactPoint, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """−N d(r), J."""
         energy: Matrix = -values["force"] * SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)

@@ -162,6 +162,13 @@ class Load(Kind, ABC, Generic[RecordType]):
         """How the load acts on a rigid body of the scene; None where it does not."""
         return None
 
+    def seen_from(self, load: RecordType) -> str | None:
+        """Name of the body in whose axes a load on rods is written, and which bears the opposite; None for the world.
+
+        Sections then have their pose, and their wrench, in the axes of that body.
+        """
+        return None
+
     def span(self, load: RecordType) -> tuple[Scalar, Scalar]:
         """Abscissae X between which a load per length acts; the whole rod by default."""
         return (0.0, 1.0)

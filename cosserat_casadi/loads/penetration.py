@@ -53,6 +53,11 @@ class PenetrationLoad(Load[Penetration]):
         """The origin of the body, about which it is a ball."""
         return BodyPoint() if load.body == body.name else None
 
+    def seen_from(self, load: Penetration) -> str | None:
+        """The body that the obstacle is fixed to."""
+        body: str | None = load.obstacle.body
+        return body
+
     def energy(self, load: Penetration, section: Section, values: Mapping[str, Matrix]) -> Matrix:
         """k/3 (ρ − d)³, J/m, or J of a body."""
         distance = SURFACES[load.obstacle.kind].distance(load.obstacle, section.position)

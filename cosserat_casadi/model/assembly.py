@@ -11,7 +11,8 @@ their unknowns. With u = (strains q, multipliers m, deviations d of frames, tens
 
                q                    m                  d                        τ
     rod        tangent              −δᵀ W              turn of dead loads,      ∂L/∂q / ℓ
-                                                       W that turns
+                                                       W that turns,
+                                                       loads seen from bodies
     constraint c_section δ          0                  c_base B, c_frame B      0
     frame      reaction of the      reactions          all that turns with it   0
                rods it carries
@@ -35,6 +36,7 @@ from cosserat_casadi.constraints.section_constraint import Variations
 from cosserat_casadi.maths.rotation import hat
 from cosserat_casadi.maths.typing import Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
+from cosserat_casadi.model.borne_loads import BorneLoad, borne_loads
 from cosserat_casadi.model.constraints import ASSEMBLED, PlacedConstraint
 from cosserat_casadi.model.discrete_scene import CableOfLength, DiscreteScene
 from cosserat_casadi.model.floating_frames import FloatingFrame, FrameName
@@ -167,7 +169,7 @@ class Assembly:
         """Residual of every cable of given length, at the load factor."""
         rows = []
         for cable in self.discrete.cables:
-            equation = self.system.cable_lengths[cable.tendon.name]
+            equation = self.system.actuators.cable_lengths[cable.tendon.name]
             rows.append(row_at(equation.residual, equation.tension, cable.compliance, self.load_factor))
         return rows
 
@@ -186,6 +188,8 @@ class Assembly:
             self._add_constraint_wrench(blocks, placed)
         for floating in self.discrete.unloaded.floating_rods:
             self._add_turned_loads(blocks, floating.name)
+        for borne in self._borne_loads:
+            self._add_borne_load(blocks, borne)
         for name in self.frames:
             self._add_balance(blocks, name)
         for cable in self.discrete.cables:
@@ -256,7 +260,18 @@ class Assembly:
             by_shift, _, _ = reaction.with_shift
             blocks.add(strains, deviation, by_shift @ base_R_world @ motion[3:, :])
 
+    def _add_borne_load(self, blocks: Blocks, borne: BorneLoad) -> None:
+        """What the motion of a body does to a rod that is pressed by an obstacle on it."""
+        strains = self.unknowns.strain(borne.rod)
+        deviation = self.discrete.deviation(borne.body)
+        blocks.add(strains, deviation, borne.residual_with_body @ self.frame_poses[borne.body].motion)
+
     # Rows of floating frames
+
+    @cached_property
+    def _borne_loads(self) -> list[BorneLoad]:
+        """Loads on rods whose opposite bodies bear, at the load factor."""
+        return list(borne_loads(self.system))
 
     @cached_property
     def _wrenches(self) -> dict[FrameName, Matrix]:
@@ -273,6 +288,8 @@ class Assembly:
                 wrenches[name] = wrenches[name] + self._rod_reaction(name)
             for load in self._body_loads[name]:
                 wrenches[name] = wrenches[name] + load.wrench
+        for borne in self._borne_loads:
+            wrenches[borne.body] = wrenches[borne.body] + borne.wrench
         return wrenches
 
     def _rod_reaction(self, name: FrameName) -> Matrix:
@@ -322,6 +339,11 @@ class Assembly:
             variations += self._rod_reaction_variations(name, by_motion)
         for load in self._body_loads[name]:
             by_motion[name] = by_motion[name] + load.variation
+        for borne in self._borne_loads:
+            for moved, derivative in borne.with_motions(name):
+                by_motion[moved] = by_motion[moved] + derivative
+            if borne.body == name:
+                variations.append((self.unknowns.strain(borne.rod), borne.wrench_with_strain))
         for moved, derivative in by_motion.items():
             by_deviation = derivative @ self.frame_poses[moved].motion
             variations.append((self.discrete.deviation(moved), by_deviation))
@@ -418,7 +440,7 @@ class Assembly:
 
     def _add_cable(self, blocks: Blocks, cable: CableOfLength) -> None:
         """Row of a cable of given length, and its tension's column in the residual of its rod."""
-        equation = self.system.cable_lengths[cable.tendon.name]
+        equation = self.system.actuators.cable_lengths[cable.tendon.name]
         strains = self.unknowns.strain(equation.rod)
         tension = self.discrete.tension(cable)
         blocks.add(strains, tension, equation.pull)

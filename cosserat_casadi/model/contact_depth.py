@@ -29,7 +29,7 @@ def _depth(system: System, layer: ContactLayer) -> Matrix:
         radii: Matrix | float = layer.radius
     else:
         assert layer.rod is not None, "a layer is in front of a rod or a body"
-        positions = _node_positions(system, layer.rod)
+        positions = system.seen_from(layer.obstacle.body, _node_positions(system, layer.rod))
         rod = system.discrete.rods[layer.rod]
         radii = as_matrix(section_radii(rod.properties, rod.grid.nodes_at(np.arange(rod.grid.size)))).T
     point = ca.SX.sym("point", 3)

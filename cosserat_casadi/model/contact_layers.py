@@ -92,8 +92,15 @@ def layer_ends(scene: scenes.Scene, rod: scenes.Rod) -> list[float]:
 
 
 def thinnest(scene: scenes.Scene) -> float:
-    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any."""
-    thicknesses = [obstacle.thickness for obstacle in scene.obstacles if obstacle.is_smooth]
+    """Thickness of the thinnest obstacle with a width, relative to the shortest rod; infinite without any.
+
+    One on a body counts half: the body may come to meet the rod.
+    """
+    thicknesses = [
+        obstacle.thickness if obstacle.body is None else obstacle.thickness / 2
+        for obstacle in scene.obstacles
+        if obstacle.is_smooth
+    ]
     return min(thicknesses, default=inf) / min(rod.length for rod in scene.rods)
 
 

@@ -154,7 +154,8 @@ class ModelFunctions:
         """(q, base_position, base_quaternion, inputs) ↦ (generalised_force, base_force, base_moment).
 
         Report (2.19) with the base pose free: forces in N, moments in N m about the base, world frame; generalised
-        forces in units of EI/ℓ. Wrenches of constraints are unknowns of the scene, not loads, and are left out.
+        forces in units of EI/ℓ. Wrenches of constraints are unknowns of the scene, not loads, and are left out; so is
+        what obstacles on bodies press with, which hangs on the poses of these.
         """
         return _inverse_geometric_model(written)
 
@@ -251,7 +252,7 @@ class ModelFunctions:
         Tension and length of a tendon, pressure and volume of a chamber.
         The derivative is what a unit of effort does.
         """
-        return [ca.densify(ca.MX(value)) for value in written.system.actuator(written.owner)]
+        return [ca.densify(ca.MX(value)) for value in written.system.actuators.state(written.owner)]
 
     @owned_functions(
         Owner.BODY,

@@ -107,9 +107,15 @@ class LoadArrows:
             site = Site(discrete_rod.properties, X, partial(unloaded_poses, self.discrete, rod, to_sections))
             data_size = member.data(load, site).shape[0]
             kernel = traced(member, load, values, data_size)
-            poses = self.rod_poses(rod, X)
-            force, moment = _wrench(kernel, stored(values), poses, known(kernel.data(site)))
-            positions, _ = poses
+            positions, rotations = self.rod_poses(rod, X)
+            data = known(kernel.data(site))
+            seen_from = member.seen_from(load)
+            if seen_from is None:
+                force, moment = _wrench(kernel, stored(values), (positions, rotations), data)
+            else:
+                origin, (world_R_body,) = self.body_pose(seen_from)
+                in_body = _in_body(origin, world_R_body, positions, rotations)
+                force, moment = (world_R_body @ part for part in _wrench(kernel, stored(values), in_body, data))
             yield DrawnLoad(member, load, label, False, positions, force, moment)
             label = ""
 
@@ -134,6 +140,18 @@ def _body_label(load: scenes.LoadRecord, body: scenes.Body) -> str:
     if getattr(load, "body", None) is not None:
         return load.name
     return f"{load.name} of {body.name}"
+
+
+def _in_body(
+    origin: Matrix | FloatArray,
+    world_R_body: Matrix | FloatArray,
+    positions: Matrix | FloatArray,
+    rotations: Sequence[Matrix] | FloatArray,
+) -> DrawnPoses:
+    """Poses of k sections of the world in the axes of a body, which has one pose."""
+    body_R_world = world_R_body.T
+    columns = [body_R_world @ (positions[:, k] - origin[:, 0]) for k in range(positions.shape[1])]
+    return ca.horzcat(*columns), [body_R_world @ rotation for rotation in rotations]
 
 
 def _wrench(kernel: TracedLoad, parameters: Matrix, poses: DrawnPoses, data: FloatArray) -> tuple[Matrix, Matrix]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -22,6 +22,7 @@ from cosserat_casadi.maths.numbers import (
     is_zero,
     known,
 )
+from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.inputs import scene_value
@@ -35,11 +36,11 @@ from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, PoseWrench, Ro
 
 @dataclass(frozen=True)
 class RodBase:
-    """Pose of a rod's base.
+    """Pose of a rod's base in the world, or as a body sees it.
 
     Attributes:
-        position: 3×1, world axes, m.
-        base_R_world: 3×3, turns world coordinates into those of the base.
+        position: 3×1, world axes, or those of the body, m.
+        base_R_world: 3×3, turns world coordinates, or those of the body, into those of the base.
     """
 
     position: Matrix
@@ -50,6 +51,12 @@ class RodBase:
         if vector is None or follower:
             return vector
         return self.base_R_world @ vector
+
+    def seen_from(self, body: Pose) -> RodBase:
+        """The pose of the base in the axes of a body whose pose in the world is given."""
+        world_R_body = body.rotation
+        position = world_R_body.T @ (self.position - body.position)
+        return RodBase(position, self.base_R_world @ world_R_body)
 
 
 @dataclass(frozen=True)
@@ -63,6 +70,7 @@ class RodLoads:
         inputs: stacked inputs.
         ratio: length of the rod relative to the scene's, where that is free.
         motion: of the rod; None at rest.
+        body_pose: world pose of a body, by name; None where bodies have none, and what they bear is left out.
     """
 
     discrete: DiscreteScene
@@ -71,6 +79,7 @@ class RodLoads:
     inputs: Matrix
     ratio: Ratio
     motion: RodMotion | None = None
+    body_pose: Callable[[str], Pose] | None = None
 
     def all(self) -> list[RodLoad]:
         """What all loads do to the rod, in the axes of its base."""
@@ -83,6 +92,8 @@ class RodLoads:
         """What one load does to the rod: nothing where it does not act there."""
         member = EFFECTS[load.kind]
         if not member.acts_on(load, self.rod):
+            return []
+        if member.seen_from(load) is not None and self.body_pose is None:
             return []
         values = input_values(self.discrete.layout, load, self.inputs)
         site = site_of(self.discrete, self.rod, load)
@@ -137,17 +148,23 @@ class RodLoads:
         scale: Matrix | float = 1.0
         if at is None and self.ratio is not None:
             scale = self.ratio
+        base = self.base
+        borne_by = kernel.member.seen_from(kernel.load)
+        if borne_by is not None:
+            assert self.body_pose is not None, "what bodies bear is left out without their poses"
+            base = base.seen_from(self.body_pose(borne_by))
         return PoseWrench(
             at=at,
             span=kernel.member.span(kernel.load),
             kernel=section_kernel,
-            base_position=self.base.position,
-            base_rotation=self.base.base_R_world.T,
+            base_position=base.position,
+            base_rotation=base.base_R_world.T,
             parameters=stored(values),
             data=kernel.data(site),
             scale=scale,
             motion=motion,
             growth=kernel.member.growth,
+            borne_by=borne_by,
         )
 
     def _feels_motion(self, kernel: TracedLoad) -> bool:

@@ -21,6 +21,7 @@ from cosserat_casadi.maths.pose import Pose
 from cosserat_casadi.maths.rotation import dot
 from cosserat_casadi.maths.typing import FloatArray, Matrix
 from cosserat_casadi.model.body_loads import BodyLoad, BodyLoads
+from cosserat_casadi.model.borne_loads import BorneLoad
 from cosserat_casadi.model.load_potential import is_dead_force
 from cosserat_casadi.model.registry import EFFECTS
 from cosserat_casadi.model.system import MotionArguments, System
@@ -94,9 +95,9 @@ class MotionEnergy:
         """
         powers = []
         for actuator in self.system.discrete.scene.actuators:
-            effort, _, _ = self.system.actuator(actuator.name)
-            _, conjugate = self.system.conjugate(actuator.name)
-            rate = self.system.pull(actuator.name).T @ self._motion.v + conjugate.rate(self._by_inputs)
+            effort, _, _ = self.system.actuators.state(actuator.name)
+            _, conjugate = self.system.actuators.conjugate(actuator.name)
+            rate = self.system.actuators.pull(actuator.name).T @ self._motion.v + conjugate.rate(self._by_inputs)
             sign = EFFECTS[actuator.kind].energy_sign
             powers.append(-sign * effort * rate)
         stacked: Matrix = ca.vertcat(*powers)
@@ -185,7 +186,18 @@ class MotionEnergy:
         for _, motion, body_load in self._on_bodies(load):
             twist = ca.vertcat(motion.angular_velocity, motion.velocity)
             powers.append(ca.dot(body_load.wrench, twist))
+        for borne in self._borne(load):
+            body_motion = self.system.frame_motions[borne.body].motion
+            powers.append(ca.dot(borne.wrench, ca.vertcat(body_motion.angular_velocity, body_motion.velocity)))
         return _sum(powers)
+
+    def _borne(self, load: scenes.LoadRecord) -> Iterator[BorneLoad]:
+        """What a load on rods does to the body that bears the opposite."""
+        for rod in self.system.discrete.rods:
+            for wrench in self.system.loads_of(load, rod):
+                if isinstance(wrench, PoseWrench) and wrench.borne_by is not None:
+                    sections = LoadedSections(wrench, self.system.shapes[rod])
+                    yield BorneLoad(self.system, rod, sections)
 
     def _contact_energy(self, load: scenes.LoadRecord) -> Matrix:
         """What an obstacle with a width stores."""

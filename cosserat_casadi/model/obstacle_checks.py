@@ -10,6 +10,7 @@ from cosserat_casadi import scene as scenes
 from cosserat_casadi.errors import Problem, SceneError
 from cosserat_casadi.loads.penetration import section_radius
 from cosserat_casadi.maths.numbers import known
+from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.discrete_scene import DiscreteScene
 from cosserat_casadi.model.rods import base_pose
 from cosserat_casadi.obstacles.registry import SURFACES
@@ -48,22 +49,58 @@ def refuse_obstacles(scene: scenes.Scene, what: str) -> None:
         raise SceneError(Problem("obstacles", problem, remedy))
 
 
+def refuse_held_by_contact(scene: scenes.Scene) -> None:
+    """Refuse to look for the equilibrium of free rods that only contact that is exact would hold.
+
+    Raises:
+        SceneError: with all such rods.
+    """
+    problems = list(held_by_contact(scene))
+    if problems:
+        raise SceneError(*problems)
+
+
+def held_by_contact(scene: scenes.Scene) -> Iterator[Problem]:
+    """Free rods that touch obstacles exactly, or whose bodies do."""
+    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
+    remedy = "give its base a place; or let it move: simulate the scene"
+    for obstacle in scene.obstacles:
+        for rod in scene.rods:
+            concerned = obstacle.concerns(rod.name) or bool(obstacle.bodies)
+            if rod.base.free and concerned and not obstacle.is_smooth:
+                problem = f"the rod {rod.name!r} is free: at rest contact alone would have to hold it"
+                yield Problem(f"obstacles.{obstacle.name}", problem, remedy)
+
+
+def _held_by(scene: scenes.Scene, body: str, rod: scenes.Rod, radius: float) -> dict[str, tuple[FloatArray, float]]:
+    """How a rod is held by a body: the place of its tip in the axes of the body, and the radius of it."""
+    held = {}
+    for joint in scene.joints:
+        if (joint.body, joint.rod) == (body, rod.name):
+            held["is held by its body"] = (np.asarray(joint.position, dtype=float), radius)
+    return held
+
+
 def _problems(discrete: DiscreteScene) -> Iterator[Problem]:
     for rod in discrete.scene.rods:
         properties = discrete.rods[rod.name].properties
         radii = section_radius(properties, LOOKED_AT)
-        held = {}
+        in_world = {}
         # Where a carried rod starts is for its carrier to say.
         if rod.base.rod is None:
-            held["starts"] = (known(base_pose(rod)[0]), float(radii[0]))
+            in_world["starts"] = (known(base_pose(rod)[0]), float(radii[0]))
         for support in discrete.scene.supports:
             if support.rod == rod.name:
-                held["is held"] = (np.asarray(support.position, dtype=float), float(radii[-1]))
+                in_world["is held"] = (np.asarray(support.position, dtype=float), float(radii[-1]))
         for obstacle in discrete.scene.obstacles:
             if not obstacle.concerns(rod.name):
                 continue
             member = SURFACES[obstacle.kind]
             yield from member.faults(obstacle, float(radii.max()))
+            held = in_world
+            if obstacle.body is not None:
+                # Where the body comes to be is not known before it is solved; what it carries goes with it.
+                held = _held_by(discrete.scene, obstacle.body, rod, float(radii[-1]))
             for how, (position, radius) in held.items():
                 depth = radius - float(member.function(obstacle)(position)[0])
                 if depth > TOUCHING * properties.length:

@@ -9,6 +9,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.actuators.routing import offset_at
+from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions
 from cosserat_casadi.equilibrium.solution import Solution
 from cosserat_casadi.equilibrium.stability import variations
 from cosserat_casadi.loads.arrow import UNITS
@@ -60,7 +61,7 @@ def page_facts(solution: Solution, model: Model | None = None) -> dict[str, Any]
         "held": [_rounded(np.array(support.position)) for support in scene.supports],
         "targets": [_rounded(np.array(point)) for point in _target_points(scene)],
         "derivatives": True,
-        "obstacles": [_obstacle(obstacle, shapes) for obstacle in scene.obstacles],
+        "obstacles": [_obstacle(obstacle, solution, shapes) for obstacle in scene.obstacles],
         "colours": _colours(),
         "arrow_lengths": {sort: style.share for sort, style in STYLES.items()},
         "arrow_units": dict(UNITS),
@@ -127,10 +128,14 @@ def _body(scene: scenes.Scene, body: Any) -> dict[str, Any]:
     return {"corners": _rounded(body_corners(scene, body)), "joints": _rounded(np.array(joints))}
 
 
-def _obstacle(obstacle: scenes.ObstacleRecord, shapes: RodShapes) -> dict[str, Any]:
-    """A net of points on the surface of an obstacle, rows of points, m; what has no end is shown about the rods."""
-    mesh = SURFACES[obstacle.kind].mesh(obstacle, shapes.points.mean(axis=0), shapes.size)
-    return {"name": obstacle.name, "net": _rounded(mesh)}
+def _obstacle(obstacle: scenes.ObstacleRecord, solution: Solution, shapes: RodShapes) -> dict[str, Any]:
+    """A net of points on the surface of an obstacle, rows of points, m; what has no end is shown about the rods.
+
+    That of an obstacle on a body is in the axes of the body.
+    """
+    (near,) = seen_positions(solution, obstacle, shapes.points.mean(axis=0)[None])
+    mesh = SURFACES[obstacle.kind].mesh(obstacle, near, shapes.size)
+    return {"name": obstacle.name, "body": obstacle.body, "net": _rounded(mesh)}
 
 
 def _colours() -> dict[str, str]:

@@ -16,6 +16,7 @@ import numpy as np
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.equations import ContactEquations
 from cosserat_casadi.equilibrium.contact.gaps import ball_gaps, ball_radius, body_pairs, pairs
+from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
 from cosserat_casadi.equilibrium.contact.passage import SECTIONS, ball_is_inside_between, is_inside_between
 from cosserat_casadi.equilibrium.contact.settle import Found, found_at
 from cosserat_casadi.equilibrium.contact.solve import LEAST_TOLERANCE
@@ -29,7 +30,6 @@ from cosserat_casadi.maths.grid import Grid
 from cosserat_casadi.maths.numbers import known
 from cosserat_casadi.maths.rotation import quaternion_product, quaternion_to_matrix
 from cosserat_casadi.maths.typing import FloatArray, Matrix
-from cosserat_casadi.model.floating_frames import FrameName
 from cosserat_casadi.numerics.arclength import ArcPoint, ArcSettings, Curve, Monitor
 from cosserat_casadi.numerics.continuation import Path
 from cosserat_casadi.numerics.events import DETERMINANT
@@ -215,6 +215,7 @@ class Arrangement:
     def gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], GapsAlong]:
         """Distances of rods from the obstacles that they must not enter, by the names of rod and obstacle."""
         nodes = self._nodes(z, load_factor)
+        bodies = self.bodies(z, load_factor)
         gaps = {}
         for rod, obstacle in pairs(self.scene):
             discrete_rod = self.equations.nominal.model.discrete.rods[rod]
@@ -223,13 +224,21 @@ class Arrangement:
             moved = np.diff(ends) / np.diff(discrete_rod.discretisation.breaks)
             by_element = (discrete_rod.grid.elements, -1, 3)
             tangents = nodes[rod].rates.reshape(by_element) / moved[:, None, None]
+            positions = nodes[rod].positions
+            bends = self._bends(rod, nodes[rod], tangents, ends)
+            if obstacle.body is not None:
+                # The obstacle sees the rod from its body.
+                body = bodies[obstacle.body]
+                positions = in_axes_of(body, positions)
+                tangents = tangents @ body.rotation[0]
+                bends = bends @ body.rotation[0]
             gaps[rod, obstacle.name] = GapsAlong(
                 rod=rod,
                 obstacle=obstacle,
                 ends=ends,
-                positions=nodes[rod].positions.reshape(by_element),
+                positions=positions.reshape(by_element),
                 tangents=tangents,
-                bends=self._bends(rod, nodes[rod], tangents, ends),
+                bends=bends,
                 radii=section_radius(discrete_rod.properties, np.array([0.0, 1.0])),
                 length=discrete_rod.properties.length,
             )
@@ -260,28 +269,32 @@ class Arrangement:
         return np.asarray(bends.reshape(tangents.shape))
 
     @cached_property
-    def _body_positions(self) -> ca.Function:
-        """(x, f, p, inputs) ↦ positions of the bodies of the scene, world axes, one column each, m."""
+    def _body_poses(self) -> ca.Function:
+        """(x, f, p, inputs) ↦ positions, m, and quaternions of the bodies of the scene, one column each."""
         written = self.equations.written
-        positions = [written.system.frame(FrameName("body", body.name)).position for body in self.scene.bodies]
-        return ca.Function("body_positions", written.arguments, [ca.horzcat(*positions)])
+        poses = [written.system.body(body.name) for body in self.scene.bodies]
+        positions = ca.horzcat(*[pose.position for pose in poses])
+        quaternions = ca.horzcat(*[pose.quaternion for pose in poses])
+        return ca.Function("body_poses", written.arguments, [positions, quaternions])
 
-    def body_positions(self, z: FloatArray, load_factor: float) -> dict[str, FloatArray]:
-        """Positions of the bodies of the scene by name, world axes, shape (1, 3) each, m."""
+    def bodies(self, z: FloatArray, load_factor: float) -> dict[str, Pose]:
+        """Poses of the bodies of the scene by name, each as that of one section."""
         if not self.scene.bodies:
             return {}
-        columns = self._body_positions(*self.equations.parts(z), self.inputs(load_factor)).full()
-        return {body.name: column[None, :] for body, column in zip(self.scene.bodies, columns.T, strict=True)}
+        outputs = self._body_poses(*self.equations.parts(z), self.inputs(load_factor))
+        positions, quaternions = (output.full().T[:, None, :] for output in outputs)
+        poses = [Pose(*pose) for pose in zip(positions, map(rotations, quaternions), quaternions, strict=True)]
+        return {body.name: pose for body, pose in zip(self.scene.bodies, poses, strict=True)}
 
     def body_gaps(self, z: FloatArray, load_factor: float) -> dict[tuple[str, str], float]:
         """Distances of bodies from the obstacles that they must not enter, by the names of body and obstacle."""
         pairs_of_bodies = list(body_pairs(self.scene))
         if not pairs_of_bodies:
             return {}
-        positions = self.body_positions(z, load_factor)
+        bodies = self.bodies(z, load_factor)
         gaps = {}
         for body, obstacle in pairs_of_bodies:
-            (gap,) = ball_gaps(obstacle, ball_radius(body), positions[body.name])
+            (gap,) = ball_gaps(obstacle, ball_radius(body), bodies[body.name].position)
             gaps[body.name, obstacle.name] = float(gap) / self._length_of(body)
         return gaps
 
@@ -294,20 +307,33 @@ class Arrangement:
         for rod, obstacle in pairs(self.scene):
             properties = self.equations.nominal.model.discrete.rods[rod].properties
             start_positions, end_positions = (
-                self.poses(self.z(point), point.load_factor, SECTIONS, rod).position for point in (start, end)
+                self._seen_sections(self.z(point), point.load_factor, rod, obstacle) for point in (start, end)
             )
             if is_inside_between(obstacle, properties, start_positions, end_positions):
                 return True
         pairs_of_bodies = list(body_pairs(self.scene))
         if not pairs_of_bodies:
             return False
-        before, after = (self.body_positions(self.z(point), point.load_factor) for point in (start, end))
+        before, after = (self.bodies(self.z(point), point.load_factor) for point in (start, end))
         return any(
             ball_is_inside_between(
-                obstacle, ball_radius(body), self._length_of(body), before[body.name], after[body.name]
+                obstacle,
+                ball_radius(body),
+                self._length_of(body),
+                before[body.name].position,
+                after[body.name].position,
             )
             for body, obstacle in pairs_of_bodies
         )
+
+    def _seen_sections(
+        self, z: FloatArray, load_factor: float, rod: str, obstacle: scenes.ObstacleRecord
+    ) -> FloatArray:
+        """Positions of the sections of a rod that are looked at, as an obstacle sees them, shape (k, 3), m."""
+        positions = self.poses(z, load_factor, SECTIONS, rod).position
+        if obstacle.body is None:
+            return positions
+        return in_axes_of(self.bodies(z, load_factor)[obstacle.body], positions)
 
     def poses(self, z: FloatArray, load_factor: float, X: FloatArray, rod: str) -> Pose:
         """Poses of sections at abscissae X."""

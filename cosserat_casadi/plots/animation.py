@@ -16,17 +16,19 @@ from typing import Any
 
 import numpy as np
 
-from cosserat_casadi.equilibrium.solution import rotations
+from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
+from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.errors import CosseratError, Problem, SceneError
 from cosserat_casadi.files import write_atomically, write_errors
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
-from cosserat_casadi.motion.poses import section_poses
+from cosserat_casadi.motion.poses import body_poses, section_poses
 from cosserat_casadi.motion.trajectory import Motion
 from cosserat_casadi.plots.canvas import Canvas
-from cosserat_casadi.plots.colours import BODIES, FAILURE, PLAIN_TEXT, rod_colour, rod_style
+from cosserat_casadi.plots.colours import BODIES, FAILURE, OBSTACLES, PLAIN_TEXT, rod_colour, rod_style
 from cosserat_casadi.plots.figure import figure_class
 from cosserat_casadi.plots.moving_shapes import MovingShapes, moving_shapes
+from cosserat_casadi.plots.obstacles import surface_lines
 from cosserat_casadi.plots.scenery import CLAMP, draw_supports
 
 FORMATS = (".gif", ".mp4")
@@ -285,7 +287,7 @@ class _Film:
         axes = self.figure.add_subplot(projection=projection)
         self._frames = frames
         self._canvas = Canvas(axes, plane, shapes.size, view_axes)
-        self._lines = self._draw(frames.model, shapes)
+        self._lines = self._draw(frames.model, shapes) + self._draw_obstacles(frames, shapes)
         if frames.section_axes:
             self._lines += self._draw_section_axes(frames, shapes)
         draw_supports(self._canvas, frames.model.scene)
@@ -322,6 +324,25 @@ class _Film:
             if model.discrete.unloaded.floating_base(name) is None:
                 bases = centre_lines[:, :1]
                 lines.append(_Moving(canvas.markers(bases[0], **CLAMP), bases))
+        return lines
+
+    def _draw_obstacles(self, frames: Frames, shapes: MovingShapes) -> list[_Moving]:
+        """Draw the obstacles that move with bodies; returns them."""
+        lines = []
+        for obstacle in frames.model.scene.obstacles:
+            if obstacle.body is None:
+                continue
+            poses = body_poses(frames.model, obstacle.body, frames.x, frames.inputs)
+            world_R_body = rotations(poses.quaternion)
+            first = Pose(poses.position[:1], world_R_body[:1], poses.quaternion[:1])
+            label: str | None = obstacle.name
+            for outline in surface_lines(self._canvas, obstacle, shapes.points, first):
+                in_body = in_axes_of(first, outline)
+                moved = poses.position[:, None, :] + np.einsum("tij,kj->tki", world_R_body, in_body)
+                line = self._canvas.line(moved[0], color=OBSTACLES, linewidth=1.2, label=label)
+                lines.append(_Moving(line, moved))
+                # The legend names an obstacle once.
+                label = None
         return lines
 
     def _draw_section_axes(self, frames: Frames, shapes: MovingShapes) -> list[_Moving]:

@@ -11,9 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from cosserat_casadi.equilibrium.contact.gaps import ball_radius
+from cosserat_casadi.equilibrium.solution import Pose, rotations
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.inputs import Input
 from cosserat_casadi.model.load_cases import column_indices
+from cosserat_casadi.motion.contact_record import MotionContact
 from cosserat_casadi.motion.trajectory import Energies, Motion
 from cosserat_casadi.plots.canvas import Canvas
 from cosserat_casadi.plots.colours import BODIES, CATEGORIES, FAILURE, PLAIN_TEXT, rod_style
@@ -141,19 +144,46 @@ def _draw_shapes(canvas: Canvas, motion: Motion, shapes: MovingShapes) -> None:
         if motion.model.discrete.unloaded.floating_base(name) is None:
             canvas.markers(lines[-1, :1], **CLAMP)
     draw_supports(canvas, motion.model.scene)
-    draw_surfaces(canvas, motion.model.scene.obstacles, shapes.points)
+    _draw_obstacles(canvas, motion, shapes, rows)
     _mark_contacts(canvas, motion, rows)
 
 
+def _draw_obstacles(canvas: Canvas, motion: Motion, shapes: MovingShapes, rows: list[int]) -> None:
+    """Draw obstacles, those on bodies in each of the shapes that are drawn."""
+    obstacles = motion.model.scene.obstacles
+    draw_surfaces(canvas, [one for one in obstacles if one.body is None], shapes.points, {})
+    moving = [one for one in obstacles if one.body is not None]
+    for order, row in enumerate(rows):
+        share = PALEST + (1 - PALEST) * (order + 1) / len(rows)
+        bodies = {}
+        for name in {str(one.body) for one in moving}:
+            poses = motion.body(name)
+            at_row = poses.quaternion[[row]]
+            bodies[name] = Pose(poses.position[[row]], rotations(at_row), at_row)
+        draw_surfaces(canvas, moving, shapes.points, bodies, strength=share, named=row == rows[-1])
+
+
 def _mark_contacts(canvas: Canvas, motion: Motion, rows: list[int]) -> None:
-    """Mark the sections that touch obstacles without a width in the shapes that are drawn."""
+    """Mark where obstacles without a width are touched in the shapes that are drawn."""
     label: str | None = "contact"
     for row in rows:
         for contact in motion.contacts[row] if motion.contacts else ():
-            point = motion.section(contact.rod, [contact.at]).position[row]
-            canvas.markers(point, marker="o", markersize=5, color="black", zorder=9, label=label)
+            canvas.markers(
+                _touching_point(motion, contact, row), marker="o", markersize=5, color="black", zorder=9, label=label
+            )
             # The legend names contacts once.
             label = None
+
+
+def _touching_point(motion: Motion, contact: MotionContact, row: int) -> FloatArray:
+    """Centre of the section that touches, or where the ball of a body does, shape (1, 3), m."""
+    if not contact.of_body:
+        section: FloatArray = motion.section(contact.rod, [contact.at]).position[row]
+        return section
+    (body,) = [body for body in motion.model.scene.bodies if body.name == contact.rod]
+    normal = contact.force / np.linalg.norm(contact.force)
+    centre: FloatArray = motion.body(body.name).position[row : row + 1]
+    return centre - ball_radius(body) * normal
 
 
 def shown_rows(times: FloatArray) -> list[int]:

@@ -41,16 +41,18 @@ class Statics:
     Attributes:
         shape: the rod's shape.
         loads: what acts on it.
+        evaluated: loads that depend on the poses of their sections, beside these, evaluated at this shape already.
     """
 
     shape: Shape
     loads: Sequence[RodLoad]
+    evaluated: Sequence[LoadedSections] = ()
 
     @cached_property
     def pose_loads(self) -> list[LoadedSections]:
         """Loads that depend on the poses of their sections."""
         dependent = [load for load in self.loads if isinstance(load, PoseWrench)]
-        return [LoadedSections(load, self.shape) for load in dependent]
+        return [*self.evaluated, *(LoadedSections(load, self.shape) for load in dependent)]
 
     @cached_property
     def fixed_wrenches(self) -> list[Wrench]:

@@ -39,6 +39,7 @@ from cosserat_casadi.rod.folded_matrix import FoldedMatrix
 from cosserat_casadi.rod.igm import InverseGeometricModel
 from cosserat_casadi.rod.kinematics import Shape
 from cosserat_casadi.rod.pose_load import LoadedSections
+from cosserat_casadi.rod.statics import Statics
 from cosserat_casadi.rod.strain import DiscreteRod
 from cosserat_casadi.rod.transport import IntervalKernels, interval_kernels
 from cosserat_casadi.rod.wrenches import LineWrench, PointWrench, Wrench
@@ -111,6 +112,15 @@ class Tangent:
         """Columns of the turns, or of all angular coordinates, where moments pass."""
         linear = {component: self._linear_rows(component) for component in self.rod.linear}
         return Columns(self.section_rotation, self._angular_product, linear)
+
+    def under(self, load: LoadedSections) -> Tangent:
+        """The same variations of the same shape where one load that depends on poses acts alone."""
+        model = InverseGeometricModel(Statics(self.shape, (), (load,)))
+        if not self.kernels.axes:
+            return Tangent(model, self.in_loops)
+        # The turns are those of the rod under all its loads; what moments make of them is not asked for.
+        turns = Columns(self.section_rotation, ca.DM(self.angular_size, self.angular_size), {})
+        return Tangent(model, self.in_loops, given=turns)
 
     @cached_property
     def _turns(self) -> Matrix:

@@ -68,13 +68,15 @@ class PoseWrench:
         at: abscissa X of the section, an element end of the grid; None for a wrench per metre of undeformed length.
         span: abscissae X between which a wrench per metre acts, element ends of the grid.
         kernel: force and moment as a function of a section's pose.
-        base_position: world position of the rod's base, 3×1, m.
-        base_rotation: world_R_base, 3×3.
+        base_position: position of the rod's base in the axes that the kernel is written in, the world's or those of the
+            body that bears the wrench, 3×1, m.
+        base_rotation: rotation from the base into these axes, 3×3.
         parameters: what the kernel depends on at run time, p×1.
         data: what it depends on at its sections, shape (d, k).
         scale: factor on force, moment and energy.
         motion: of the rod; None at rest, and for a kernel that does not depend on rates.
         growth: power of the load factor by which it grows on the way from the unloaded scene.
+        borne_by: name of the body that bears the opposite wrench; None where the world does.
     """
 
     at: Scalar | None
@@ -87,6 +89,7 @@ class PoseWrench:
     scale: Matrix | float
     motion: RodMotion | None = None
     growth: int = 1
+    borne_by: str | None = None
 
     def __post_init__(self) -> None:
         check_shape("base_position", self.base_position, 3, 1)

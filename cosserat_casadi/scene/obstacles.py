@@ -49,11 +49,18 @@ class ObstacleRecord(Entry):
     Without a width contact is exact and found at rest; with one it is smooth, a load like any other.
     """
 
-    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies"}
+    references: ClassVar[Mapping[str, str]] = {"rods": "rods", "bodies": "bodies", "body": "bodies"}
 
     name: Name = Field(description="name of the obstacle, a letter, then letters, digits and underscores")
+    body: str | None = Field(
+        None,
+        description="name of the body that it is fixed to and moves with, in whose axes it is given; it stands still "
+        "in the world when left out",
+    )
     rods: Names | None = Field(
-        None, description="names of the rods that may not enter it; all rods when neither rods nor bodies are named"
+        None,
+        description="names of the rods that may not enter it; all rods when neither rods nor bodies are named; with "
+        "body they must be named",
     )
     bodies: Names | None = Field(
         None,
@@ -98,7 +105,8 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
-        """What says how a smooth contact pushes asks for its width."""
+        """What says how a smooth contact pushes asks for its width; one on a body for the rods that it concerns."""
+        yield from _misplaced_on_body(given)
         if "width" in given:
             return
         for key in SMOOTH_KEYS[1:]:
@@ -108,7 +116,7 @@ class ObstacleRecord(Entry):
 
     @classmethod
     def scene_conflicts(cls, given: Table, scene: SceneTables) -> Iterator[Fault]:
-        """Rods that are not round, bodies without radius; where contact is exact rods that shear, and free ones."""
+        """Rods that are not round, bodies without radius; where contact is exact rods that shear."""
         named = given.get("rods", [] if "bodies" in given else None)
         exact = "width" not in given
         if exact and any("width" in other for _, other in scene.tables("obstacles")):
@@ -117,16 +125,28 @@ class ObstacleRecord(Entry):
             )
             yield Fault(("width",), problem, "give it here as well, m, or leave it out everywhere")
         yield from _unfit_bodies(given, scene)
-        if exact and given.get("bodies"):
-            for name, (_, rod) in scene.named("rods").items():
-                if _is_free(rod):
-                    yield Fault((), *_held_by_contact_alone(name))
         for name, (_, rod) in scene.named("rods").items():
             if isinstance(named, list | tuple) and name not in named:
                 continue
             yield from _not_round(name, rod)
             if exact:
                 yield from _without_exact_contact(name, rod)
+
+
+def _misplaced_on_body(given: Table) -> Iterator[Fault]:
+    """What an obstacle that moves with a body does not go with."""
+    if "body" not in given:
+        return
+    if "rods" not in given:
+        # The rods that hold the body end at it, or in it: none is meant that is not named.
+        problem = "missing: which rods may not enter an obstacle on a body is not guessed, for some of them carry it"
+        yield Fault(("rods",), problem, "name them, as in rods = ['finger']")
+    if "bodies" in given:
+        problem = "an obstacle on a body keeps off rods alone: contact of two bodies is not found"
+        yield Fault(("bodies",), problem, "leave bodies out, or leave body out")
+    if "damping" in given:
+        problem = "contact with an obstacle on a body is not damped"
+        yield Fault(("damping",), problem, "leave it out: rods that are damped take energy from a bounce")
 
 
 def _unfit_bodies(given: Table, scene: SceneTables) -> Iterator[Fault]:
@@ -157,21 +177,6 @@ def _without_exact_contact(name: str, rod: Table) -> Iterator[Fault]:
         problem = f"the rod {name!r} admits shear: its contact has a boundary layer as long as its section is high"
         remedy = f'{SMOOTH_FORM}; or take strain = "kirchhoff", or leave the rod out of rods'
         yield Fault((), problem, remedy)
-    if _is_free(rod):
-        yield Fault((), *_held_by_contact_alone(name))
-
-
-def _is_free(rod: Table) -> bool:
-    """Whether nothing in the scene holds the base of a rod."""
-    base = rod.get("base")
-    return isinstance(base, Mapping) and base.get("free") is True
-
-
-def _held_by_contact_alone(name: str) -> tuple[str, str]:
-    """What is wrong with a free rod, and what to do."""
-    # Contact has no friction: along an obstacle such a rod would be in balance nowhere, or anywhere.
-    problem = f"the rod {name!r} is free: at rest contact alone would have to hold it"
-    return problem, f"give its base a place; or let it move: {SMOOTH_FORM}"
 
 
 OBSTACLES: Family[ObstacleRecord] = Family("obstacles")
@@ -192,9 +197,10 @@ rods = ["finger"]
 """
 
     kind: Literal["plane"] = Field(description="half of space")
-    point: Vector = Field(description="a point of the plane in world axes, m")
+    point: Vector = Field(description="a point of the plane in world axes, or those of its body, m")
     normal: Direction = Field(
-        description="direction out of the obstacle in world axes, without unit; its length does not matter"
+        description="direction out of the obstacle in world axes, or those of its body, without unit; its length does "
+        "not matter"
     )
 
 
@@ -232,7 +238,7 @@ rods = ["finger"]
 """
 
     kind: Literal["sphere"] = Field(description="ball")
-    centre: Vector = Field(description="its centre in world axes, m")
+    centre: Vector = Field(description="its centre in world axes, or those of its body, m")
 
 
 @OBSTACLES.register
@@ -250,8 +256,8 @@ rods = ["finger"]
 """
 
     kind: Literal["capsule"] = Field(description="round bar")
-    start: Vector = Field(alias="from", description="start of its axis in world axes, m")
-    end: Vector = Field(alias="to", description="end of its axis in world axes, m")
+    start: Vector = Field(alias="from", description="start of its axis in world axes, or those of its body, m")
+    end: Vector = Field(alias="to", description="end of its axis in world axes, or those of its body, m")
 
     @classmethod
     def conflicts(cls, given: Table) -> Iterator[Fault]:
@@ -287,7 +293,8 @@ rods = ["finger"]
 
     kind: Literal["lumen"] = Field(description="inside of a tube")
     points: Annotated[tuple[Vector, ...], NotEmpty()] = Field(
-        description="points that its line passes, a natural cubic spline over the distance between them, m"
+        description="points that its line passes in world axes, or those of its body, a natural cubic spline over the "
+        "distance between them, m"
     )
     radius: Radii = Field(description="its radius, one or one for each point, m")
 

@@ -58,8 +58,8 @@ class Barriers:
         """Whether a rod or a body comes near the middle of one on the way between two shapes, given by unknowns."""
         for rod, obstacle in self.watched:
             properties = self.model.discrete.rods[rod].properties
-            start = self._looked_at[rod].positions(before, self.inputs)
-            end = self._looked_at[rod].positions(after, self.inputs)
+            start = self._looked_at[rod].positions(obstacle, before, self.inputs)
+            end = self._looked_at[rod].positions(obstacle, after, self.inputs)
             if is_inside_between(obstacle, properties, start, end, self._deepest(rod, obstacle)):
                 return True
         for body, obstacle in self.watched_bodies:

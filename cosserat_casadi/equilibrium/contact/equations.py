@@ -256,10 +256,10 @@ class Distances:
         return base + X * (tip - base)
 
     def _gap(self, node: int, X: Place) -> tuple[Matrix, Matrix]:
-        """Distance of the surface at a node, m, and the normal of the obstacle there."""
+        """Distance of the surface at a node, m, and the normal of the obstacle there, in the axes it is given in."""
         shape = self.system.shapes[self.rod]
         position = self.system.base(self.rod).position + self._world_R_base @ shape.position_at(node)
-        distance, normal, _ = surface(self.obstacle)(position)
+        distance, normal, _ = surface(self.obstacle)(self.system.seen_from(self.obstacle.body, position))
         return distance - self._radius(X), normal
 
     def at(self, X: Scalar) -> tuple[Matrix, Matrix]:
@@ -268,6 +268,7 @@ class Distances:
         node = grid.node_at(X)
         gap, normal = self._gap(node, X)
         tangent = self._world_R_base @ self.system.shapes[self.rod].tangent[:, node]
+        tangent = self.system.turned_to(self.obstacle.body, tangent)
         # The tangent is the rate of the coordinate that integrals run over, which a moving element stretches.
         rate = grid.rates_in(grid.element_of_node[[node]])
         if rate is not None:

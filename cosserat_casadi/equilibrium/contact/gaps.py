@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cosserat_casadi import scene as scenes
+from cosserat_casadi.equilibrium.contact.on_bodies import seen_positions, world_directions
 from cosserat_casadi.equilibrium.contact.surfaces import distances, surface
 from cosserat_casadi.equilibrium.solution import Contact, Solution
 from cosserat_casadi.loads.penetration import section_radius
@@ -37,13 +38,21 @@ def body_pairs(scene: scenes.Scene) -> Iterator[tuple[scenes.Body, scenes.Obstac
 def gap_along(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
     """Distance of a rod's surface from an obstacle at abscissae X, over the length of the rod, shape (k,)."""
     properties = solution.model.discrete.rods[rod].properties
-    return section_gaps(obstacle, properties, solution.pose(X, rod).position, X) / properties.length
+    return section_gaps(obstacle, properties, seen_sections(solution, rod, obstacle, X), X) / properties.length
+
+
+def seen_sections(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
+    """Positions of a rod's sections at abscissae X in the axes that an obstacle is given in, shape (k, 3), m."""
+    return seen_positions(solution, obstacle, solution.pose(X, rod).position)
 
 
 def section_gaps(
     obstacle: scenes.ObstacleRecord, properties: RodProperties, positions: FloatArray, X: FloatArray
 ) -> FloatArray:
-    """Distances of a rod's sections at abscissae X from an obstacle, shape (k,), m, for positions of shape (k, 3)."""
+    """Distances of a rod's sections at abscissae X from an obstacle, shape (k,), m, for positions of shape (k, 3).
+
+    Positions are in the axes that the obstacle is given in.
+    """
     return np.asarray(distances(obstacle, positions) - section_radius(properties, X))
 
 
@@ -72,10 +81,10 @@ def body_normal(solution: Solution, body: str, obstacle: scenes.ObstacleRecord) 
 
 
 def normals(solution: Solution, rod: str, obstacle: scenes.ObstacleRecord, X: FloatArray) -> FloatArray:
-    """Normals of an obstacle at the sections of a rod, shape (k, 3)."""
-    positions = solution.pose(X, rod).position
+    """Normals of an obstacle at the sections of a rod, world axes, shape (k, 3)."""
+    positions = seen_sections(solution, rod, obstacle, X)
     _, gradient, _ = surface(obstacle).map(len(X))(positions.T)
-    return np.asarray(gradient.full().T)
+    return world_directions(solution, obstacle, gradient.full().T)
 
 
 def touching_points(solution: Solution, contact: Contact, along: int) -> FloatArray:

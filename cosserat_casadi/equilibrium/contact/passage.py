@@ -12,8 +12,17 @@ from functools import cached_property
 import numpy as np
 
 from cosserat_casadi import scene as scenes
-from cosserat_casadi.equilibrium.contact.gaps import DENSE, ball_gaps, ball_radius, body_pairs, pairs, section_gaps
-from cosserat_casadi.equilibrium.solution import Solution
+from cosserat_casadi.equilibrium.contact.gaps import (
+    DENSE,
+    ball_gaps,
+    ball_radius,
+    body_pairs,
+    pairs,
+    section_gaps,
+    seen_sections,
+)
+from cosserat_casadi.equilibrium.contact.on_bodies import in_axes_of
+from cosserat_casadi.equilibrium.solution import Pose, Solution
 from cosserat_casadi.maths.typing import FloatArray
 from cosserat_casadi.model.build import Model
 from cosserat_casadi.rod.properties import RodProperties
@@ -43,15 +52,20 @@ class LookedAt:
     model: Model
     rod: str
 
-    def positions(self, x: FloatArray, inputs: FloatArray) -> FloatArray:
-        """Positions at the abscissae SECTIONS, shape (k, 3), m.
+    def positions(self, obstacle: scenes.ObstacleRecord, x: FloatArray, inputs: FloatArray) -> FloatArray:
+        """Positions at the abscissae SECTIONS, in the axes that an obstacle is given in, shape (k, 3), m.
 
         Args:
+            obstacle: what sees them.
             x: unknowns, shape (model.size,).
             inputs: stacked inputs, shape (model.inputs.size,).
         """
         at_nodes = self.model.fields[self.rod](x, inputs)[0].full()
-        return np.asarray(self._interpolation @ at_nodes.T)
+        in_world = np.asarray(self._interpolation @ at_nodes.T)
+        if obstacle.body is None:
+            return in_world
+        position, quaternion, rotation = (part.full() for part in self.model.body[obstacle.body](x, inputs))
+        return in_axes_of(Pose(position.T, rotation[None], quaternion.T), in_world)
 
     @cached_property
     def _interpolation(self) -> FloatArray:
@@ -62,8 +76,8 @@ class LookedAt:
 def passes_through(before: Solution, after: Solution) -> bool:
     """Whether a section or a body is inside an obstacle on the straight way from one shape to the other."""
     for rod, obstacle in pairs(after.model.scene):
-        start = before.pose(SECTIONS, rod).position
-        end = after.pose(SECTIONS, rod).position
+        start = seen_sections(before, rod, obstacle, SECTIONS)
+        end = seen_sections(after, rod, obstacle, SECTIONS)
         if is_inside_between(obstacle, after.model.discrete.rods[rod].properties, start, end):
             return True
     for body, obstacle in body_pairs(after.model.scene):
@@ -109,7 +123,7 @@ def is_inside_between(
     Args:
         obstacle: the obstacle.
         properties: of the rod.
-        start: positions at the abscissae SECTIONS, shape (k, 3), m.
+        start: positions at the abscissae SECTIONS, in the axes that the obstacle is given in, shape (k, 3), m.
         end: others, likewise.
         deepest: depth on the way, relative to the length of the rod, up to which it is not inside.
     """

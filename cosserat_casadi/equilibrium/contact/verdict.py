@@ -14,6 +14,7 @@ import numpy as np
 
 from cosserat_casadi import scene as scenes
 from cosserat_casadi.equilibrium.contact.gaps import body_normal, normals
+from cosserat_casadi.equilibrium.contact.on_bodies import seen_directions, seen_positions
 from cosserat_casadi.equilibrium.contact.settle import Found
 from cosserat_casadi.equilibrium.contact.state import Touch
 from cosserat_casadi.equilibrium.contact.surfaces import distance_along
@@ -156,5 +157,8 @@ def _gap_curvature(found: Found, touch: Touch) -> float:
     tangent = length * pose.rotation[0] @ strain[3:]
     # The rate of the extension is along the tangent, on which the normal stands.
     bend = length**2 * pose.rotation[0] @ np.cross(strain[:3], strain[3:])
-    distance = distance_along(found.placed.obstacle(touch.obstacle), pose.position[0], tangent, bend)
+    obstacle = found.placed.obstacle(touch.obstacle)
+    (position,) = seen_positions(found.solution, obstacle, pose.position)
+    first, second = seen_directions(found.solution, obstacle, np.array([tangent, bend]))
+    distance = distance_along(obstacle, position, first, second)
     return distance.bend / length

@@ -95,12 +95,14 @@ class Scenery {
     for (const point of this.facts.targets) this.addBall(this.scene, point, 0.012, this.facts.colours.target);
   }
 
-  addObstacles() {
-    for (const { net } of this.facts.obstacles) {
+  // Obstacles of the world, or those that move with a body.
+  addObstacles(group = this.layers.obstacles, on = null) {
+    for (const { net, body } of this.facts.obstacles) {
+      if (body !== on) continue;
       const material = solid(this.facts.colours.obstacle);
       // Seen through from both sides: a lumen has the robot inside.
       Object.assign(material, { transparent: true, opacity: 0.35, depthWrite: false });
-      this.layers.obstacles.add(new THREE.Mesh(netGeometry(net), material));
+      group.add(new THREE.Mesh(netGeometry(net), material));
     }
   }
 
@@ -231,10 +233,16 @@ class Scenery {
     });
     for (const joint of facts.joints) this.addBall(group, joint, 0.009, "#59616a");
     this.scene.add(group);
+    // A group of their own, so that they are hidden with the other obstacles.
+    const fixed = new THREE.Group();
+    this.addObstacles(fixed, entry.name);
+    this.layers.obstacles.add(fixed);
     return (numbers) => {
       const [x, y, z, qw, qx, qy, qz] = numbers;
-      group.position.set(x, y, z);
-      group.quaternion.set(qx, qy, qz, qw);
+      for (const moved of [group, fixed]) {
+        moved.position.set(x, y, z);
+        moved.quaternion.set(qx, qy, qz, qw);
+      }
     };
   }
 
